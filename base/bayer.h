@@ -1,4 +1,4 @@
-// Mosaics of colour filters as pictures. Values; any thread.
+// Converts mosaics of colour filters (Bayer) to colour images. Functions; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Tells, in the log, of what could make a run in lock step differ from the next one: a write by a thread that no tick runs, a sample that
-// came between ticks. Each is told once for each place in this process, at level info; `rtse run --strict` makes it a failure. Any thread.
+// Reports nondeterministic events of a run in lock step in the log: a write by a thread that no tick runs, a sample that arrived between
+// ticks. Each place in this process is reported once, at level info; `rtse run --strict` makes it a failure. Any thread.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ class LockStepClock : public Clock {
 };
 
 // What such a message begins with.
-inline constexpr std::string_view chance_mark = "depends on chance: ";
+inline constexpr std::string_view chance_mark = "nondeterministic: ";
 
 // "port A:out" "was written by a thread that no tick runs".
 void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated);

@@ -1,5 +1,5 @@
-// A program that runs beside us and never outlives us: it is told to end when its owner goes, and killed by the kernel when we are killed.
-// What it has started itself and left behind ends with it. One thread at a time.
+// A child process that never outlives its owner: the destructor ends it, and the kernel kills it if this process is killed. Processes that
+// it started itself end with it. One thread at a time.
 #pragma once
 
 #include <sys/types.h>

@@ -1,4 +1,4 @@
-// Time as an argument: what needs the time takes a Clock, so that tests move it by hand. Any thread.
+// Time as an argument: code that needs the time takes a Clock, so that tests control it. Any thread.
 #pragma once
 
 #include <atomic>

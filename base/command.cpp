@@ -181,6 +181,12 @@ Command* Command::add_subcommand(const std::string& name, const std::string& des
   return commands_.back().get();
 }
 
+Command* Command::group_subcommands(const std::string& title, const std::vector<std::string>& names) {
+  const auto is_named = [&](const CLI::App* command) { return std::find(names.begin(), names.end(), command->get_name()) != names.end(); };
+  for (auto* command : inner_->get_subcommands(is_named)) command->group(title);
+  return this;
+}
+
 Command* Command::callback(std::function<void()> work) {
   inner_->callback(std::move(work));
   return this;

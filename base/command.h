@@ -1,6 +1,6 @@
-// The words of a program's command line: what a program declares of its options, positionals and commands. CLI11 does the work and words
-// the help and the errors; it is a heavy header, so it is included where this is implemented and nowhere else. Methods are named as in
-// CLI11, and do what its documentation says. What is declared lives as long as its Command. One thread at a time.
+// Declares options, positionals and subcommands of a program. CLI11 parses, and writes help and errors; only the implementation includes
+// it, because it is a heavy header. Methods have the names and the meaning of CLI11. Declarations live as long as their Command. One thread
+// at a time.
 #pragma once
 
 #include <cstddef>
@@ -78,6 +78,8 @@ class Command final {
   Option* option(const std::string& name);  // one that was added
 
   Command* add_subcommand(const std::string& name, const std::string& description = "");
+  // The help and the manual page list these subcommands below `title`. Names that were not added are ignored.
+  Command* group_subcommands(const std::string& title, const std::vector<std::string>& names);
   Command* callback(std::function<void()> work);  // when the command line has been read, and names this command
   Command* require_subcommand(int count);
   Command* fallthrough(bool falls = true);

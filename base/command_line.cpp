@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -76,11 +77,18 @@ std::string manual_page(const Command& program, const std::string& name, const s
                      "\n.SH DESCRIPTION\n" + troff(app.get_description()) + "\n";
   page += ".SH OPTIONS\n";
   append_options(page, app);
+  std::vector<std::string> groups;
   const auto commands = commands_of(app);
-  if (!commands.empty()) page += ".SH COMMANDS\n";
   for (const auto* command : commands) {
-    page += ".SS " + troff(command->get_name()) + "\n" + troff(command->get_description()) + "\n";
-    append_options(page, *command);
+    if (std::find(groups.begin(), groups.end(), command->get_group()) == groups.end()) groups.push_back(command->get_group());
+  }
+  for (const auto& group : groups) {
+    page += groups.size() == 1 ? ".SH COMMANDS\n" : ".SH COMMANDS: " + troff(group) + "\n";
+    for (const auto* command : commands) {
+      if (command->get_group() != group) continue;
+      page += ".SS " + troff(command->get_name()) + "\n" + troff(command->get_description()) + "\n";
+      append_options(page, *command);
+    }
   }
   return page + ".SH EXIT STATUS\n0: done; 1: failed, the reason is on standard error; 2: the command line was wrong.\n";
 }

@@ -1,4 +1,4 @@
-// What the command lines of all our programs share: --version, --completion, --man, and errors in one line. One thread at a time.
+// Standard options of all programs (--version, --completion, --man) and errors in one line. One thread at a time.
 #pragma once
 
 #include <optional>

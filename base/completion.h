@@ -1,6 +1,6 @@
-// What a shell is told when the user presses the tab key: `PROGRAM --complete WORD...` prints what may stand for the last word, a line
-// each. The scripts that --completion
-// prints ask that way, so that names of the running system are offered too. One thread at a time.
+// Completion for shells: `PROGRAM --complete WORD...` prints the candidates for the last word, one per line.
+// The scripts of --completion call it, so that names of the running system are offered, too. One thread at a
+// time.
 #pragma once
 
 #include <functional>

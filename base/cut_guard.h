@@ -1,7 +1,7 @@
-// Keeps this process alive when another one cuts a file of shared memory short. A page that is no longer behind a mapping raises SIGBUS
-// where it is touched; the first guard installs a handler that then puts private zeros in the place of the whole mapping. In an iface zeros
-// mean: no server, no lease, no request, so all code goes on as with an empty one; who reads a segment of a port asks was_cut() afterwards.
-// Faults elsewhere go to the handler that was there before. Any thread.
+// Keeps this process running when another one truncates a file of shared memory. Access to a missing page raises SIGBUS; the
+// handler of the first guard replaces the whole mapping by private zeros. In an iface zeros mean: no simulator, no lease, no
+// request. A reader of a port segment calls was_cut() afterwards. Other SIGBUS faults go to the previous handler. Any
+// thread.
 #pragma once
 
 #include <cstddef>

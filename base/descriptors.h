@@ -1,4 +1,4 @@
-// How many files and connections this process may have open, and whether anybody reads its output. Any thread.
+// Limit of open files and connections of this process, and the state of its output. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// A 64-bit hash of a stream of octets, the same on every machine and however the stream is cut into pieces. For finding differences, not
-// for keeping secrets. A value; one thread at a time.
+// A 64-bit hash of a stream of bytes, equal on every machine and for any division of the stream into pieces. It finds differences; it is
+// not cryptographic. A value; one thread at a time.
 //
 // Eight words at a time go into four states, because each state has to wait for the product before; a product takes in two of them.
 #pragma once

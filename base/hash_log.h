@@ -1,6 +1,6 @@
-// Hash logs: what a run did, tick by tick, in a tree of hashes: each model and device of the world, each component, the data that went
-// through each port. Two runs are the same when their logs are; else the first difference names the tick and the leaf. The format is in
-// docs/hash-logs.md. One thread at a time.
+// Hash logs: hashes of a run, tick by tick, as a tree of models, devices, components and ports. Two runs are equal if their logs
+// are equal; otherwise the first difference names the tick and the leaf. The format is in docs/hash-logs.md. One thread at a
+// time.
 #pragma once
 
 #include <chrono>

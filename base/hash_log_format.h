@@ -1,4 +1,4 @@
-// The octets of hash logs, for their writer and their reader; docs/hash-logs.md describes them.
+// The byte format of hash logs, for their writer and their reader (docs/hash-logs.md).
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// Identifiers that are unique in the world. Any thread.
+// Globally unique identifiers. Any thread.
 #pragma once
 
 #include <string>

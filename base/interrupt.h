@@ -1,4 +1,4 @@
-// Ctrl-C for commands that have something to take down: SIGINT, SIGTERM and SIGHUP set a mark that whoever waits can see. Any thread.
+// Ctrl-C for commands with processes to end: SIGINT, SIGTERM and SIGHUP set a mark that waiting code can read. Any thread.
 #pragma once
 
 #include <functional>

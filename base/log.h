@@ -1,4 +1,4 @@
-// The one way to the log. Messages go to stderr (one line each) unless a sink is set. Any thread; never call it with a lock held.
+// The log of a process. Messages go to stderr, one line each, unless a sink is set. Any thread; never with a lock held.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>

@@ -1,4 +1,4 @@
-// For servers that are not ours and that we start: what lets only the own account in. Any thread.
+// The library that restricts third-party servers, such as omniNames, to the own account. Any thread.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Whose the other end of a TCP connection within this machine is, by the kernel's own tables of sockets: what a server on loopback needs
-// that serves its own account only. Any thread; no state.
+// The account of the other end of a TCP connection within this machine, from the socket tables of the kernel. Servers on loopback use it to
+// accept their own account only. Any thread; no state.
 #pragma once
 
 #include <sys/types.h>

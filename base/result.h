@@ -1,4 +1,4 @@
-// What a function returns that can fail in a way its caller can act on: a value or one Error. Any thread.
+// The result of a function that can fail: a value or one Error that its caller can act on. Any thread.
 #pragma once
 
 #include <cassert>

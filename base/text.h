@@ -1,4 +1,4 @@
-// Small functions on text, and numbers read strictly. Any thread. None of them depends on the locale.
+// Text functions, and strict parsing of numbers. Any thread. They do not depend on the locale.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The tick of a lock step that runs on this thread: what belongs to it, and what it keeps of the data that passes. Who runs one (an
-// execution context on simulated time) puts a ScopedTick around the callbacks. The thread of the tick only.
+// The tick of a lock step that runs on this thread: its time, its phase counter, and the data that passes in it. An execution context on
+// simulated time puts a ScopedTick around the callbacks. The thread of the tick only.
 //
 // The rule of delivery: what is written at moment m, which is odd while a phase runs, can be read at later moments only. So readers of
 // higher phases see it in the same tick, readers of the same phase and of lower ones in their next, and whether a thread came early or late

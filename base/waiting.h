@@ -1,5 +1,5 @@
-// What a callback does not do itself: time in which it waits for others, for data or for the simulator. Execution contexts tell it from
-// work in their statistics, and a cycle that has waited is not late. Each thread has its own account.
+// Measures the time in which a callback waits for others, for data or for the simulator. Execution contexts separate it from work in their
+// statistics, and a cycle that waited is not late. Each thread has its own account.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// A program that does what it does first in every start (its libraries, and more if it likes), and then makes others like it by forking
-// whenever it is asked to. Each is as one that was started alone: its own words, environment, output and process group. Who asks is rtse
-// (run/warm_program.h), over the socket that is standard input.
+// A prefork server: a program that runs its start-up once (libraries, and more), then forks on request. A forked process equals one that
+// was started alone: own arguments, environment, output and process group. The client is rtse (run/warm_program.h), over the socket on
+// standard input.
 //
 // A request is one packet: words, an empty word, then the environment, each with a 0 at its end; and two descriptors: where the process
 // writes, and a pipe that tells how it is: its process id, and when it has ended its status as wait() has it, both as int. When the socket

@@ -1,4 +1,4 @@
-// Writing a file so that under its name the whole of it is seen, or what was there before. Any thread.
+// Writes a file atomically: its name refers to the complete new file or to the old one. Any thread.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What YAML forbids and yaml-cpp lets pass. Any thread.
+// Checks of YAML that yaml-cpp does not make, such as duplicate keys. Any thread.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

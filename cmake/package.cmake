@@ -43,10 +43,12 @@ install(FILES ${PROJECT_BINARY_DIR}/package/OpenRTMConfig.cmake ${PROJECT_BINARY
 foreach(name rtm-core openrtm-aist openrtm2 libcoil)
   install(FILES ${PROJECT_BINARY_DIR}/package/openrtm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig RENAME ${name}.pc)
 endforeach()
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS packaging/man/rtm-skelwrapper.rtm-sim.1)
+file(READ packaging/man/rtm-skelwrapper.rtm-sim.1 SKELWRAPPER_MANUAL)
 foreach(name rtm rtm2)
-  configure_file(cmake/package/rtm-skelwrapper ${PROJECT_BINARY_DIR}/bin/${name}-skelwrapper COPYONLY)
+  configure_file(cmake/package/rtm-skelwrapper ${PROJECT_BINARY_DIR}/bin/${name}-skelwrapper @ONLY USE_SOURCE_PERMISSIONS)
   install(PROGRAMS ${PROJECT_BINARY_DIR}/package/rtm-config DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-config)
-  install(PROGRAMS cmake/package/rtm-skelwrapper DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-skelwrapper)
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/bin/${name}-skelwrapper DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name}-skelwrapper)
 endforeach()
 
 # Where and under which names older build files look: folders of headers by version, libraries by name.

@@ -1,4 +1,4 @@
-// Frames of camera ifaces in the formats of the image types of ports, and as JPEG. Values; any thread.
+// Converts frames of camera ifaces to the formats of the image types of ports, and to JPEG. Values; any thread.
 #pragma once
 
 #include <base/jpeg.h>

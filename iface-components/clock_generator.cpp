@@ -113,7 +113,7 @@ void ClockGenerator::bind() {
       RTC::CorbaNaming naming(RTC::Manager::instance().getORB(), server.c_str());
       naming.rebindByString(usual_name, reference_);
     } catch (const CORBA::Exception& exception) {
-      RTC_WARN(("naming service %s: %s is not bound: %s", base::in_quotes(server).c_str(), usual_name, exception._name()));
+      RTC_WARN(("name server %s: cannot bind %s: %s", base::in_quotes(server).c_str(), usual_name, exception._name()));
     }
   }
 }
@@ -125,7 +125,7 @@ void ClockGenerator::unbind() {
       CORBA::Object_var bound = naming.resolve(usual_name);
       if (bound->_is_equivalent(reference_)) naming.unbind(usual_name);
     } catch (const CORBA::Exception& exception) {
-      RTC_DEBUG(("naming service %s: %s is not unbound: %s", base::in_quotes(server).c_str(), usual_name, exception._name()));
+      RTC_DEBUG(("name server %s: cannot unbind %s: %s", base::in_quotes(server).c_str(), usual_name, exception._name()));
     }
   }
 }

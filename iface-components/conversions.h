@@ -1,4 +1,4 @@
-// Samples of ifaces as data of the standard types. Angles rad, lengths m, time stamps simulated. Pure; any thread.
+// Converts samples of ifaces to the standard data types. Angles in rad, lengths in m, simulated time stamps. Pure; any thread.
 #pragma once
 
 #include <rtm/idl/BasicDataTypeSkel.h>

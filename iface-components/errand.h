@@ -1,5 +1,5 @@
-// Requests to a simulation that nobody waits for. A component in lock step must not wait for an answer: the server answers between ticks,
-// and the tick waits for the component. post() from any thread.
+// Asynchronous requests to a simulation. A component in lock step must not wait for an answer: the simulator answers between ticks, and the
+// tick waits for the component. post() from any thread.
 #pragma once
 
 #include <base/guarded.h>

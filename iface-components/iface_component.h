@@ -1,5 +1,5 @@
-// What the components that carry one iface have in common: the configuration server_id and device_id, attaching on activation, detaching
-// on deactivation, and following changes of both while running.
+// The common part of device components with one iface: the configuration server_id and device_id, attaching on activation, detaching on
+// deactivation, and changes of both while running.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>

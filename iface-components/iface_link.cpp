@@ -68,7 +68,7 @@ bool IfaceLink::wait_for_newer(shm::Iface& iface, std::chrono::nanoseconds limit
     const base::ScopedWait waiting;
     return iface.wait(last_, limit);
   }();
-  if (what == shm::Wait::closed) lose("the simulator is gone");
+  if (what == shm::Wait::closed) lose("the simulator has exited");
   return what == shm::Wait::fresh;
 }
 

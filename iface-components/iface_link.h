@@ -1,4 +1,4 @@
-// A component's hold on one iface: attaches, reads, and attaches again when the simulator has been restarted. One thread at a time.
+// The connection of a component to one iface: attaches, reads, and attaches again after a restart of the simulator. One thread at a time.
 //
 // States: detached -> attached -> lost -> attached ... -> detached. What happens is said once per change, never per sample.
 #pragma once

@@ -1,4 +1,4 @@
-// RTCBumper: carries a bumper iface to the OutPorts `contact` (RTC::TimedBooleanSeq of one: touched) and `force` (RTC::TimedDoubleSeq: x y
+// RTCBumper: bridges a bumper iface to the OutPorts `contact` (RTC::TimedBooleanSeq of one: touched) and `force` (RTC::TimedDoubleSeq: x y
 // z [N] of each contact, world frame). The standard types have geometries of bumpers, but no data. Configuration: server_id, device_id.
 #pragma once
 

@@ -1,4 +1,4 @@
-// RTCDepthCamera: carries a depth iface to the OutPorts `depth` (RTC::CameraImage, format "DEPTH32F": 32-bit little-endian floats, metres
+// RTCDepthCamera: bridges a depth iface to the OutPorts `depth` (RTC::CameraImage, format "DEPTH32F": 32-bit little-endian floats, metres
 // along the optical axis, 0 where there is nothing) and `points` (RTC::PointCloud in the sensor's frame: x forward, y left, z up).
 // Each is computed only when it is connected. Configuration: server_id, device_id; points_step: every n-th pixel of every n-th row.
 #pragma once

@@ -1,4 +1,4 @@
-// RTCGps: carries a gps iface to the OutPort `position` (RTC::GPSData; latitude and longitude in degrees, as receivers give them).
+// RTCGps: bridges a gps iface to the OutPort `position` (RTC::GPSData; latitude and longitude in degrees, as receivers give them).
 // Configuration: server_id, device_id.
 #pragma once
 

@@ -1,4 +1,4 @@
-// RTCImu: carries an imu iface to three OutPorts, as there is no standard type for all of it: `orientation` (RTC::TimedOrientation3D),
+// RTCImu: bridges an imu iface to three OutPorts, as there is no standard type for all of it: `orientation` (RTC::TimedOrientation3D),
 // `angular_velocity` (RTC::TimedAngularVelocity3D, sensor frame), `acceleration` (RTC::TimedAcceleration3D: specific force, sensor frame).
 // Configuration: server_id, device_id.
 #pragma once

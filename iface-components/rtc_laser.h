@@ -1,4 +1,4 @@
-// RTCLaser: carries a laser iface to the OutPort `range` (RTC::RangeData).
+// RTCLaser: bridges a laser iface to the OutPort `range` (RTC::RangeData).
 // Configuration: server_id, device_id; layer of a scanner with several (-1: the one nearest to the horizon).
 #pragma once
 

@@ -1,4 +1,4 @@
-// RTCPosition2d: drives a position2d iface by the InPort `velocity` (RTC::TimedVelocity2D), and carries its state to the OutPorts
+// RTCPosition2d: drives a position2d iface by the InPort `velocity` (RTC::TimedVelocity2D), and bridges its state to the OutPorts
 // `odometry` (RTC::TimedPose2D) and `actual_velocity` (RTC::TimedVelocity2D). Configuration and threads: see drive_component.h.
 #pragma once
 

@@ -1,4 +1,4 @@
-// RTCPosition3d: drives a position3d iface by the InPort `velocity` (RTC::TimedVelocity3D), and carries its state to the OutPorts
+// RTCPosition3d: drives a position3d iface by the InPort `velocity` (RTC::TimedVelocity3D), and bridges its state to the OutPorts
 // `pose` (RTC::TimedPose3D) and `actual_velocity` (RTC::TimedVelocity3D). Configuration and threads: see drive_component.h.
 #pragma once
 

@@ -1,4 +1,4 @@
-// RTCSonar: carries a sonar iface to the OutPort `range` (RTC::RangeData); where each transducer sits and looks is in elementGeometries.
+// RTCSonar: bridges a sonar iface to the OutPort `range` (RTC::RangeData); where each transducer sits and looks is in elementGeometries.
 // Configuration: server_id, device_id.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Whom an object of ours serves, and whether any of them is still there. Any thread.
+// The objects that an object serves, and whether any of them still exists. Any thread.
 #pragma once
 
 #include <rtm/idl/RTCStub.h>

@@ -1,4 +1,4 @@
-// The simulated time that a context has been told of last. Set by the context's thread, read by any.
+// The simulated time that a context received last. Set by the context's thread, read by any.
 #pragma once
 
 #include <base/clock.h>

@@ -1,5 +1,5 @@
-// A tick of simulated time as those see it who take part in it: what is to be sent at its end, and the hashes of the data that passes.
-// The context's thread only.
+// A running tick of simulated time: the samples to send at its end, and the hashes of the data that pass. The context's thread
+// only.
 //
 // The hash log of a context (base/hash_log.h) has the data that its components read and wrote in each tick, port by port, and the states of
 // its components when they change.

@@ -129,7 +129,7 @@ void SimTimeContext::run(shm::Participant& participant) {
         return say_once("the simulator has dropped this context from the lock step; joining again");
       case shm::Participant::State::closed:
         is_waiting_ = true;
-        return say_once("the simulator is gone; waiting for it");
+        return say_once("the simulator has exited; waiting for it");
     }
   }
 }

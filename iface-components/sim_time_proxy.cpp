@@ -68,7 +68,7 @@ void SimTimeProxy::watch() {
     if (is_late)
       RTC_WARN(("the context that is ticked has not returned from tick() for %d s; it is waited for", static_cast<int>(long_time.count())));
     if (!alone_limit_ || !is_alone()) continue;
-    RTC_INFO(("whom this proxy served has gone: it ends"));
+    RTC_INFO(("the component of this proxy was deleted: exiting"));
     exit();
     return;
   }

@@ -1,4 +1,4 @@
-// What time it is in a simulator now, for threads that no tick runs: those that receive data. Any thread.
+// The current time of a simulator, for threads that no tick runs, such as those that receive data. Any thread.
 #pragma once
 
 #include <base/chance.h>

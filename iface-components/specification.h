@@ -1,4 +1,4 @@
-// What an interface component says of itself. A type writes its own rows; what all types have in common stands here. Any thread.
+// The specification of a device component. A type adds its own rows to the common ones here. Any thread.
 #pragma once
 
 #include <coil/Properties.h>

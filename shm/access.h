@@ -1,4 +1,4 @@
-// Who may use the segments of a server. A value; any thread.
+// Access rights of the segments of a simulator. A value; any thread.
 #pragma once
 
 #include <sys/types.h>

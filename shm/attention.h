@@ -1,4 +1,4 @@
-// Wakes the server's loop when it sleeps: somebody asks, joins, leaves, or has switched a sensor on or off. Any thread.
+// Wakes the loop of the simulator: for a request, a participant that joins or leaves, or a new subscription. Any thread.
 #pragma once
 
 #include "shm/segment.h"

@@ -396,7 +396,7 @@ base::Result<void> Iface::command(CommandKind kind, std::span<const double> valu
     if (!(std::abs(value) <= 1e9)) return fail("value must be finite and within 1e9, got " + base::format_number(value));
   }
   if (auto good = state.ensure_lease(); !good) return good;
-  if (state.status(true) != Status::live) return fail("has nobody to follow it: the server has ended");
+  if (state.status(true) != Status::live) return fail("ignored: the simulator has exited");
   Lease& lease = state.own_lease();
   CommandHead fresh{};
   fresh.sequence = load(lease.command.sequence, std::memory_order_relaxed) + 1;

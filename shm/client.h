@@ -1,4 +1,4 @@
-// The client's side of ifaces: find, open, read, wait, command. An Iface belongs to one thread at a time.
+// The client side of ifaces: find, open, read, wait, command. An Iface belongs to one thread at a time.
 //
 //   auto laser = shm::Iface::open(0, shm::IfaceType::laser, "pioneer2dx::laser");
 //   laser->subscribe();

@@ -1,5 +1,5 @@
-// The ways in which a sensor or a drive can be out of order on purpose, one row each: requests, options, completion and what carries them
-// out follow this table. Constants; any thread.
+// The table of faults that can be injected into a sensor or drive, one row each. Requests, options, completion and their implementation use
+// this table. Constants; any thread.
 #pragma once
 
 #include <array>

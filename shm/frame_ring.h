@@ -1,4 +1,4 @@
-// The writer's side of a ring of frames. One thread at a time.
+// The writer side of a ring of frames. One thread at a time.
 //
 // Who may touch a slot: the writer, between lock = 0 and lock = sequence, and only if no lease holds the slot; a reader, while its hold
 // names the slot and lock was the wanted sequence after the hold was stored. Both sides store first and look then (sequentially

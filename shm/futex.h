@@ -1,4 +1,4 @@
-// Sleep on and wake by a 32-bit word that processes share. Any thread.
+// Sleeps on, and wakes by, a 32-bit word that processes share. Any thread.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// How the table of iface types (iface_types.h) says where a value is, what it is called and in which unit. Constants; no thread rule.
+// Names, units and offsets of the fields in the table of iface types (iface_types.h). Constants; no thread rule.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Infos, samples and heads of frames of all types of ifaces as JSON, by the table of types. One thread per Iface.
+// Converts infos, samples and frame headers of all iface types to JSON, by the table of types. One thread per Iface.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
-// The one table of iface types: number, name, constants, samples, what follows them, and every field that people see, with its unit. What
-// is listed, printed, completed, checked and documented of an iface follows from it; the structures themselves are in rtmsim_layout.h, for
-// C. A new type is an enumerator here, its fields and its row. Constants; no thread rule.
+// The table of iface types: number, name, constants, samples, trailing arrays, and every visible field with its unit. Lists, output,
+// completion, checks and documentation of ifaces use it; the structures are in rtmsim_layout.h, for C. A new type needs an enumerator, its
+// fields and its row. Constants; no thread rule.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// C++ names and enums of what lies in shared memory (rtmsim_layout.h), with the offsets pinned; the types of ifaces are in iface_types.h.
-// Plain data; no thread rule.
+// C++ names and enums of the shared memory layout (rtmsim_layout.h), with fixed offsets; the types of ifaces are in iface_types.h. Plain
+// data; no thread rule.
 #pragma once
 
 #include <cstddef>

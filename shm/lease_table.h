@@ -1,4 +1,4 @@
-// Leases of an iface, seen from both sides: the server counts and reaps (LeaseTable), a client takes and gives back (take_lease).
+// Leases of an iface, for both sides: the simulator counts and releases them (LeaseTable), a client acquires and releases one (take_lease).
 #pragma once
 
 #include <atomic>

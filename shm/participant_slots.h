@@ -1,4 +1,4 @@
-// What both sides of the lock step do with participants' slots. Any thread; the states are those of lockstep.h.
+// Operations of both sides of the lock step on participant slots. Any thread; the states are those of lockstep.h.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Who a process is and whether it still lives; how memory of processes that no longer exist is recognised. Any thread.
+// Identity of a process, whether it is running, and detection of shared memory of processes that have exited. Any thread.
 #pragma once
 
 #include <sys/types.h>

@@ -1,4 +1,4 @@
-// Learns of the death of processes at once, by pidfds in one thread. Any thread.
+// Detects the exit of processes at once, by pidfds in one thread. Any thread.
 #pragma once
 
 #include <atomic>

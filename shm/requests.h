@@ -1,6 +1,4 @@
-// What clients can ask of a simulation, as types, and the way to bytes and back. Values; no thread rule.
-// The meaning of each request is written down in rtmsim_layout.h (RTMSIM_REQUEST_*). Decoding checks everything: numbers finite, names
-// terminated, counts in range; what handles a request need not check again.
+// Requests to a simulation as types, with encoding and decoding. Values; no thread rule.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,4 @@
-// A segment of shared memory: its name, its making, its mapping. Any thread; a Segment is moved, never copied.
-// It is found at /dev/shm/<text of its name>, and belongs to the user in that name. When another user has made a file of that name, which
-// nobody but him can remove, it is in the folder /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name.
+// A segment of shared memory: its name, creation and mapping. Any thread; a Segment is moved, never copied.
 #pragma once
 
 #include <sys/types.h>

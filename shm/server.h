@@ -1,4 +1,4 @@
-// The server of one server id: makes ifaces, gives signs of life, takes back the leases of dead clients. Any thread.
+// The simulator side of shared memory: creates ifaces, writes the heartbeat, releases the leases of exited clients. Any thread.
 //
 //   auto server = shm::Server::start({.server_id = 0});
 //   auto laser = (*server)->create(shm::iface_spec(shm::IfaceType::laser, "pioneer2dx::laser", info));

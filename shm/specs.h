@@ -1,4 +1,4 @@
-// What it takes to make an iface: type, name, constants, and the sizes that follow from them by the table of types. Values; any thread.
+// The specification of an iface: type, name, constants, and the sizes that follow from them by the table of types. Values; any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Looking for news instead of sleeping: where another processor is free and the other side is quick, going to sleep and being woken takes
-// longer than the wait. What is learned here decides when. One thread at a time.
+// Polls a word instead of sleeping, where a processor is free and the answer is expected sooner than a sleep and a wake-up take. Measured
+// waits decide when. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Atomic access to words of shared memory and the copy of samples in and out of it. Any thread, any process.
+// Atomic access to words of shared memory, and copying of samples. Any thread, any process.
 //
 // A sample is copied word by word with release stores and acquire loads: a reader that sees one word of a new sample also sees that its
 // lock word is odd (or newer), without any fence; on x86 these are plain moves.

@@ -1,5 +1,5 @@
-// The server's side of an iface. An `IfaceWriter` belongs to the thread that publishes on it (one thread at a time; different writers in
-// different threads are fine); is_subscribed() may be called from any thread. Server::create (server.h) makes them.
+// The simulator side of an iface. An `IfaceWriter` belongs to the thread that publishes on it (one thread at a time; different writers may
+// be in different threads); is_subscribed() can be called from any thread. Server::create (server.h) creates it.
 #pragma once
 
 #include <sys/types.h>

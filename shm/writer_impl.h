@@ -1,4 +1,4 @@
-// What an IfaceWriter holds, for it and the Server that tends it. See writer.h for the thread rule.
+// The state of an IfaceWriter, for it and for the Server. The thread rule is that of writer.h.
 #pragma once
 
 #include <atomic>

@@ -173,19 +173,19 @@ int main(int argc, char** argv) {
       "known by where it was before."};
   base::add_standard_options(app, "follow", RTMSIM_VERSION);
   Options options;
-  app.add_option("--host", options.host, "Where player-gateway, or another server of Player, runs")->capture_default_str();
-  app.add_option("-p,--port", options.port, "Its port for this robot")->check(base::integer_between(1, 65535))->capture_default_str();
+  app.add_option("--host", options.host, "Host of player-gateway, or of another Player server")->capture_default_str();
+  app.add_option("-p,--port", options.port, "Port of this robot")->check(base::integer_between(1, 65535))->capture_default_str();
   app.add_option("--position2d", options.drive, "Index of the drive")->check(base::integer_between(0, 65535))->capture_default_str();
   app.add_option("--laser", options.laser, "Index of the scanner")->check(base::integer_between(0, 65535))->capture_default_str();
-  app.add_option("--distance", options.steering.distance, "To keep from the leader [m]")
+  app.add_option("--distance", options.steering.distance, "Distance to the leader [m]")
       ->check(base::number_between(0.4, 10))
       ->capture_default_str();
-  app.add_option("--max-speed", options.steering.max_speed, "[m/s]")->check(base::number_between(0, 10))->capture_default_str();
-  app.add_option("--wait", options.wait, "For a server that is not there yet [s]")
-      ->check(base::number_between(0, 1e6))
+  app.add_option("--max-speed", options.steering.max_speed, "Maximum speed [m/s]")
+      ->check(base::number_between(0, 10))
       ->capture_default_str();
-  app.add_option("--auth", options.key, "Key that the server wants (player-gateway --auth)")->envname("RTMSIM_PLAYER_AUTH");
-  app.add_option("--duration", options.duration, "End after so many seconds of the server's time; 0: never")
+  app.add_option("--wait", options.wait, "Timeout for the connection [s]")->check(base::number_between(0, 1e6))->capture_default_str();
+  app.add_option("--auth", options.key, "Key of the server (player-gateway --auth)")->envname("RTMSIM_PLAYER_AUTH");
+  app.add_option("--duration", options.duration, "Stop after N seconds of the server's time; 0: never")
       ->check(base::number_between(0, 1e9))
       ->capture_default_str();
   if (const auto end = base::parse_command_line(app, "follow", argc, argv)) return *end;

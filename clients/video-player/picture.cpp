@@ -73,7 +73,7 @@ Result<Picture> from_jpeg(const RTC::CameraImage& image) {
   const auto size = image.pixels.length();
   const auto* bytes = image.pixels.get_buffer();
   if (!decoder || size == 0 || tjDecompressHeader3(decoder.get(), bytes, size, &picture.width, &picture.height, &sampling, &colours) != 0) {
-    return Error{"image of " + std::to_string(size) + " octets is no JPEG"};
+    return Error{"image of " + std::to_string(size) + " bytes is not a JPEG image"};
   }
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   if (picture.width > largest_side || picture.height > largest_side || pixels > most_pixels)
@@ -116,7 +116,7 @@ Result<Picture> to_picture(const RTC::CameraImage& image) {
   if (count == 0 || image.width > largest_side || image.height > largest_side) return Error{"image of " + size + " pixels cannot be shown"};
   if (image.pixels.length() != wanted) {
     return Error{"image of " + size + " pixels in format " + quoted_format(image) + " must have " + std::to_string(wanted) +
-                 " octets, got " + std::to_string(image.pixels.length())};
+                 " bytes, got " + std::to_string(image.pixels.length())};
   }
   picture.rgb.resize(3 * count);
   const auto* from = image.pixels.get_buffer();

@@ -211,8 +211,8 @@ void VideoPlayer::handle_events(RTC::UniqueId ec_id) {
   if (!events.close && !events.lost) return;
   if (events.close) close_window();
   window_.reset();
-  if (events.lost && record_dir_.empty()) RTC_WARN(("the display has gone; set record_dir to get the frames as PNG files"));
-  if (events.lost && !record_dir_.empty()) RTC_WARN(("the display has gone; the frames go to %s", record_dir_.c_str()));
+  if (events.lost && record_dir_.empty()) RTC_WARN(("the display is lost; set record_dir to get the frames as PNG files"));
+  if (events.lost && !record_dir_.empty()) RTC_WARN(("the display is lost; the frames go to %s", record_dir_.c_str()));
   if (!record_dir_.empty()) return;
   if (events.close) RTC_INFO(("the window was closed"));
   deactivate(ec_id);

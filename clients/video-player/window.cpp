@@ -204,7 +204,7 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
       state->tasks_missed = number;
       return base::Error{"the display does not answer"};
     }
-    if (state->tasks_done < number) return base::Error{"the display of this process has gone"};
+    if (state->tasks_done < number) return base::Error{"the display of this process is lost"};
     return {};
   }
 

@@ -1,5 +1,5 @@
-// What is common to all devices that a port shows: who is subscribed, where the samples come from, how a message reaches the clients. One
-// thread at a time.
+// The common part of all devices of a port: subscriptions, source of the samples, and sending of messages to clients. One thread at a
+// time.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Who may come in: the account of this process and root on this machine, without being asked; others with the key, if there is one;
-// everybody when the door is open. Values; one thread at a time.
+// Access control: accepts the account of this process and root on this machine; others with the key, if there is one; every client if the
+// gateway is open. Values; one thread at a time.
 #pragma once
 
 #include <chrono>

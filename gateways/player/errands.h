@@ -1,5 +1,5 @@
-// Requests to the simulator that the event loop does not wait for: a thread asks, the loop gets the answer. The public functions belong to
-// one thread at a time, and answers are handed out in it.
+// Asynchronous requests to the simulator: a thread sends them, and the event loop receives the answers. The public functions belong to one
+// thread at a time, and answers are delivered in it.
 #pragma once
 
 #include <chrono>

@@ -42,11 +42,11 @@ int main(int argc, char** argv) {
   gateway::Options options;
   std::string config;
   bool is_quiet = false;
-  app.add_option("-s,--server-id", options.server_id, "Which simulator")
+  app.add_option("-s,--server-id", options.server_id, "Simulator ID")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
-  auto* port = app.add_option("-p,--port", options.first_port, "Port of the first robot, the others follow; 0: any free ports")
+  auto* port = app.add_option("-p,--port", options.first_port, "Port of the first robot; the others get the next ports; 0: any free ports")
                    ->check(base::integer_between(0, 65535))
                    ->capture_default_str();
   app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
@@ -54,11 +54,11 @@ int main(int argc, char** argv) {
                  "Also serve clients of other accounts and hosts that send this key (Player's authentication request)")
       ->check(is_key)
       ->envname("RTMSIM_PLAYER_AUTH");
-  app.add_flag("--open", options.door.is_open)->description("Serve everybody who reaches the ports, without a key");
-  app.add_option("--config", config, "Mapping file: which port shows which devices (docs/player.md)")->excludes(port);
-  app.add_flag("-q,--quiet", is_quiet)->description("Say nothing of clients that come with bytes of another protocol");
+  app.add_flag("--open", options.door.is_open)->description("Accept every client that reaches the ports, without a key");
+  app.add_option("--config", config, "Mapping file: devices of each port (docs/player.md)")->excludes(port);
+  app.add_flag("-q,--quiet", is_quiet)->description("Do not log clients that send bytes of another protocol");
   bool is_table_asked = false;
-  app.add_flag("--interfaces", is_table_asked)->description("Print what is served of which interface of Player (Markdown), and end");
+  app.add_flag("--interfaces", is_table_asked)->description("Print the table of supported Player interfaces (Markdown), and exit");
   if (const auto end = base::parse_command_line(app, "player-gateway", argc, argv)) return *end;
   if (is_table_asked) {
     std::cout << gateway::interface_table();
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     gateway::Gateway gateway(std::move(options));
     if (const auto done = gateway.run(); !done) return fail(done.error());
   } catch (const std::exception& e) {
-    return fail({std::string("the system refuses what is needed, as threads or memory: ") + e.what()});
+    return fail({std::string("out of system resources (threads or memory): ") + e.what()});
   }
   return 0;
 }

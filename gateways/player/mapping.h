@@ -1,4 +1,4 @@
-// Which port shows which devices of the world: one robot per port in world order, or what a file says. Values; any thread.
+// The devices of each port: one robot per port in world order, or the mapping of a file. Values; any thread.
 #pragma once
 
 #include <cstdint>

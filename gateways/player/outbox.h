@@ -1,5 +1,5 @@
-// What waits to be sent to one client, in which order, and what a newer sample replaces: PUSH, PULL and the client's replace rules. No
-// sockets. One thread at a time.
+// The queue of messages to one client, and the rules by which a newer sample replaces an older one: PUSH, PULL and the replace rules of the
+// client. No sockets. One thread at a time.
 //
 // Answers go out at once. Data waits: in PULL until the client asks, in PUSH until what was sent before has left. The newest sample of a
 // device and subtype replaces the one before, unless a rule of the client says that all are kept; then the oldest gives way without a word

@@ -1,5 +1,5 @@
-// How a robot on wheels gets to a pose of its odometry, or keeps a heading: from where it is to the velocity it is told next. Pure; one
-// thread at a time.
+// Controls a wheeled robot to a pose of its odometry, or to a heading: computes the next velocity from the current pose. Pure; one thread
+// at a time.
 //
 // Each sample of the odometry gives the next velocity, so it needs no clock, and a simulator on its own knows only velocities. In 3D the
 // simulator has pose commands of its own, and the gateway hands them on.

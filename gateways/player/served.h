@@ -1,5 +1,5 @@
-// Which messages a device takes and sends: a table in each device's class, which decides what reaches it, what a client hears that asks for
-// capabilities, and what docs/player.md shows. Values; any thread.
+// The messages that a device receives and sends: a table in each class, used for dispatch, for capability requests, and for docs/player.md.
+// Values; any thread.
 #pragma once
 
 #include <cstdint>

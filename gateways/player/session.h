@@ -1,5 +1,5 @@
-// One client's connection: what it asks, what it is subscribed to, what waits to be sent to it. Bounded: a client that does not read gets
-// newer data later, and is not read from while answers to it pile up. One thread at a time.
+// The connection of one client: requests, subscriptions and its queue. Memory is limited: a client that does not read gets newer data
+// later, and its requests are not read while replies to it wait. One thread at a time.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Simulated time as clients want it: greater than 0 and never back, also when the simulation is reset or its server starts anew. Values;
-// one thread at a time.
+// Simulated time for clients: greater than 0 and never decreasing, also after a reset of the simulation or a restart of the simulator.
+// Values; one thread at a time.
 #pragma once
 
 #include <algorithm>

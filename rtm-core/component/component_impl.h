@@ -1,4 +1,4 @@
-// What a component keeps: private to this folder and to RTObject.cpp. Locked for data only.
+// The state of a component: private to this folder and to RTObject.cpp. Locked for data only.
 //
 // A component whose callback does not return within exec_cxt.callback_timeout (5 s) is left in memory when it is taken away, named in the
 // log, and freed when the callback returns after all: a thread cannot be taken out of user code.

@@ -1,4 +1,4 @@
-// What an execution context of the facade keeps: private to its .cpp files here and behind the facade. Locked for data only.
+// The state of an execution context of the facade: private to its .cpp files here and behind the facade. Locked for data only.
 #pragma once
 
 #include <rtm/ExecutionContextBase.h>

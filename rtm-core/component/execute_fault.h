@@ -1,4 +1,5 @@
-// What a component's property fault.on_execute does to its ticks; see core/fault.h. The thread that runs the component only.
+// Applies the faults of the property fault.on_execute to the ticks of a component; see core/fault.h. The thread that runs the component
+// only.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The SDO service that shows a component's state machine to tools: RTC::ExtendedFsmService. Any thread.
+// The SDO service RTC::ExtendedFsmService, which shows the state machine of a component to tools. Any thread.
 #pragma once
 
 #include <rtm/SdoServiceProviderBase.h>

@@ -1,4 +1,4 @@
-// The component or execution context of this process behind an object reference. Any thread.
+// Finds the component or execution context of this process behind an object reference. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,5 +1,5 @@
-// Publishes the log of this process to a logger that a tool has attached: consumer of OpenRTM::Logger. The logger is called on a thread of
-// its own.
+// Sends the log of this process to a logger that a tool attached: consumer of OpenRTM::Logger. The logger is called on a thread of its
+// own.
 #pragma once
 
 #include <rtm/SdoServiceConsumerBase.h>

@@ -1,5 +1,5 @@
-// A component as its manager knows it: what it is called, how it begins and ends, what of it others are shown. Keeps the component in
-// memory as long as this lives; nothing here deletes it. Any thread.
+// A component as its manager knows it: name, start, end, and the profile that others see. It keeps the component in memory as long as it
+// lives, and deletes nothing. Any thread.
 #pragma once
 
 #include <coil/Properties.h>

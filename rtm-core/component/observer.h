@@ -1,6 +1,6 @@
-// Tells an observer that a tool has attached what happens to the component: consumer of OpenRTM::ComponentObserver (1.x) and of
-// RTC::ComponentObserver (2.x). The observer is called on a thread of its own. It hears of profile changes, ports, contexts, configuration
-// and state machines by itself; what else a component wants to say it says with RTObject_impl::notifyObservers.
+// Notifies an observer that a tool attached of changes of the component: consumer of OpenRTM::ComponentObserver (1.x) and
+// RTC::ComponentObserver (2.x). The observer is called on a thread of its own. Changes of profile, ports, contexts, configuration and state
+// machines are reported automatically, others by RTObject_impl::notifyObservers.
 #pragma once
 
 #include <rtm/SdoServiceConsumerBase.h>

@@ -1,5 +1,5 @@
-// What a component is to be made of, as tools and rtc.conf write it: `Type`, `Type?key=value&key=value` or
-// `RTC:vendor:category:Type:language:version?...` (empty parts match anything). Any thread.
+// Parses the argument that creates a component: `Type`, `Type?key=value&key=value` or `RTC:vendor:category:Type:language:version?...`
+// (empty parts match anything). Any thread.
 #pragma once
 
 #include <string>

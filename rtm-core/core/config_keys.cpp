@@ -252,7 +252,7 @@ std::optional<Complaint> complain_about_value(const ConfigKey& key, std::string_
     case components:
       return complain_about_requests(value, parse_component_argument);
     case size:
-      if (!parse_size(value)) return wrong("must be a number of octets, as 500000, 64k or 2M");
+      if (!parse_size(value)) return wrong("must be a number of bytes, such as 500000, 64k or 2M");
       break;
     case text:
       break;

@@ -1,4 +1,4 @@
-// The keys that rtc.conf may have, with their defaults and what their values must look like. Any thread.
+// The keys of rtc.conf, with their defaults and the form of their values. Any thread.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// The configuration sets of a component: named lists of parameters, one of them active, and the variables that take the values of the
-// active one. Any thread; variables are assigned without a lock on the thread that calls bind() or update().
+// The configuration sets of a component: named lists of parameters, one of them active, and the variables bound to the active one. Any
+// thread; variables are assigned without a lock on the thread that calls bind() or update().
 //
 // In lock step a change that comes from outside while time passes takes effect at the next edge between two ticks, the same for every
 // component: whoever runs a tick at time t, in whatever phase, takes what came before t. A change by a thread that itself runs a tick, and

@@ -1,5 +1,5 @@
-// How long and deep the names may be that peers give: keys of connector properties, configuration parameters and creation arguments. They
-// become paths in trees, so each step of each name costs memory. A table of facts; any thread.
+// Limits of names that peers send: keys of connector properties, configuration parameters and creation arguments. They become paths in
+// trees, so each step of each name costs memory. A table of constants; any thread.
 #pragma once
 
 #include <cstddef>

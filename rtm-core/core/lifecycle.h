@@ -1,6 +1,6 @@
-// The life cycle of a component in one execution context as a table: from which state which event leads where, and what is called on the
-// way. Values; any thread. Source: OMG Robotic Technology Component 1.1, 5.2.2; the order of actions after a failure is that of
-// OpenRTM-aist.
+// The life cycle of a component in one execution context as a table: states, events, transitions and callbacks. Values; any
+// thread. Source: OMG Robotic Technology Component 1.1, 5.2.2; the order of actions after a failure is that of OpenRTM-
+// aist.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// What a port has received and not read yet: a ring for each connection, each with its own policies, read in order of arrival over all of
-// them. Any thread.
+// The unread samples of a port: a ring for each connection, each with its own policies, read in order of arrival over all of them. Any
+// thread.
 //
 // What has come is read also after its connection has ended (of closed connections at most 64 samples), so that a tool may connect, put a
 // value and disconnect.

@@ -1,4 +1,4 @@
-// The command line that every program with a manager understands. Any thread.
+// The command line of every program with a manager. Any thread.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What became of one sample on its way: the outcomes of data ports. Any thread.
+// The result of sending or receiving one sample. Any thread.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// Sends what is written to one connection on a thread of its own: as soon as something is there (subscription `new`) or periodically.
-// Any thread.
+// Sends the samples of one connection on a thread of its own: at once (subscription `new`) or periodically. Any
+// thread.
 //
 // What is written in a tick of a lock step (base/tick.h) is sent on the thread of the tick when its callbacks are over, by the same
 // policies: with `new` at once, with `periodic` at the ends of those ticks that are the first at or after a multiple of the period in

@@ -1,4 +1,4 @@
-// What callers of a manager may change over the wire, whoever they are: manager.remote_rights. Any thread; no state.
+// The rights of all remote callers of a manager: manager.remote_rights. Any thread; no state.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// The samples of one connection, oldest first, in a fixed number of places and a bounded memory. One thread at a time.
+// The samples of one connection, oldest first, with a fixed number of slots and limited memory. One thread at a time.
 #pragma once
 
 #include <cstddef>

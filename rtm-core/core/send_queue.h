@@ -1,4 +1,4 @@
-// What waits to be sent on one connection, and which of it is sent next. One thread at a time.
+// The samples that wait to be sent on one connection, and their order. One thread at a time.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// The time by which threads wait for deadlines, as an argument: that of the machine, or one that a test moves by hand. Any thread.
+// The clock for deadlines of threads, as an argument: that of the machine, or one that a test controls. Any thread.
 //
 // A sleeper sleeps until look_again(deadline) on the machine's clock, and its condition asks now() too. Where the time can jump, on_jump
 // wakes it: the function must take the lock of what the sleeper waits for once before it notifies, or the jump could fall between its look

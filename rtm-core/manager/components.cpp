@@ -145,7 +145,7 @@ void ManagerImpl::destroy(std::uint64_t id) {
     is_last = locked->records.empty() && locked->had_components && locked->activated && locked->phase == Phase::active;
   }
   if (is_last && !is_master() && flag("manager.shutdown_on_nortcs", true) && flag("manager.shutdown_onrtcs", true)) {
-    RTC_INFO(("the last component has gone: ending"));
+    RTC_INFO(("the last component was deleted: exiting"));
     request_end();
   }
 }

@@ -1,4 +1,4 @@
-// The inside of RTC::Manager; shared by its source files only. Any thread, unless a function says otherwise.
+// The state of RTC::Manager; shared by its source files only. Any thread, unless a function says otherwise.
 #pragma once
 
 #include <condition_variable>

@@ -342,7 +342,7 @@ RTC::ReturnCode_t ManagerServant::set_configuration(const char* name, const char
     if (has_room) manager_.impl_->config.setProperty(key, value);
   }
   if (!has_room) {
-    base::log(base::Level::error, "manager", "key {} is refused: callers may set {} keys, and {} octets with their values",
+    base::log(base::Level::error, "manager", "key {} is rejected: callers can set {} keys, and {} bytes with their values",
               base::in_quotes(key), rt::entry_limits.manager_keys, rt::entry_limits.manager_octets);
     return RTC::OUT_OF_RESOURCES;
   }

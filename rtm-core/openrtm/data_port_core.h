@@ -1,4 +1,4 @@
-// What InPorts and OutPorts consist of behind the facade: corba's data port, the serializers of the type, the listeners. Any thread.
+// The inside of InPorts and OutPorts behind the facade: corba's data port, the serializers of the type, the listeners. Any thread.
 #pragma once
 
 #include <rtm/ConnectorListener.h>

@@ -1,4 +1,4 @@
-// What InPortBase and OutPortBase have in common. Not for component authors.
+// The common part of InPortBase and OutPortBase. Not for component authors.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Transports of component authors as ports use them. Not for component authors. Any thread.
+// Adapts transports of component authors to ports. Not for component authors. Any thread.
 #pragma once
 
 #include <memory>

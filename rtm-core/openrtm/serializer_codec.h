@@ -1,4 +1,4 @@
-// A serializer of an author as the encoding of one connection.
+// Adapts a serializer of an author to the encoding of one connection.
 #pragma once
 
 #include <coil/Properties.h>

@@ -1,4 +1,4 @@
-// Words of enumerations of the classic API.
+// Names of the enumerators of the classic API.
 #pragma once
 
 #include <cstddef>

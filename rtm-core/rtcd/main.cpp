@@ -27,18 +27,18 @@ struct Description {
   Description() {
     base::add_standard_options(app, "rtcd", RTMSIM_VERSION);
     app.add_option("MODULE")->description(
-        "A library, or its name in manager.modules.load_path: load it and create one component of each type in it; "
-        "Type?key=value&...: create a component, loading Type.so if need be");
+        "Module, or its name in manager.modules.load_path: load it and create one component of each of its types. "
+        "Type?key=value&...: create a component, loading Type.so if necessary");
     app.add_option("-f")->description("Read this file instead of $RTC_MANAGER_CONFIG, ./rtc.conf, /etc/rtc.conf, ...")->type_name("FILE");
-    app.add_flag("-i")->description("Go on when the file of -f does not exist");
-    app.add_option("-o")->description("Set a key of rtc.conf, over the file (many)")->type_name("KEY:VALUE");
-    app.add_option("-p")->description("Listen on this port (of the loopback interface)")->type_name("PORT");
+    app.add_flag("-i")->description("Ignore a missing -f file");
+    app.add_option("-o")->description("Override a key of rtc.conf (repeatable)")->type_name("KEY:VALUE");
+    app.add_option("-p")->description("Listen on this port of the loopback interface")->type_name("PORT");
     app.add_flag("-d")->description("Be the master manager: listen on the port of corba.master_manager");
-    app.add_flag("-a")->description("Without the manager's own CORBA object");
-    app.add_flag("--with-naming")->description("Start omniNames when the first of corba.nameservers does not answer, stop it at the end");
+    app.add_flag("-a")->description("Start no CORBA object for the manager");
+    app.add_flag("--with-naming")->description("Start omniNames if the first of corba.nameservers does not respond; stop it at the end");
     app.footer(
-        "Exit code: 0 ended as asked, 1 failed, 2 wrong command line\n"
-        "SIGTERM ends it; so do SIGINT and SIGHUP, unless it was started with them ignored, as in the background of a script or by nohup");
+        "Exit code: 0 ended on request, 1 failed, 2 wrong command line\n"
+        "SIGTERM ends the program. So do SIGINT and SIGHUP, unless they were ignored at its start, as with nohup");
   }
 };
 

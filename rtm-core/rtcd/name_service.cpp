@@ -38,7 +38,7 @@ base::Result<Address> parse(const std::string& text) {
   if (!host.empty() && host != "localhost") address.host = host;
   if (colon != std::string::npos) {
     const auto port = base::parse_integer(text.substr(colon + 1));
-    if (!port || *port < 1 || *port > 65535) return base::Error{"naming service " + base::in_quotes(text) + ": expected host:port"};
+    if (!port || *port < 1 || *port > 65535) return base::Error{"name server " + base::in_quotes(text) + ": expected host:port"};
     address.port = std::to_string(*port);
   }
   return address;
@@ -109,7 +109,7 @@ base::Result<Folder> make_folder() {
     if (lock >= 0) close(lock);  // another process took the new folder for a stale one
     if (lock < 0) rmdir(path.c_str());
   }
-  return base::Error{"naming service: no folder can be made in the temporary folder"};
+  return base::Error{"name server: cannot create a folder in the temporary folder"};
 }
 
 // What the library in omniNames tells, until it and the keeper have gone.
@@ -169,17 +169,17 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   if (answers(*address)) return std::unique_ptr<NameService>();
 
   const auto door = is_open ? std::string() : base::own_account_door();
-  if (!is_open && door.empty()) return base::Error{"naming service: librtmsim_own_account.so is missing, which keeps other accounts out"};
+  if (!is_open && door.empty()) return base::Error{"name server: librtmsim_own_account.so is missing, which rejects other accounts"};
   const auto made = make_folder();
   if (!made) return made.error();
   const auto& folder = made->path;
   int ends[2], lines[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"naming service: no pipe can be made"};
+  if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"name server: cannot create a pipe"};
   std::unique_ptr<NameService> service(new NameService);
   service->alive_ = ends[1];
   if (pipe2(lines, O_CLOEXEC) != 0) {
     close(ends[0]);
-    return base::Error{"naming service: no pipe can be made"};
+    return base::Error{"name server: cannot create a pipe"};
   }
   fcntl(lines[1], F_SETFL, O_NONBLOCK);  // a log that nobody reads keeps nobody waiting
   service->keeper_ = fork();
@@ -203,7 +203,7 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing tells when it is ready
   }
-  return base::Error{"naming service " + base::in_quotes(text) + ": omniNames does not start (is it installed, is the port free?)"};
+  return base::Error{"name server " + base::in_quotes(text) + ": omniNames does not start (is it installed, is the port free?)"};
 }
 
 NameService::~NameService() {

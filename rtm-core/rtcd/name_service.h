@@ -1,4 +1,4 @@
-// The naming service that `rtcd --with-naming` brings along: omniNames with data of its own, started when none answers. One thread.
+// The name server of `rtcd --with-naming`: omniNames with data of its own, started if none responds. One thread.
 #pragma once
 
 #include <sys/types.h>

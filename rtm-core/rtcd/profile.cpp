@@ -9,7 +9,15 @@
 #include <iostream>
 #include <string>
 
+#include "profile_manual.h"
+
 namespace {
+
+constexpr char usage[] =
+    "usage: rtcprof FILE [INITFUNC]\n"
+    "  FILE      Module: print the profiles of its RT components\n"
+    "  INITFUNC  Function that registers them (default: the file's name with Init)\n"
+    "  --man     Print the manual page (view it with: man -l)\n";
 
 // So that rt::parse_config reads it back.
 std::string escaped(const std::string& text) {
@@ -45,9 +53,10 @@ int fail(const std::string& message) {
 int main(int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   if (argc < 2 || argc > 3 || first.starts_with("-")) {
-    (first == "--help" ? std::cout : std::cerr) << "usage: rtcprof FILE [INITFUNC]\n";
+    const bool is_asked = first == "--help" || first == "--man";
+    (is_asked ? std::cout : std::cerr) << (first == "--man" ? profile_manual : usage);
     if (!std::cout.flush().good()) return fail("the output cannot be written");
-    return first == "--help" ? 0 : 2;
+    return is_asked ? 0 : 2;
   }
   const auto file = std::filesystem::absolute(first).string();
   const auto function = argc > 2 ? std::string(argv[2]) : RTC::ModuleManager::initFunction(file);

@@ -203,52 +203,56 @@ int run(const Options& options, Signals& signals) {
 
 int serve(int argc, char** argv) {
   Options options;
-  base::Command app("Loads an SDFormat world and runs it. Every device is an iface in shared memory; simctl shows and controls all of it.",
-                    "sim-server");
+  base::Command app(
+      "sim-server: simulate an SDFormat world\n"
+      "Every device is an iface in shared memory. simctl shows and controls them.",
+      "sim-server");
   base::add_standard_options(app, "sim-server", RTMSIM_VERSION);
   app.add_option("WORLD", options.world, "SDFormat world file")->required();
-  app.add_option("-s,--server-id", options.server_id, "number that clients name this server by (0)")
+  app.add_option("-s,--server-id", options.server_id, "simulator ID, by which clients find it (default 0)")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID");
   app.add_flag("-u,--paused", options.is_paused, "start paused");
-  app.add_option("--rtf", options.rtf, "simulated seconds per second (1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
-  app.add_flag("--lockstep", options.is_lockstep, "time passes only when all participants have finished their tick");
-  app.add_option("--wait-for", options.wait_for, "participants that must join before time starts (0)")
+  app.add_option("--rtf", options.rtf, "real-time factor (default 1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
+  app.add_flag("--lockstep", options.is_lockstep, "run in lock step: time waits for all participants of each tick");
+  app.add_option("--wait-for", options.wait_for, "number of participants that must join before time starts (default 0)")
       ->check(base::integer_between(0, static_cast<int>(shm::most_participants)));
-  app.add_option("--participant-timeout", options.participant_timeout, "seconds after which a hanging participant is dropped (0: never)")
+  app.add_option("--participant-timeout", options.participant_timeout,
+                 "remove a participant that hangs longer than this [wall-clock s] (default 0: never)")
       ->check(base::number_between(0.0, 1e6));
-  app.add_option("--duration", options.duration, "end after so many simulated seconds")->check(base::number_between(0.0, 1e9));
-  app.add_option("--seed", options.seed, "of all noise (1)")->check([](const std::string& text) {
+  app.add_option("--duration", options.duration, "stop after this time [simulated s]")->check(base::number_between(0.0, 1e9));
+  app.add_option("--seed", options.seed, "seed of all sensor noise (default 1)")->check([](const std::string& text) {
     return text.starts_with("-") ? "expected a whole number that is not negative, got " + text : std::string();
   });
   app.add_option("--resource-path", options.resource_paths,
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
       ->expected(1)
       ->take_all();
-  app.add_option(
-         "--fault", options.faults,
-         "KIND:FROM:FOR:AMOUNT:IFACE: what is out of order on purpose, from then on for so many simulated seconds (0: always); repeatable")
+  app.add_option("--fault", options.faults,
+                 "inject a fault, KIND:START:DURATION:AMOUNT:IFACE [simulated s]; DURATION 0: until the end; repeatable")
       ->expected(1)
       ->take_all()
       ->check([](const std::string& text) {
         const auto order = sim::parse_fault_order(text);
         return order ? std::string() : order.error().message;
       });
-  app.add_flag("--check", options.check, "load, list every finding, exit with 1 when something had to be dropped");
+  app.add_flag("--check", options.check, "load the world, print every finding, exit with 1 if something was left out");
   app.add_flag("--hash", options.print_hash, "print the hash of the final state");
   app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files");
   app.add_option("--hash-period", options.hash_period,
-                 "simulated seconds between two hashes; without it when components are called, at least each 0.1 s and at most each 0.01 s")
+                 "time between two hashes [simulated s] (default: the ticks of components, between 0.01 s and 0.1 s)")
       ->check(base::number_between(1e-6, 1e6));
   app.add_option("--record", options.record,
                  "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");
-  app.add_option("--threads", options.threads, "threads for physics and sensors (0: one per core); no influence on results")
+  app.add_option("--threads", options.threads,
+                 "number of threads for physics and sensors (default 0: one per core); results do not depend on it")
       ->check(base::integer_between(0, 64));
-  app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (0600)");
+  app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (default 0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");
-  app.add_option("--shm-limit", options.shm_limit, "most shared memory that the ifaces may take together, in MiB (1536)")
+  app.add_option("--shm-limit", options.shm_limit, "limit of shared memory for all ifaces [MiB] (default 1536)")
       ->check(base::integer_between(1, 1 << 20));
-  app.add_option("-v", options.verbosity, "0 errors, 1 normal, 2 notes, 3 debug (1)")->check(base::integer_between(0, 3));
+  app.add_option("-v", options.verbosity, "log level: 0 errors, 1 normal, 2 notes, 3 debug (default 1)")
+      ->check(base::integer_between(0, 3));
   if (const auto end = base::parse_command_line(app, "sim-server", argc, argv)) return *end;
   const base::Level levels[] = {base::Level::error, base::Level::info, base::Level::info, base::Level::debug};
   base::set_log_level(levels[options.verbosity]);
@@ -256,9 +260,9 @@ int serve(int argc, char** argv) {
     Signals signals;
     return run(options, signals);
   } catch (const std::bad_alloc&) {
-    return fail(options.world + ": the memory is not enough for this world");
+    return fail(options.world + ": not enough memory for this world");
   } catch (const std::system_error& e) {  // a thread that cannot be started, most likely
-    return fail(options.world + ": the memory is not enough for this world, or there are too many processes: " + e.what());
+    return fail(options.world + ": not enough memory for this world, or too many processes: " + e.what());
   } catch (const std::exception& e) {  // from libraries
     return fail(e.what());
   }

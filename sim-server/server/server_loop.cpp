@@ -107,7 +107,7 @@ bool ServerLoop::run() {
     step();
     if (!finish_moment()) break;
     if (mode_.count_step()) finish_step_request();
-    if (step_ticket_ && !board_.is_awaited(*step_ticket_)) end_steps("the client has gone");
+    if (step_ticket_ && !board_.is_awaited(*step_ticket_)) end_steps("the client has disconnected");
     keep_pace();
     watch_rate();
   }
@@ -136,7 +136,7 @@ void ServerLoop::tend() {
   server_.tend();
   for (const auto& name : server_.take_cuts()) {
     base::log(base::Level::error, "sim-server",
-              "shared memory {} was cut short by another process; nobody can use it until the server starts anew", name);
+              "shared memory {} was truncated by another process; it cannot be used until the simulator restarts", name);
   }
 }
 

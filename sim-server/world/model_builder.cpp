@@ -202,7 +202,7 @@ void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildCon
   std::string why;
   inertia = mended_inertia(inertia, link.mass, why);
   if (!why.empty() && !is_static)
-    context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is mended");
+    context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is corrected");
   link.center_of_mass = pose.translation();
   link.inertia = pose.linear() * inertia * pose.linear().transpose();
 }

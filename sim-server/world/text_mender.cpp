@@ -31,8 +31,8 @@ class TextMender {
     const auto say = [&](const std::optional<std::size_t>& at, const char* message) {
       if (at) out.changes.push_back({*at, message});
     };
-    say(without_quotes_, "attribute values without quotes are mended");
-    say(odd_quotes_, "attribute values with doubled or typographic quotes are mended");
+    say(without_quotes_, "attribute values without quotes are corrected");
+    say(odd_quotes_, "attribute values with doubled or typographic quotes are corrected");
     say(stray_ends_, "end tags of elements that have ended are left out");
     return out;
   }

@@ -169,7 +169,7 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
     if (is_binary(text)) return base::Error{file_name + ": is a binary file; SDFormat is text (XML)"};
     if (const std::size_t code = text.find("<%"); code != std::string::npos) {
       return base::Error{file_name + ":" + std::to_string(LineTable(text).line_at(code)) +
-                         ": is a template (<% ... %>); the world that erb makes of it is expected"};
+                         ": is an ERB template (<% ... %>); run erb first"};
     }
     return base::Error{file_name + ":" +
                        std::to_string(lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)))) +

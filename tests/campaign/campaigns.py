@@ -245,7 +245,7 @@ def refused():
         ("events: [{when: {model: pioneer2dx, touches: any, within: 0.5}, delete: box_1}]", "within is of eventually"),
         ("measure: [{path_length: {model: box_1}}]", 'measure: the world has no moving model "box_1"; moving models: pioneer2dx'),
         ("measure: [{time_to: {model: box_1, region: [0, 0, 1, 1]}}]", 'measure: the world has no moving model "box_1"'),
-        ("measure: [{clearance: {model: pioneer2dx, to: pioneer2dx}}]", 'clearance of "pioneer2dx" to itself is none'),
+        ("measure: [{clearance: {model: pioneer2dx, to: pioneer2dx}}]", 'cannot measure the clearance of "pioneer2dx" to itself'),
         ("measure: [{clearance: {model: pioneer2dx, as: passed}}]", 'the results have a column "passed" already'),
         ("vary: {world/step: [0.001]}\nmeasure: [{clearance: {model: pioneer2dx, as: world/step}}]", 'the results have a column "world/step" already'),
         ("events: [{at: 0.5, spawn: {model: 'model://cow', name: box_1}}]", 'events: the world has a model "box_1" already'),
@@ -381,7 +381,7 @@ never: [{component: LaserObstacleAvoid0, is: Inactive}]
 eventually: [{model: pioneer2dx, region: [5, 5, 6, 6]}]
 """, "never.yaml"), "--row", 1, code=1)
     assert "never: {component: LaserObstacleAvoid0, is: Inactive}: it was so at 0." in done.stderr, done.stderr
-    assert "eventually: {model: pioneer2dx, region: [5, 5, 6, 6]}: it never was" in done.stderr, done.stderr
+    assert "eventually: {model: pioneer2dx, region: [5, 5, 6, 6]}: never became true" in done.stderr, done.stderr
 
 
 # Each fault changes the run, and changes it in the same way each time.
@@ -402,7 +402,7 @@ def faults():
     # A host that is killed comes back; the run with it is the same each time.
     twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")
     done = rtse("sweep", plan("hang_timeout: 1\nfaults: [{at: 0.3, component: LaserObstacleAvoid0, is: hang}]\n"), "--row", 1, code=1)
-    assert "LaserObstacleAvoid0: has not ended its tick" in done.stderr, done.stderr
+    assert "LaserObstacleAvoid0: did not finish its tick" in done.stderr, done.stderr
 
 
 # A small component that divides by zero when its laser goes on without news is found, with one fault, by one command.

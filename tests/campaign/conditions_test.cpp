@@ -74,7 +74,7 @@ TEST(Conditions, nothing_is_true_of_a_model_that_does_not_exist_yet) {
   DeedsRunner runner({.eventually = {region("box")}}, 1, 10);
   ASSERT_TRUE(runner.begin(s.scene));
   ASSERT_TRUE(s.look(runner, 0.1));
-  EXPECT_EQ(problem(runner), "it never was");
+  EXPECT_EQ(problem(runner), "never became true");
   s.simulator.poses["box"] = {1.5, 0, 0, 1, 0, 0, 0};
   ASSERT_TRUE(s.look(runner, 0.2));
   EXPECT_EQ(problem(runner), "");

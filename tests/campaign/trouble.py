@@ -42,7 +42,7 @@ never: [{component: RTCLaser0, is: Inactive}]
     away = away.replace("faults: [", "faults:\n  - ").replace("is: kill}]", "is: kill}", 1)
     done = rtse("sweep", plan(away, "away.yaml"), "--row", 1)
     for text in ("disconnect: range-to-avoidance}: did nothing: component LaserObstacleAvoid0 was killed", "deactivate: LaserObstacleAvoid0}: did nothing: ",
-                 "its host starts again when the naming service is back", 'at: 0.4, for: 0.1, component: "LaserObstacleAvoid0", is: kill}: did nothing: '):
+                 "its host restarts when the name server responds again", 'at: 0.4, for: 0.1, component: "LaserObstacleAvoid0", is: kill}: did nothing: '):
         assert done.stderr.count(text) == 1, (text, done.stderr)
     assert done.stderr.count("did nothing") == 4, done.stderr
     twice(away, "away.yaml")
@@ -116,12 +116,12 @@ hunt:
     # A find that does not get to its end has no state; its command says so.
     hang = plan("hang_timeout: 1\nhunt: {faults: [{component: LaserObstacleAvoid0, is: hang}]}\n", "hang.yaml")
     find = rtse("hunt", hang, "--finds", 1, "--cases", 16, "-j", 2, code=1).stdout
-    assert "has not ended its tick" in find and "hang.finds/find-1.yaml --row 1\n" in find and "--state" not in find, find
+    assert "did not finish its tick" in find and "hang.finds/find-1.yaml --row 1\n" in find and "--state" not in find, find
     assert "expected" not in rtse("sweep", folder / "hang.finds/find-1.yaml", "--row", 1, "--state", "-", code=1).stderr
     # An interrupt while it is shrunk takes nothing of its reason.
     _, out, _ = interrupted_at("hang.finds/shrinking", "hunt", hang, "--cases", 40)
-    assert "has not ended its tick" in out and "run: interrupted" not in out and "interrupted: it may not be the simplest" in out, out
-    assert "has not ended its tick" in (folder / "hang.finds/find-1.yaml").read_text()
+    assert "did not finish its tick" in out and "run: interrupted" not in out and "interrupted: it may not be the simplest" in out, out
+    assert "did not finish its tick" in (folder / "hang.finds/find-1.yaml").read_text()
 
 
 try:

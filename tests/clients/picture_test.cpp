@@ -43,7 +43,7 @@ TEST(Picture, near_things_are_bright_in_depth_images) {
 TEST(Picture, images_that_do_not_fit_their_size_are_refused_with_both_numbers) {
   const auto short_one = to_picture(image("RGB8", 24, {1, 2, 3}));
   ASSERT_FALSE(short_one.ok());
-  EXPECT_NE(short_one.error().message.find("6 octets, got 3"), std::string::npos) << short_one.error().message;
+  EXPECT_NE(short_one.error().message.find("6 bytes, got 3"), std::string::npos) << short_one.error().message;
   EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 0, 0)).ok());
   EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 65535, 65535)).ok());
   EXPECT_FALSE(to_picture(image("RGB8", 24, std::vector<unsigned char>(65535 * 3), 65535, 1)).ok());

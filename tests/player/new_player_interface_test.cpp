@@ -1,5 +1,5 @@
-// The list of files in docs/new-player-interface.md: each is there, and no other file names an interface that is served. A toy device made
-// of what the page names alone is listed and served like the others.
+// The list of files in docs/develop/new-player-interface.md: each is there, and no other file names an interface that is served. A toy
+// device made of what the page names alone is listed and served like the others.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,8 +25,8 @@ std::string text_of(const fs::path& path) {
 }
 
 std::set<std::string> listed_files() {
-  const std::string page = text_of(source / "docs/new-player-interface.md");
-  const std::regex file("`((?:clients|tests|docs)/[A-Za-z0-9_/.-]+)`");
+  const std::string page = text_of(source / "docs/develop/new-player-interface.md");
+  const std::regex file("`((?:gateways|clients|tests|docs)/[A-Za-z0-9_/.-]+)`");
   std::set<std::string> files;
   for (auto one = std::sregex_iterator(page.begin(), page.end(), file); one != std::sregex_iterator(); ++one) files.insert((*one)[1]);
   return files;

@@ -366,16 +366,16 @@ TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
   put(bomb);
   const auto lines = read();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_NE(lines[0].find("announces 4611686018427387904 octets; at most 134217728 are read"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("announces 4611686018427387904 bytes; at most 134217728 are read"), std::string::npos) << lines[0];
   const std::uint64_t small = 1000;
   std::memcpy(bomb.data() + chunk, &small, sizeof small);
   put(bomb);
-  EXPECT_NE(read().at(0).find("does not decompress to the 1000 octets"), std::string::npos) << read().at(0);
+  EXPECT_NE(read().at(0).find("does not decompress to the 1000 bytes"), std::string::npos) << read().at(0);
 }
 
 TEST_P(Single, what_is_no_recording_is_refused_with_one_line) {
   put("hello");
-  EXPECT_EQ(read(), (std::vector<std::string>{"\"" + path_ + "\": is no MCAP file: it does not begin with the magic octets"}));
+  EXPECT_EQ(read(), (std::vector<std::string>{"\"" + path_ + "\": is not an MCAP file: it does not start with the magic bytes"}));
   EXPECT_NE(Reader::open("/dev/null").error().message.find("is not a regular file"), std::string::npos);
   EXPECT_NE(Reader::open("/no/such/file").error().message.find("cannot be read: No such file"), std::string::npos);
   EXPECT_NE(Writer::create("/no/such/file").error().message.find("cannot be written"), std::string::npos);

@@ -75,9 +75,9 @@ class Doors(unittest.TestCase):
         self.assertEqual(ask_as(0, port, root), "GIOP")
         self.assertEqual(ask_as(65534, port, root), "")
         until = time.monotonic() + watchdog
-        while "naming service: account 65534 refused" not in host.text() and time.monotonic() < until:
+        while "name server: account 65534 refused" not in host.text() and time.monotonic() < until:
             time.sleep(0.01)
-        self.assertIn("naming service: account 65534 refused: it serves account 0 alone", host.text())
+        self.assertIn("name server: account 65534 refused: it serves account 0 alone", host.text())
 
     def test_a_naming_service_that_stands_does_not_hold_the_end_of_rtcd(self):
         with socket.socket() as probe:
@@ -186,7 +186,7 @@ class Doors(unittest.TestCase):
             for program in ("rtcd", "LaserObstacleAvoidComp"):
                 done = subprocess.run([f"{bin_dir}/{program}", "-i", "-f", "none.conf", "-o", "naming.enable:NO"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd=folder)
                 self.assertEqual(done.returncode, 1, done.stderr)
-                self.assertIn(f"{program}: the system refuses what is needed", done.stderr)
+                self.assertIn(f"{program}: out of system resources", done.stderr)
                 self.assertNotIn("terminate", done.stderr)
 
     # As root, an account of the test's own, since its threads count.
@@ -201,7 +201,7 @@ class Doors(unittest.TestCase):
 
             done = subprocess.run([f"{bin_dir}/rtm-studio", "-p", "0"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, preexec_fn=become, cwd="/")
             self.assertEqual(done.returncode, 1, (most, done.stderr))
-            self.assertRegex(done.stderr, "^rtm-studio: the system refuses what is needed.*\n$", most)
+            self.assertRegex(done.stderr, "^rtm-studio: out of system resources.*\n$", most)
 
     def test_output_to_a_full_device_is_a_failure(self):
         for program, *words in (["rtcd", "--help"], ["rtse", "--help"], ["simctl", "--help"], ["sim-server", "--help"], ["player-gateway", "--help"], ["rtm-studio", "--help"], ["follow", "--help"],

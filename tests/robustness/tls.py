@@ -118,7 +118,7 @@ class System(unittest.TestCase):
             self.assertIsNone(self.sees(server, **more, **who), who)
         # Afterwards it still serves those who belong to it.
         self.assertIsNotNone(self.sees(server, **more, **certificate("lab")), text(log))
-        self.assertIn("open over TLS to whoever has a certificate", text(log))
+        self.assertIn("open over TLS to every owner of a certificate", text(log))
 
 
 class Loopback(System):
@@ -162,7 +162,7 @@ class Loopback(System):
                     stream.recv(1)
             except OSError:
                 pass
-            return "sent away: no certificate of corba.tls.authority" in text(log)
+            return "rejected: no certificate of corba.tls.authority" in text(log)
 
         self.until("a line in the log", is_sent_away)
 

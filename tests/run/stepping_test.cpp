@@ -57,10 +57,10 @@ TEST(Stepping, a_tick_that_does_not_end_is_given_up_and_its_participant_is_named
   simulator.there = {{"Fast0", 1, std::chrono::milliseconds(10), false}, {"Slow0", 1, std::chrono::milliseconds(10), true}};
   const auto made = make_steps(simulator, 10, {.hang_timeout_s = 0.02});
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().message, "Slow0: has not ended its tick at 0 s after 0.02 s (--hang-timeout)");
+  EXPECT_EQ(made.error().message, "Slow0: did not finish its tick at 0 s after 0.02 s (--hang-timeout)");
   simulator.there.clear();
   const auto alone = make_steps(simulator, 10, {.hang_timeout_s = 0.02});
-  EXPECT_EQ(alone.error().message, "the simulator has not ended its step at 0 s after 0.02 s (--hang-timeout)");
+  EXPECT_EQ(alone.error().message, "the simulator did not finish the step at 0 s after 0.02 s (--hang-timeout)");
 }
 
 }  // namespace

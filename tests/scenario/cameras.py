@@ -309,7 +309,7 @@ def recorded_end():
     finally:
         recorder.kill()
         recorder.wait()
-    assert recorder.returncode == 1 and "the simulator is gone after" in err and "frames, " in out, f"{recorder.returncode} {out} {err}"
+    assert recorder.returncode == 1 and "the simulator has exited after" in err and "frames, " in out, f"{recorder.returncode} {out} {err}"
     system.simctl("clean")
 
 

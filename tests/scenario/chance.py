@@ -81,7 +81,7 @@ def first_difference():
 # A change from outside is told while time passes, once, and not while it stands still: that is where the script of a run makes its changes, and
 # where whoever looks on says good-bye.
 def changed_from_outside():
-    told = "depends on chance: component Relay0 had its parameters changed by another process (set_configuration_set_values)"
+    told = "nondeterministic: component Relay0 had its parameters changed by another process (set_configuration_set_values)"
     with System(bin_dir, lib_dir) as s:
         s.naming()
         s.server(empty, "--lockstep", "--paused", "--rtf", "0")
@@ -94,7 +94,7 @@ def changed_from_outside():
         s.rtse("deact", "Relay0")
         s.rtse("act", "Relay0")
         s.simctl("step", "10")
-        assert "depends on chance" not in s.log(host), s.log(host)
+        assert "nondeterministic" not in s.log(host), s.log(host)
         stepping = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "1000000000")
         s.until("time that passes", lambda: s.seconds() > 0.03)
         for value in ("1", "0"):
@@ -104,7 +104,7 @@ def changed_from_outside():
         s.rtse("con", "Relay0:out", "Relay0:in")
         s.rtse("deact", "Relay0")
         for told in ("port Relay0:out had a connection made or ended by another process (connect)", "component Relay0 had its state or a context changed by another process (deactivate_component)"):
-            s.until(told, lambda: f"depends on chance: {told}" in s.log(host))
+            s.until(told, lambda: f"nondeterministic: {told}" in s.log(host))
         s.kill(stepping)
 
 
@@ -120,7 +120,7 @@ def sample_between_ticks():
         s.rtse("act", "Relay0")
         s.until("a participant", lambda: s.participants())
         stepping = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "1000000000", "--paced")
-        told = "depends on chance: port Relay0:in got a sample between two ticks at "
+        told = "nondeterministic: port Relay0:in got a sample between two ticks at "
         s.until("what is told", lambda: told in s.log(host))
         s.kill(stepping)
 

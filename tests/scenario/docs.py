@@ -1,5 +1,7 @@
 # The pages are true.  docs.py MODE SOURCE_DIR [BUILD_DIR]
-#   pages       links and names of files lead somewhere; the index has every page
+#   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test,
+#               those of bundled components are those of their sources
+#   layers      writes the table of layers into docs/ARCHITECTURE.md
 #   promises    each promise of docs/promises.md names tests that exist, in ctest or, those by hand, as files below tests/
 import pathlib
 import re
@@ -8,7 +10,7 @@ import sys
 
 mode, source = sys.argv[1], pathlib.Path(sys.argv[2])
 docs = source / "docs"
-pages = [source / "README.md", source / "CONTRIBUTING.md", source / "SECURITY.md", *sorted(docs.glob("*.md"))]
+pages = [source / "README.md", source / "CONTRIBUTING.md", source / "SECURITY.md", *sorted(docs.glob("**/*.md"))]
 problems = []
 
 
@@ -36,22 +38,82 @@ def check_links(page):
 
 # `sim-server/world/model_path` and `tests/robustness/fragments.py`: a file or folder, or one with its ending left out.
 def check_names(page):
-    folders = "cmake|clients|docs|idl|iface-components|packaging|rtm-core|scripts|sim-server|tests|worlds"
+    folders = "base|clients|cmake|docs|gateways|idl|iface-components|packaging|rtm-core|scripts|shm|sim-server|tests|tools|worlds"
     for name in re.findall(rf"`((?:{folders})/[\w./+-]*\w)`", text_of(page)):
         path = source / name
         if not path.exists() and not list(path.parent.glob(path.name + ".*")) and not list(path.parent.glob(path.name + "_test.cpp")):
             problems.append(f"{page.relative_to(source)}: `{name}`: there is no such file")
 
 
+# Folders in the order of the test, what they may include, libraries.
+def rows_of_layers():
+    rules = (source / "tests/rules/include_rules_test.cpp").read_text().split("layers = {", 1)[1].split("\n};", 1)[0]
+    rows = re.findall(r'\{"([^"]+)",\s*\{([^}]*)\}(?:,\s*\{([^}]*)\})?(?:,\s*\{[^}]*\})?\}', rules)
+    assert len(rows) > 20, rows
+    names = lambda words: ", ".join(re.findall(r'"([^"]+)"', words))
+    return [f"| `{folder}` | {names(parts)} | {names(libraries)} |" for folder, parts, libraries in rows]
+
+
+# The table in ARCHITECTURE: where it is in the page, and its rows.
+def table_of_layers(text):
+    table = re.search(r"(?<=^\| folder \| may include \| libraries \|\n\| --- \| --- \| --- \|\n)(?:\|.*\|\n)+", text, re.M)
+    return table.span(), table[0].splitlines()
+
+
+def check_layers():
+    for row in sorted(set(rows_of_layers()) ^ set(table_of_layers((docs / "ARCHITECTURE.md").read_text())[1])):
+        problems.append(f"docs/ARCHITECTURE.md: layers are not those of tests/rules/include_rules_test.cpp (docs.py layers . writes them): {row}")
+
+
+def write_layers():
+    text = (docs / "ARCHITECTURE.md").read_text()
+    (start, end), _ = table_of_layers(text)
+    (docs / "ARCHITECTURE.md").write_text(text[:start] + "\n".join(rows_of_layers()) + "\n" + text[end:])
+
+
+# (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of a drive are in a common file.
+def facts_of_components():
+    sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp", source / "clients/video-player/video_player.cpp"]
+    drive = (source / "iface-components/drive_component.cpp").read_text()
+    for file in sources:
+        text, header = file.read_text(), file.with_suffix(".h").read_text()
+        name = re.search(r'type_name(?: = |", )"(\w+)"', text)[1]
+        phase = {"sensor_phase": "0", "command_phase": "2"}.get((re.search(r"\.phase = iface::(\w+)", text) or ["", ""])[1]) or re.search(r'sim_time\.phase", "(\d+)"', text)[1]
+        yield "component", name, phase
+        for way, port, member in re.findall(r'add(In|Out)Port\("(\w+)", (\w+)\)', text):
+            yield "port", name, f"{way.lower()} `{port}`", re.search(rf"Port<([\w:]+)> {member};", header)[1]
+        if velocity := re.search(r"Drive\w*<(RTC::Timed\w+)", header):
+            yield "port", name, "in `velocity`", velocity[1]
+        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text):
+            yield "port", name, f"provides `{port}`", service
+        listed = drive if "drive_parameters()" in text else text
+        for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):
+            yield "parameter", name, parameter, default
+
+
+def check_components():
+    shown = set()
+    for section in (docs / "components.md").read_text().split("\n## ")[1:]:
+        for line in re.findall(r"^\| (`\w+` \|.*) \|$", section, re.M):
+            cells = [cell.strip() for cell in line.split("|")]
+            name, first = cells[0].strip("`"), cells[1].strip("`")
+            shown.add({"Components": ("component", name, cells[2]), "Ports": ("port", name, cells[1], cells[2].strip("`")), "Parameters": ("parameter", name, first, cells[2])}[section.split("\n")[0]])
+    for row in sorted(shown ^ set(facts_of_components())):
+        problems.append(f"docs/components.md: {row}: {'not in the sources' if row in shown else 'is missing'}")
+
+
 def check_pages():
+    check_layers()
+    check_components()
     for page in pages:
         check_links(page)
         if not page.name.startswith("new-"):  # these name files that are still to be made
             check_names(page)
     index = (docs / "README.md").read_text()
-    for page in sorted(docs.glob("*.md")):
-        if page.name != "README.md" and f"({page.name})" not in index:
-            problems.append(f"docs/README.md: {page.name} is not in the index")
+    for page in sorted(docs.glob("**/*.md")):
+        name = page.relative_to(docs)
+        if page.name != "README.md" and f"({name})" not in index:
+            problems.append(f"docs/README.md: {name} is not in the index")
 
 
 def check_promises(build):
@@ -73,7 +135,9 @@ def check_promises(build):
                 problems.append(f"docs/promises.md: {promise.strip()}: there is no test {name}")
 
 
-if mode == "pages":
+if mode == "layers":
+    write_layers()
+elif mode == "pages":
     check_pages()
 else:
     check_promises(sys.argv[3])

@@ -26,6 +26,7 @@ executed = {
     "README.md": "",
     "docs/tutorial-first-system.md": "",
     "docs/testing-a-robot-system.md": "",
+    "docs/third-party-components.md": "",
     "docs/recordings.md": avoidance,
     "docs/hash-logs.md": "",
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
@@ -39,10 +40,10 @@ executed = {
 # Pages that a test of their own executes.
 elsewhere = {
     "docs/tutorial-component.md": "package.tutorial",
-    "docs/new-component.md": "docs.new-component",
-    "docs/new-data-type.md": "docs.new-data-type",
-    "docs/new-device.md": "docs.new-device",
-    "docs/new-rtse-command.md": "docs.new-rtse-command",
+    "docs/develop/new-component.md": "docs.new-component",
+    "docs/develop/new-data-type.md": "docs.new-data-type",
+    "docs/develop/new-device.md": "docs.new-device",
+    "docs/develop/new-rtse-command.md": "docs.new-rtse-command",
 }
 # (page, beginning of a line): why that line is not executed.
 left_out = {
@@ -189,7 +190,7 @@ def execute(page):
 
 
 def unknown_pages():
-    for path in [source / "README.md", source / "CONTRIBUTING.md", *sorted((source / "docs").glob("*.md"))]:
+    for path in [source / "README.md", source / "CONTRIBUTING.md", *sorted((source / "docs").glob("**/*.md"))]:
         page = str(path.relative_to(source))
         if blocks(page) and page not in executed and page not in elsewhere and rule_of(left_out, page, "") is None:
             yield page

@@ -1,4 +1,4 @@
-# Follows a page on how to add something (docs/new-*.md) in a copy of the sources: follow_page.py MODE PAGE SOURCE_DIR BUILD_DIR
+# Follows a page on how to add something (docs/develop/new-*.md) in a copy of the sources: follow_page.py MODE PAGE SOURCE_DIR BUILD_DIR
 #   list   every step fits, the list of files is complete, and what they touch compiles
 #   build  new-device alone: builds simulator and tests of the copy, runs both, and looks at the new device with simctl
 import json
@@ -13,7 +13,7 @@ import tempfile
 import time
 
 mode, name_of_page, source, build = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
-page = (source / f"docs/{name_of_page}.md").read_text()
+page = (source / f"docs/develop/{name_of_page}.md").read_text()
 
 
 # (file, "after" | "before" | "instead of" | None, anchor, text) of each block that names a file.
@@ -71,10 +71,10 @@ def compiles(root, name):
     beside = own or [one for one in commands if (source / name).parent in [file.parent for file in sources_of(one)] and (name.split("/")[0] != "tests" or "/sim-server" in one["command"])]
     assert beside, f"{name}: nothing beside it is compiled"
     command = beside[0]["command"]
-    for folder in ("sim-server", "tests", "clients", "iface-components", "rtm-core"):
+    for folder in ("base", "shm", "sim-server", "tests", "tools", "gateways", "clients", "iface-components", "rtm-core"):
         command = command.replace(str(source / folder), str(root / folder))
     words = shlex.split(command)
-    words = [word for word in words if "ccache" not in word]
+    words = [f"-I{root}" if word == f"-I{source}" else word for word in words if "ccache" not in word]
     output = words.index("-o")
     words = words[:output] + words[output + 2:]
     words = [str(root / name) if word == beside[0]["file"] or word == str(root / pathlib.Path(beside[0]["file"]).relative_to(source)) else word for word in words]

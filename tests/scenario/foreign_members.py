@@ -196,7 +196,7 @@ def same_state():
 def faulty():
     # What a component of others does wrong is told by its name, and the run fails.
     with Run() as r:
-        for fault, why in (("fail@3", "Alien is Error"), ("throw@3", "Alien is Error"), ("die@3", "process of Alien"), ("hang@3", "Alien: has not ended its tick")):
+        for fault, why in (("fail@3", "Alien is Error"), ("throw@3", "Alien is Error"), ("die@3", "process of Alien"), ("hang@3", "Alien: did not finish its tick")):
             code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault", fault))
             assert code == 1 and why in err, (fault, code, err)
             if fault in ("fail@3", "throw@3"):
@@ -206,7 +206,7 @@ def faulty():
                 assert "killed by signal 9" in err, err
         # Who hangs while it takes a sample is named beside the one who waits for it.
         code, err, read, calls = r.run("--hang-timeout", "3", start=r.start("--late 100000@3"))
-        assert code == 1 and "From: has not ended its tick at 0.2 s" in err and "From.out waits for Alien.in" in err, (code, err)
+        assert code == 1 and "From: did not finish its tick at 0.2 s" in err and "From.out waits for Alien.in" in err, (code, err)
         # It is told at once, by its own name and the time, where the command lives on.
         for options in ("--fault die@3", "--fault die@3 --context triggered --active"):
             system = r.system()
@@ -299,7 +299,7 @@ def recorded():
                                   text=True, capture_output=True, timeout=60)
             assert done.returncode == 0 and f"/{into}/out: 11 samples, equal" in done.stdout, done
         done = subprocess.run([f"{bin_dir}/rtse", "replay", f"{r.path}/run.mcap", "--into", "Alien", "--compare"], text=True, capture_output=True, timeout=60)
-        assert done.returncode == 1 and "--start COMMAND starts here" in done.stderr, done
+        assert done.returncode == 1 and "start that with --start COMMAND" in done.stderr, done
 
 
 def lost_link():
@@ -330,9 +330,9 @@ def kept_hang_timeout():
     # A tick that takes longer than --hang-timeout fails the run, also when it ends in the end; who hangs is named a second after it began.
     with Run() as r:
         code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault 2500@3"))
-        assert code == 1 and "Alien: has not ended its tick at 0.2 s after 1 s" in err, (code, err)
+        assert code == 1 and "Alien: did not finish its tick at 0.2 s after 1 s" in err, (code, err)
         code, err, read, calls = r.run(start=r.start("--fault 1800@3"))
-        assert code == 0 and "Alien: has not ended its tick at 0.2 s for more than a second" in err, (code, err)
+        assert code == 0 and "Alien: did not finish its tick at 0.2 s for more than a second" in err, (code, err)
 
 
 def between_others():
@@ -482,7 +482,7 @@ def faulty_ticked():
         code, err, read, calls = run("throw@3")
         assert code == 0 and "throws" in err and calls.count("tick ") == 6 and calls.count("on_execute 0") == 5, (code, err, calls)
         code, err, read, calls = run("hang@3", "--hang-timeout", "1")
-        assert code == 1 and "Alien: has not ended its tick" in err, (code, err)
+        assert code == 1 and "Alien: did not finish its tick" in err, (code, err)
 
 
 def together():

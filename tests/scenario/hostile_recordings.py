@@ -121,7 +121,7 @@ def pictures():
     rows = cdr + struct.pack("<III", 3, 1000, 5) + b"rgb8\0" + bytes(7) + struct.pack("<QI", 1 << 63, 3000) + bytes(3000)
     file = recording("rows.mcap", [("/p", "cdr", image, "ros2msg", "uint32 height\nuint32 width\nstring encoding\nuint64 step\nuint8[] data\n")],
                      [(1, rows)])
-    refused("recording", "export", file, "--png", "-o", "rows", says="a picture of 1000 x 3 pixels in 3000 octets")
+    refused("recording", "export", file, "--png", "-o", "rows", says="a picture of 1000 x 3 pixels in 3000 bytes")
     file = recording("types.mcap", [("/p", "json", image, "", ""), ("/q", "json", "RTC::CameraImage", "", "")],
                      [(1, b'{"encoding":5}'), (2, b'{"pixels":[1e300,-5,null,"x"],"width":"x"}')])
     refused("recording", "export", file, "--png", "-o", "types", says="members of other types", lines=2)
@@ -200,7 +200,7 @@ def large():
     assert channel["octets"] is channel["missing"] is None, channel
     print(f"{os.path.getsize(file)} octets, info in {took:.3f} s")
     said = rtse("recording", "info", file)
-    assert b"counted by their indexes: without octets" in said.stderr and b"Hz\n" in said.stdout, said
+    assert b"counted by their indexes: without bytes" in said.stderr and b"Hz\n" in said.stdout, said
 
 
 # A flipped octet costs a chunk, which is said.
@@ -211,7 +211,7 @@ def flipped():
     with open(file, "wb") as out:
         out.write(octets)
     done = rtse("recording", "repair", file)
-    assert done.returncode == 1 and re.match(rb"0 samples kept, \d\d+ octets lost, 1 broken chunk with samples that nobody counted\n.*the chunk", done.stdout), done
+    assert done.returncode == 1 and re.match(rb"0 samples kept, \d\d+ bytes lost, 1 broken chunk with an unknown number of samples\n.*the chunk", done.stdout), done
 
 
 # A flipped bit in the length of a record in the middle leads a walk astray; the summary still knows the way.
@@ -224,7 +224,7 @@ def astray():
         out.write(octets)
     assert json.loads(rtse("--json", "recording", "info", file).stdout)["samples"] == 50
     done = rtse("recording", "repair", file)
-    assert done.returncode == 0 and done.stdout.startswith(b"50 samples kept, 0 octets lost\n"), done
+    assert done.returncode == 0 and done.stdout.startswith(b"50 samples kept, 0 bytes lost\n"), done
     assert len(rtse("recording", "cat", file).stdout.splitlines()) == 50
     octets[octets.index(b"zstd", octets.index(b"zstd") + 4) + 16] ^= 0x55
     with open(file, "wb") as out:
@@ -285,7 +285,7 @@ def broken_ring():
     there = ["r-004.mcap", "r-005.mcap"]
     newer = fresh()
     flip(newer, (chunk_of(newer, 3) + 4, 1))  # its length
-    repaired(1, 12, '"r-005.mcap": not all can be read: ', " octets are lost; ", "the last record is cut off", "the pieces stay")
+    repaired(1, 12, '"r-005.mcap": not all can be read: ', " bytes are lost; ", "the last record is cut off", "the pieces stay")
     newer = fresh()
     flip(newer, (chunk_of(newer, 3), 0x80))  # its opcode
     repaired(1, 19, '"r-005.mcap": not all can be read: 1 samples are lost; ', "a record of kind 134 among the data")

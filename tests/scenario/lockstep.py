@@ -200,7 +200,7 @@ with System(bin_dir, lib_dir) as s:
         s.rtse("wait", "One", "Two", "--state", "Active", "--timeout", "60")
         for host in hosts:
             # Before the first simulator one line that it waits, then one for each that has gone.
-            said = s.log(host).count("waiting for the simulator"), s.log(host).count("the simulator is gone; waiting for it")
+            said = s.log(host).count("waiting for the simulator"), s.log(host).count("the simulator has exited; waiting for it")
             assert said == (1, 3), f"lines: {said}"
 
     elif case == "two_servers":

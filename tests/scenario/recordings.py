@@ -119,7 +119,7 @@ def full_disk():
     assert process.returncode == 1 and err.count("\n") == 1 and "cannot be written: File too large; what came before is in it" in err, err
     kept = json.loads(rig.try_rtse("--json", "recording", "info", file).stdout)["samples"]
     repaired = rig.rtse("recording", "repair", file)
-    assert kept > 0 and repaired == f"{kept} samples kept, 0 octets lost\n", (kept, repaired)
+    assert kept > 0 and repaired == f"{kept} samples kept, 0 bytes lost\n", (kept, repaired)
     seconds(1)
 
 
@@ -485,8 +485,8 @@ def bad_input():
     refused("recording", "info", "/no/such/file", says="cannot be read: No such file or directory")
     with open(file, "w") as out:
         out.write("no recording")
-    refused("recording", "cat", file, says="is no MCAP file")
-    refused("play", file, "A:b=RTCPosition2d0:velocity", says="is no MCAP file")
+    refused("recording", "cat", file, says="is not an MCAP file")
+    refused("play", file, "A:b=RTCPosition2d0:velocity", says="is not an MCAP file")
     assert rig.try_rtse("record", "RTCLaser0:range").returncode == 2
     assert rig.try_rtse("record", "-o", file).returncode == 2
 

@@ -144,7 +144,7 @@ def crash():
 def hang():
     with Place() as place:
         code, out, err = place.run(place.relays(Relay0={"source": 1, "hang_at": 15}, Relay1={}), empty, "--duration", "10", "--hang-timeout", "2", "--one-process-each")
-        assert code == 1 and "Relay0: has not ended its tick" in err and "Relay1" not in err, (code, err)
+        assert code == 1 and "Relay0: did not finish its tick" in err and "Relay1" not in err, (code, err)
         assert "Relay0" in place.verdicts()["runs for 10 s"]
 
 
@@ -314,7 +314,7 @@ def hung_naming():
                 time.sleep(0.01)
             os.kill(names, signal.SIGSTOP)
             out, err = process.communicate(timeout=watchdog)
-            assert process.returncode == 1 and "\nrtse: naming service" in f"\n{err}" and "gone" not in err, (moment, out, err)
+            assert process.returncode == 1 and "\nrtse: name server" in f"\n{err}" and "gone" not in err, (moment, out, err)
             assert not is_running(names), "it is still there"
 
 
@@ -325,7 +325,7 @@ def slow_start():
         os.chmod(never, 0o755)
         place.environment["PATH"] = f"{place.path}:{place.environment['PATH']}"
         code, out, err = place.run(avoidance, course, "--start-timeout", "6")
-        assert code == 1 and "naming service: not ready after" in err and "s, is waited for up to 6 s (--start-timeout)" in err, err
+        assert code == 1 and "name server: not ready after" in err and "s, is waited for up to 6 s (--start-timeout)" in err, err
         assert "not ready after 6 s (--start-timeout)" in err, err
         code, out, err = place.run(avoidance, course, "--start-timeout", "0")
         assert code == 2 and "--start-timeout" in err, err

@@ -266,7 +266,7 @@ def cut_short():
     listener = client("echo", f"{robot}::laser")
     await_("a listener", lambda: read("stats")["subscribed"] == 1)
     os.truncate(f"/dev/shm/rtmsim-{os.getuid()}-{server_id}.laser.{robot}::laser", 0)
-    await_("a line about it", lambda: "was cut short" in open(process.log.name).read())
+    await_("a line about it", lambda: "was truncated" in open(process.log.name).read())
     assert listener.wait(watchdog) == 1
     before = read("stats")["sim_time"]
     await_("running time", lambda: read("stats")["sim_time"] > before)

@@ -245,7 +245,7 @@ def crowd():
             viewer.do("recordings")
         finally:
             idle.kill()
-    said = rig.log(studio.process).count("sent away: too many connections")
+    said = rig.log(studio.process).count("rejected: too many connections")
     assert 1 <= said <= took + 3, (said, took)
     studio.lives()
 

@@ -25,7 +25,7 @@ TEST(BadWorld, that_is_no_world_fails_with_one_line) {
   EXPECT_THAT(error_of("<html><body/></html>"), HasSubstr("an <sdf> element is expected"));
   EXPECT_EQ(error_of(std::string("\0\0\0\0garbage", 11)), "w.sdf: is a binary file; SDFormat is text (XML)");
   EXPECT_EQ(error_of(std::string("PK\3\4\0<% %>", 10)), "w.sdf: is a binary file; SDFormat is text (XML)") << "no template";
-  EXPECT_THAT(error_of("<sdf><% 3.times do %></sdf>"), HasSubstr("is a template"));
+  EXPECT_THAT(error_of("<sdf><% 3.times do %></sdf>"), HasSubstr("is an ERB template"));
   EXPECT_THAT(error_of("<!-- nothing -->"), HasSubstr("no document element"));
   const base::Result<LoadResult> missing = load_world("/nowhere/at/all.sdf", ModelPath{});
   ASSERT_FALSE(missing.ok());

@@ -88,7 +88,7 @@ TEST(WildWorlds, attributes_without_quotes_are_mended) {
   EXPECT_EQ(result->world.models[0].name, "m");
   EXPECT_EQ(result->world.models[0].source, "w.sdf:3");
   ASSERT_EQ(result->findings.size(), 1U) << all_findings(*result);
-  EXPECT_EQ(result->findings[0].text(), "w.sdf:1: attribute values without quotes are mended");
+  EXPECT_EQ(result->findings[0].text(), "w.sdf:1: attribute values without quotes are corrected");
 }
 
 TEST(WildWorlds, newer_versions_are_read_as_the_newest_known) {
@@ -169,7 +169,7 @@ TEST(WildWorlds, templates_are_called_what_they_are) {
   const base::Result<LoadResult> result = files.load_text(
       "<sdf version='1.6'>\n<world name='w'>\n<% count = 3 %>\n<model name='m'><pose><%= count %> 0 0 0 0 0</pose></model></world></sdf>");
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().message, "w.sdf:3: is a template (<% ... %>); the world that erb makes of it is expected");
+  EXPECT_EQ(result.error().message, "w.sdf:3: is an ERB template (<% ... %>); run erb first");
 }
 
 TEST(WildWorlds, names_that_clash_are_numbered) {

@@ -1,5 +1,5 @@
-// What a running system says, as named channels: a source opens a channel with its schema and puts samples into it, sinks take them.
-// Nothing here knows files or sockets. Values.
+// Data of a running system as named channels: a source opens a channel with its schema and puts samples into it, sinks receive them. It
+// uses no files and no sockets. Values.
 #pragma once
 
 #include <chrono>

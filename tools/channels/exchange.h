@@ -1,5 +1,5 @@
-// Where sources and sinks of channels meet. Each sink has a thread and a queue of its own, so that a slow one costs neither the sources nor
-// the other sinks anything beyond its queue.
+// Connects sources and sinks of channels. Each sink has a thread and a queue of its own, so a slow sink delays the sources and the other
+// sinks only when its queue is full.
 //
 // Any thread may put, open, close and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in
 // the order in which samples were put, close() behind the last sample, rest() when there is nothing to take and at least once in

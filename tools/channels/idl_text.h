@@ -1,4 +1,4 @@
-// The definition of a data type as text in OMG IDL, complete in itself: what a reader of a recording needs to decode its samples. Pure; any
+// The definition of a data type as OMG IDL, self-contained: readers of a recording need it to decode samples. Pure; any
 // thread.
 #pragma once
 

@@ -117,7 +117,7 @@ std::optional<std::string> difference(const DifferenceOptions& options, Side& fi
   if (a.octets == b.octets) return std::nullopt;
   const auto left = value_of(first, a);
   const auto right = value_of(second, b);
-  if (!left || !right) return "octets differ";
+  if (!left || !right) return "bytes differ";
   auto tolerated = options;
   if (first.has_own_stamps(a.topic) && second.has_own_stamps(b.topic)) tolerated.ignored.emplace_back("tm");
   return difference(tolerated, *left, *right);

@@ -1,4 +1,5 @@
-// The hash log of a run (docs/hash-logs.md) as a channel: /hashes, a sample for each tick in which something changed. One thread at a time.
+// Writes the hash log of a run (docs/hash-logs.md) to the channel /hashes, a sample per tick in which something changed. One thread at a
+// time.
 #pragma once
 
 #include <string>

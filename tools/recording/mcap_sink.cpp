@@ -19,7 +19,8 @@ constexpr std::chrono::seconds least_reset{1};  // back in time; less than that 
 }  // namespace
 
 base::Result<Split> parse_split(const std::string& text) {
-  const auto wrong = base::Error{"split " + base::in_quotes(text) + ": expected octets as 64k, 500M or 2G, or a time as 30s, 10m or 1h"};
+  const auto wrong =
+      base::Error{"split " + base::in_quotes(text) + ": expected bytes such as 64k, 500M or 2G, or a duration such as 30s, 10m or 1h"};
   if (text.empty()) return wrong;
   if (const auto seconds = base::parse_seconds(text); seconds && !base::parse_number(text)) {
     if (!(*seconds > 0)) return wrong;

@@ -1,5 +1,5 @@
-// Channels into an MCAP file, or into a row of them. Called on one thread at a time, as every sink. What came more than a second ago is in
-// the file, whatever happens to the process.
+// Writes channels to an MCAP file, or to a series of files. Called on one thread at a time, as every sink. Samples older than a second are
+// in the file, even if the process is killed.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Pictures of recorded cameras as PNG files. One thread at a time.
+// Exports recorded camera images as PNG files. One thread at a time.
 #pragma once
 
 #include <optional>

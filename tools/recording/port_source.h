@@ -1,5 +1,5 @@
-// OutPorts of a running system as channels: a tap on each puts what it sends into the exchange. Construct, use and destroy on one thread;
-// samples come on the ORB's threads.
+// Publishes the OutPorts of a running system as channels. Construct, use and destroy on one thread; samples arrive on the ORB's
+// threads.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// Samples of a recording in the order of their times, read and decompressed by a thread of its own before somebody asks for them. next() is
-// called on one thread.
+// Reads the samples of a recording in the order of their times. A thread of its own reads and decompresses ahead. next() is called on one
+// thread.
 #pragma once
 
 #include <condition_variable>

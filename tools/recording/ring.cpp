@@ -169,7 +169,7 @@ void Joint::note_losses(const mcap::Reader& piece, const std::string& path, std:
   if (!damage && samples == 0 && unread.octets == 0) return;
   std::string line = base::in_quotes(path) + ": not all can be read:";
   if (samples > 0) line += " " + std::to_string(samples) + " samples are lost;";
-  if (unread.octets > 0) line += " " + std::to_string(unread.octets) + " octets are lost;";
+  if (unread.octets > 0) line += " " + std::to_string(unread.octets) + " bytes are lost;";
   samples_lost_ += samples;
   losses_.push_back(line + " " + damage.value_or(piece.damage().value_or("it has fewer samples than it says")));
 }

@@ -263,7 +263,7 @@ base::Result<RosDefinition> RosDefinition::parse(std::string_view text) {
 }
 
 base::Result<Json> RosDefinition::decode(std::string_view octets) const {
-  if (octets.size() < 4) return wrong("a sample has no octets that say their order");
+  if (octets.size() < 4) return wrong("a sample has no bytes for its byte order");
   auto value = Decoder(messages_, Cdr(octets.substr(4), octets[1] == 1)).message(0, 0);
   if (!value)
     return wrong("a sample ends too early, is deeper than " + std::to_string(deepest_message) + " messages, or has more than " +

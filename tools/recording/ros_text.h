@@ -1,5 +1,5 @@
-// Samples whose schema is a definition of ROS 2 (`ros2msg`), as JSON, whoever wrote them. Values; any thread. Octets are hostile until they
-// are read: lengths are checked against what is there. Sequences and arrays of uint8 become base64.
+// Converts samples with a ROS 2 schema (`ros2msg`) to JSON, from any writer. Input is untrusted: lengths are checked. Sequences and arrays
+// of uint8 become base64. Values; any thread.
 #pragma once
 
 #include <cstddef>

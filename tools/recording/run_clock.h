@@ -1,4 +1,4 @@
-// The time that recordings count: that of the simulator while there is one, else the wall clock. Any thread.
+// The clock of recordings: simulated time while a simulator exists, otherwise wall-clock time. Any thread.
 #pragma once
 
 #include <chrono>

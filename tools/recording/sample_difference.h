@@ -1,4 +1,4 @@
-// Where two samples differ: the first member, with both values. Values; any thread.
+// Finds the first member in which two samples differ, with both values. Values; any thread.
 #pragma once
 
 #include <map>

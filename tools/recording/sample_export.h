@@ -1,4 +1,4 @@
-// Samples of a recording as tables and pictures that other programs read. One thread.
+// Exports samples of a recording as tables and images. One thread.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Sinks that hand on a part of what they get. Called on one thread at a time, as every sink.
+// Sinks that forward a part of the samples: a maximum rate, the last seconds. Called on one thread at a time, as every sink.
 #pragma once
 
 #include <chrono>

@@ -92,7 +92,7 @@ base::Result<Json> SampleValues::of(const mcap::Message& message) {
   }
   const auto type = editor::type_code_of(repository_id(name));
   if (CORBA::is_nil(type)) return wrong("the data type " + base::in_quotes(name) + " is not known");
-  if (message.data.size() < 4) return wrong("a sample has no octets that say their order");
+  if (message.data.size() < 4) return wrong("a sample has no bytes for its byte order");
   const auto* octets = reinterpret_cast<const unsigned char*>(message.data.data());
   auto value = editor::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, most_values);
   if (!value) return wrong(value.error().message);

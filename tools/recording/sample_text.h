@@ -1,4 +1,4 @@
-// Samples of a recording as JSON. An object belongs to one thread at a time.
+// Converts samples of a recording to JSON. An object belongs to one thread at a time.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Which samples of a recording a command is about. Values; one thread.
+// The samples of a recording that a command processes: channels and time range. Values; one thread.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// How a command of rtse joins the program: it declares its part of the command line, and what is to be done when the user names it. Each
-// file of commands/ has one or more; commands/commands.h lists them. One thread at a time.
+// The interface of a command of rtse: it declares its command line, and the work to do if the user selects it. Each file of commands/ has
+// one or more; commands/commands.h lists them. One thread at a time.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What the running system knows of when the user presses the tab key: components, ports, parameters, managers. One thread at a time.
+// Completion candidates from the running system: components, ports, parameters, managers. One thread at a time.
 #pragma once
 
 #include "base/completion.h"

@@ -1,4 +1,4 @@
-// Standard output as a command sees it. Any thread.
+// Standard output of a command. Any thread.
 #pragma once
 
 #include "base/terminal.h"

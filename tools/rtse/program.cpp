@@ -34,19 +34,25 @@ std::vector<std::string> words_of(int argc, char** argv) {
 
 int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) {
   base::Command app{
-      "rtse: list, wire, configure, start and save systems of RT components\n"
+      "rtse: list, connect, configure, start, save and test systems of RT components\n"
       "Paths: /HOST[:PORT]/CONTEXT.KIND/NAME.rtc:PORT, relative to $RTCSH_CWD, or any tail that names one thing (NAME:PORT)."};
   base::add_standard_options(app, "rtse", RTMSIM_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   Settings settings;
-  app.add_option("--ns", settings.server, "Name server HOST[:PORT]; default: the first of $RTCTREE_NAMESERVERS, else localhost:2809");
+  app.add_option("--ns", settings.server, "Name server HOST[:PORT] (default: the first of $RTCTREE_NAMESERVERS, else localhost:2809)");
   app.add_flag("--json", settings.json, "Print JSON");
-  app.add_option("--call-timeout", settings.limit_s, "Seconds that one call to another process may take")
+  app.add_option("--call-timeout", settings.limit_s, "Timeout of a call to another process [s]")
       ->check(base::number_between(0.01, 600.0))
       ->capture_default_str();
   Chosen chosen;
   for (const AddCommand add : commands) add(app, chosen);
+  app.group_subcommands("Look", {"ls", "tree", "cat", "print", "watch", "wait", "check", "diff"})
+      ->group_subcommands("Connect and change", {"con", "dis", "conf", "act", "deact", "reset", "inject", "ec", "mgr", "exit", "del"})
+      ->group_subcommands("Save and run systems", {"save", "load", "start", "stop", "teardown", "run", "join", "leave", "demo"})
+      ->group_subcommands("Record", {"record", "play", "replay", "goto", "recording"})
+      ->group_subcommands("Campaign", {"sweep", "hunt", "results"})
+      ->group_subcommands("Write components", {"new"});
   const TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);
   const auto words = words_of(argc, argv);
   std::vector<const char*> arguments;

@@ -1,5 +1,5 @@
-// The frame of rtse, and of the programs beside it that carry some of its verbs: options that all commands share, the ORB, errors, the exit
-// code. Called once, from main.
+// The main function of rtse, and of the programs that contain some of its verbs: common options, the ORB, errors, the exit code. Called
+// once, from main.
 #pragma once
 
 #include <vector>

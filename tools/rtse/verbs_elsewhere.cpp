@@ -24,15 +24,15 @@ struct Verb {
 };
 
 constexpr std::array verbs = {
-    Verb{"demo", "rtse-demo", "Let a robot drive: simulator, components, wiring, a picture"},
-    Verb{"record", "rtse-recorder", "Record what ports send into an MCAP file"},
+    Verb{"demo", "rtse-demo", "Show a driving robot: simulator, components, connections, an image"},
+    Verb{"record", "rtse-recorder", "Record the samples of ports into an MCAP file"},
     Verb{"play", "rtse-recorder", "Send a recording into the ports of a running system"},
     Verb{"sweep", "rtse-campaign", "Run all rows of a campaign's plan and store their results"},
-    Verb{"hunt", "rtse-campaign", "Look for faults, events and parameters that break what a plan expects"},
+    Verb{"hunt", "rtse-campaign", "Search for faults, events and parameters that violate the plan"},
     Verb{"results", "rtse-campaign", "Show the results of a campaign: tables, rates, pages"},
-    Verb{"replay", "rtse-recorder", "Send a component its recorded inputs again and compare what it answers"},
-    Verb{"goto", "rtse-recorder", "Make a recorded run again up to a moment and stand there"},
-    Verb{"recording", "rtse-recorder", "Look into recordings: info, ls, cat, export, compare, repair"},
+    Verb{"replay", "rtse-recorder", "Send recorded inputs to one component and compare its outputs"},
+    Verb{"goto", "rtse-recorder", "Repeat a recorded run and stop at a given time"},
+    Verb{"recording", "rtse-recorder", "Inspect recordings: info, ls, cat, export, compare, repair"},
 };
 
 constexpr std::array<std::string_view, 2> options_with_value = {"--ns", "--call-timeout"};

@@ -1,4 +1,4 @@
-// Verbs of rtse whose code needs what rtse itself does not load (recordings, campaigns): programs beside it carry them out. One thread.
+// Verbs of rtse that need libraries which rtse does not load (recordings, campaigns): separate programs execute them. One thread.
 #pragma once
 
 namespace base {

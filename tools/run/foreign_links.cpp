@@ -151,7 +151,7 @@ Result<void> ForeignLinks::end() {
   write();
   const bool is_whole = log_->finish();
   log_.reset();
-  return is_whole ? Result<void>() : Error{"what components of others sent each other could not be written"};
+  return is_whole ? Result<void>() : Error{"the samples between third-party components could not be written"};
 }
 
 }  // namespace editor

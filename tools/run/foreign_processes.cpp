@@ -99,7 +99,7 @@ Result<void> ForeignProcesses::read(const RunOptions& options, const SavedSystem
     for (const auto& property : properties) {
       if (property.instance != component.instance) continue;
       if (property.key != phase_key)
-        return Error{"property " + property.instance + ":" + property.key + ": the component comes from a process of others, only its " +
+        return Error{"property " + property.instance + ":" + property.key + ": the component is in a third-party process, only its " +
                      phase_key + " can be chosen"};
       member.phase = static_cast<int>(base::parse_integer(property.value).value_or(1));
     }
@@ -286,7 +286,7 @@ std::vector<std::string> ForeignProcesses::set_links(SavedSystem& system) const 
   }
   std::vector<std::string> notes;
   if (!flushed.empty())
-    notes.push_back("sent within the tick (subscription type flush), as a thread of a component of others belongs to none: " +
+    notes.push_back("sent within the tick (subscription type flush), because a thread of a third-party component belongs to no tick: " +
                     base::join(flushed, ", "));
   if (!in_a_circle_.empty())
     notes.push_back("between components of one phase that are connected in a circle, so read in the tick in which it is sent: " +
@@ -294,7 +294,7 @@ std::vector<std::string> ForeignProcesses::set_links(SavedSystem& system) const 
   if (!stamped.empty())
     notes.push_back("stamped with simulated time by the receiver (timestamp_policy on_received): " + base::join(stamped, ", "));
   if (!differing.empty())
-    notes.push_back("between components of others, with stamps of their own clocks, which differ in each run: " +
+    notes.push_back("between third-party components, with stamps of their own clocks, which differ in each run: " +
                     base::join(differing, ", "));
   return notes;
 }

@@ -203,7 +203,7 @@ base::Result<void> Player::await_active() {
   shm::Tick tick;
   while (!after_->is_active() || (before_ && !before_->is_active())) {
     if (WallClock::now() > deadline) return base::Error{"replay: the simulator does not take it into the lock step"};
-    if (after_->wait(tick, 5ms) == shm::Participant::State::closed) return base::Error{"replay: the simulator has gone"};
+    if (after_->wait(tick, 5ms) == shm::Participant::State::closed) return base::Error{"replay: the simulator has exited"};
   }
   return {};
 }
@@ -217,7 +217,7 @@ base::Result<void> Player::take_tick(shm::Participant& participant, shm::Tick& t
         break;
       case shm::Participant::State::dropped:
       case shm::Participant::State::closed:
-        return base::Error{"replay: the simulator has gone"};
+        return base::Error{"replay: the simulator has exited"};
     }
   }
   return base::Error{""};  // the end
@@ -324,7 +324,7 @@ std::optional<std::string> Player::differ(const Output& output, const std::strin
   const auto left = values_.of({output.channel, 0, {}, {}, recorded});
   const auto right = values_.of({output.channel, 0, {}, {}, sent});
   if (left && right) return difference(options_.tolerated, *left, *right);
-  return "its octets differ";
+  return "its bytes differ";
 }
 
 base::Result<void> Player::judge(std::chrono::nanoseconds now) {

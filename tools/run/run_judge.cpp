@@ -67,7 +67,7 @@ void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& r
   if (options_.strict) {
     result.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
   } else {
-    for (const auto& chance : chances) result.notes.push_back("depends on chance: " + chance);
+    for (const auto& chance : chances) result.notes.push_back("nondeterministic: " + chance);
   }
 }
 

@@ -35,7 +35,7 @@ int free_port() {
 
 Result<void> answers(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit) {
   const CallLimit limited(limit);
-  return remote("naming service " + server, [&] {
+  return remote("name server " + server, [&] {
     const CORBA::Object_var object = orb->string_to_object(("corbaloc::" + server + "/NameService").c_str());
     (void)object->_non_existent();
   });
@@ -55,7 +55,7 @@ Result<void> RunNaming::start(CORBA::ORB_ptr orb, const RunSimulator::Wait& wait
                                       place_.new_file("omninames.log")});
   if (!started) return started.error();
   process_.emplace(std::move(*started));
-  return wait_until("naming service", [&] { return answers(orb_, address_, 1000ms).ok(); });
+  return wait_until("name server", [&] { return answers(orb_, address_, 1000ms).ok(); });
 }
 
 void RunNaming::end() {
@@ -94,7 +94,7 @@ Result<void> RunNaming::ask() {
 }
 
 Error RunNaming::silence() const {
-  return {"naming service " + address_ + " (omniNames, pid " + std::to_string(process_->pid()) + "): does not answer (hung, or stopped?)"};
+  return {"name server " + address_ + " (omniNames, pid " + std::to_string(process_->pid()) + "): does not answer (hung, or stopped?)"};
 }
 
 }  // namespace editor

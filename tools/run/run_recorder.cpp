@@ -97,7 +97,7 @@ base::Result<void> RunRecorder::finish() {
   if (is_good) return {};
   // A recorder that ends by itself says what is where.
   if (was_killed && is_ring_)
-    return base::Error{"recorder: " + how + "; what came before is in pieces of the ring, rtse recording repair " + file_ +
+    return base::Error{"recorder: " + how + "; earlier samples are in the segments of the ring: rtse recording repair " + file_ +
                        " puts it together"};
   if (was_killed) return base::Error{"recorder: " + how + "; what came before is in the file"};
   return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};

@@ -218,7 +218,7 @@ class Run final : public RunningSystem {
 
   // The contexts in which components of others are called.
   Result<void> start_time_host() {
-    return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of components of others");
+    return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of third-party components");
   }
 
   Result<void> start_hosts() {

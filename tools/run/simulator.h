@@ -34,7 +34,7 @@ struct LockstepParticipant {
   std::string name;
   std::int64_t phase = 0;
   std::chrono::nanoseconds period{0};
-  bool is_late = false;  // has not ended its tick
+  bool is_late = false;  // did not finish its tick
 };
 
 struct ModelContact {

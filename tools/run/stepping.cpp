@@ -22,14 +22,14 @@ std::string late_text(Simulator& simulator) { return base::join(late_participant
 
 std::string wait_text(Simulator& simulator, double time_s, double timeout_s) {
   const auto late = late_text(simulator);
-  return (late.empty() ? "the simulator" : late) + ": has not ended its tick at " + base::format_number(time_s) +
+  return (late.empty() ? "the simulator" : late) + ": did not finish its tick at " + base::format_number(time_s) +
          " s for more than a second of real time; it is waited for up to " + base::format_number(timeout_s) + " s (--hang-timeout)";
 }
 
 std::string hang_text(Simulator& simulator, double time_s, double timeout_s) {
   const auto late = late_text(simulator);
   const auto end = " at " + base::format_number(time_s) + " s after " + base::format_number(timeout_s) + " s (--hang-timeout)";
-  return late.empty() ? "the simulator has not ended its step" + end : late + ": has not ended its tick" + end;
+  return late.empty() ? "the simulator did not finish the step" + end : late + ": did not finish its tick" + end;
 }
 
 // A process that has exited can be waited for a moment after its shared memory says so.

@@ -23,7 +23,7 @@ Result<bool> rest_in_own_contexts(const Session& session, const ComponentView& c
   bool was_active = false;
   for (const auto& context : component.contexts) {
     if (!context.is_owned) continue;
-    if (context.state == RTC::ERROR_STATE) return Error{"component " + component.path + ": is Error in its own context (try: rtse reset)"};
+    if (context.state == RTC::ERROR_STATE) return Error{"component " + component.path + ": is in the ERROR state (try: rtse reset)"};
     if (context.state != RTC::ACTIVE_STATE) continue;
     if (const auto rests = change_state(component, Transition::deactivate, index_of(component, context), session.transition_timeout());
         !rests)
@@ -149,7 +149,8 @@ Result<void> join_time(const Session& session, const std::string& path, const st
   if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
   const auto host = session.component(proxy, {.contexts = true});
   if (!host) return host.error();
-  if (host->contexts.empty() || !is_simulated(host->contexts.front())) return Error{"component " + host->path + ": is no proxy of ours"};
+  if (host->contexts.empty() || !is_simulated(host->contexts.front()))
+    return Error{"component " + host->path + ": is not a SimTimeProxy of this runtime"};
   if (how == TimeMember::How::tick) return tick_own_context(session, *component, *host);
   const auto was_active = rest_in_own_contexts(session, *component);
   if (!was_active) return was_active.error();

@@ -1,5 +1,5 @@
 // Components of other processes in simulated time, by the standard calls only: each gets a proxy in one of our hosts (SimTimeProxy), whose
-// SimTimeContext it becomes a member of. What it asks of such a component stands in docs/testing-a-robot-system.md. One thread at a time.
+// SimTimeContext it becomes a member of. What it asks of such a component is in docs/third-party-components.md. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -127,7 +127,7 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
   const auto end = now() + static_cast<std::int64_t>(seconds * 1e9);
   while (!is_interrupted() && (seconds <= 0 || now() < end)) {
     if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
-      return control.fail("the simulator is gone");
+      return control.fail("the simulator has exited");
     if (!iface->is_commander()) return control.fail("iface " + name + ": another client commands it now");
   }
 }

@@ -112,7 +112,7 @@ void echo(Control& control, const std::string& name, int count) {
   // Ends when the output takes no more; the end of the program says so.
   for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted() && std::cout.good();) {
     const auto what = iface->wait(last, std::chrono::milliseconds(200));
-    if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator is gone");
+    if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator has exited");
     if (what == shm::Wait::timed_out) {
       // Time stands still and somebody else listens already: what he has got is the present.
       if (printed == 0 && is_paused(control.server_id())) last = 0;

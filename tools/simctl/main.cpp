@@ -29,9 +29,9 @@ void add_simple(base::Command& app, Work& work, const char* name, const char* he
 }
 
 void add_looks(base::Command& app, Work& work) {
-  auto* list = app.add_subcommand("list", "List the ifaces of the server");
+  auto* list = app.add_subcommand("list", "List the ifaces of the simulator");
   auto all = option_value(false);
-  list->add_flag("-a,--all", *all, "Of all servers");
+  list->add_flag("-a,--all", *all, "List the ifaces of all simulators");
   list->callback([&work, all] { work = [all](Control& c) { simctl::list(c, *all); }; });
 
   const auto with_name = [&](const char* command, const char* help, void (*function)(Control&, const std::string&)) {
@@ -43,24 +43,24 @@ void add_looks(base::Command& app, Work& work) {
   with_name("info", "Show the constants of an iface", simctl::info);
   with_name("dump", "Show the layout of an iface's shared memory", simctl::dump);
 
-  auto* echo = app.add_subcommand("echo", "Print what an iface publishes; scans as a picture on a terminal");
+  auto* echo = app.add_subcommand("echo", "Print the samples of an iface; draw scans on a terminal");
   auto name = option_value<std::string>();
   auto count = option_value(0);
   echo->add_option("IFACE", *name, "NAME, or TYPE:NAME")->required();
-  echo->add_option("-n,--count", *count, "End after so many samples")->check(base::number_between(0, 1e9));
+  echo->add_option("-n,--count", *count, "Stop after N samples (default: until interrupted)")->check(base::number_between(0, 1e9));
   echo->callback([&work, name, count] { work = [name, count](Control& c) { simctl::echo(c, *name, *count); }; });
 
-  add_simple(app, work, "stats", "Show time, speed, state hash and where the time goes", simctl::stats);
-  add_simple(app, work, "participants", "Show who takes part in lock step", simctl::participants);
+  add_simple(app, work, "stats", "Show time, real-time factor, state hash and use of processor time", simctl::stats);
+  add_simple(app, work, "participants", "List the participants of the lock step", simctl::participants);
 
   auto* tree = app.add_subcommand("tree", "Show models, links, joints and sensors");
   auto model = option_value<std::string>();
-  tree->add_option("MODEL", *model, "One model only");
+  tree->add_option("MODEL", *model, "Show this model only");
   tree->callback([&work, model] { work = [model](Control& c) { simctl::tree(c, *model); }; });
 
-  add_simple(app, work, "models", "Show which models of the model path can be spawned, as model://NAME", simctl::models);
+  add_simple(app, work, "models", "List the models of the model path, which spawn accepts as model://NAME", simctl::models);
 
-  auto* clean = app.add_subcommand("clean", "Remove what crashed servers have left in shared memory; with -s, what that one has");
+  auto* clean = app.add_subcommand("clean", "Remove shared memory left by crashed simulators; with -s: of this simulator only");
   clean->callback([&app, &work] {
     const bool is_named = app.option("--server-id")->count() > 0;
     work = [is_named](Control& c) { simctl::clean(c, is_named); };
@@ -69,21 +69,23 @@ void add_looks(base::Command& app, Work& work) {
 
 void add_control(base::Command& app, Work& work) {
   add_simple(app, work, "pause", "Stop simulated time", [](Control& c) { c.ask(shm::PauseRequest{}); });
-  add_simple(app, work, "run", "Let simulated time go on", [](Control& c) { c.ask(shm::RunRequest{}); });
-  auto* reset = app.add_subcommand("reset", "World and time as at the start");
+  add_simple(app, work, "run", "Continue simulated time", [](Control& c) { c.ask(shm::RunRequest{}); });
+  auto* reset = app.add_subcommand("reset", "Reset the world and the clock");
   auto poses_only = option_value(false);
-  reset->add_flag("--poses", *poses_only, "Only put all models back where they started, at rest; time goes on");
+  reset->add_flag("--poses", *poses_only, "Reset the poses and velocities of all models only; time continues");
   reset->callback([&work, poses_only] { work = [poses_only](Control& c) { c.ask(shm::ResetRequest{*poses_only}); }; });
 
-  auto* rtf = app.add_subcommand("rtf", "Set how many simulated seconds a second has");
+  auto* rtf = app.add_subcommand("rtf", "Set the real-time factor");
   auto factor = option_value(1.0);
-  rtf->add_option("FACTOR", *factor, "0: as fast as possible")->required()->check(base::number_between(0.0, 1e6));
+  rtf->add_option("FACTOR", *factor, "Simulated seconds per wall-clock second; 0: as fast as possible")
+      ->required()
+      ->check(base::number_between(0.0, 1e6));
   rtf->callback([&work, factor] { work = [factor](Control& c) { c.ask(shm::SetRtfRequest{*factor}); }; });
 
-  auto* step = app.add_subcommand("step", "Make physics steps and pause; returns when they are done");
+  auto* step = app.add_subcommand("step", "Run N physics steps, then pause; returns when they are done");
   auto steps = option_value<std::int64_t>(1);
-  step->add_option("N", *steps, "How many")->check(base::integer_between(1, 1000000000))->capture_default_str();
-  auto* paced = step->add_flag("--paced")->description("At the server's real-time factor, instead of as fast as possible");
+  step->add_option("N", *steps, "Number of steps")->check(base::integer_between(1, 1000000000))->capture_default_str();
+  auto* paced = step->add_flag("--paced")->description("Keep the simulator's real-time factor (default: as fast as possible)");
   step->callback([&work, steps, paced] { work = [steps, paced](Control& c) { simctl::step(c, *steps, paced->count() > 0); }; });
 
   auto* pose = app.add_subcommand("pose", "Show or set the pose of a model: pose MODEL [X Y [Z] YAW]");
@@ -98,7 +100,8 @@ void add_control(base::Command& app, Work& work) {
   });
 
   auto* velocity = app.add_subcommand(
-      "velocity", "Drive a robot while this command runs: velocity IFACE VX VY VA; show or set that of a model: velocity MODEL [VX VY VA]");
+      "velocity",
+      "Drive a robot while this command runs: velocity IFACE VX VY VA; show or set the velocity of a model: velocity MODEL [VX VY VA]");
   auto robot = option_value<std::string>();
   auto speeds = option_value<std::vector<double>>();
   auto seconds = option_value(0.0);
@@ -107,7 +110,7 @@ void add_control(base::Command& app, Work& work) {
       ->add_option("NUMBERS", *speeds,
                    "VX VY VA [m/s, rad/s]; position3d: VX VY VZ YAWRATE; model: VX VY VA or VX VY VZ WX WY WZ in the world")
       ->expected(0, 6);
-  velocity->add_option("--for", *seconds, "Simulated seconds; default: until interrupted")->check(base::number_between(0.0, 1e9));
+  velocity->add_option("--for", *seconds, "Duration [simulated s] (default: until interrupted)")->check(base::number_between(0.0, 1e9));
   velocity->callback([&work, robot, speeds, seconds] {
     if (const auto n = speeds->size(); n == 1 || n == 2 || n == 5)
       base::reject_command_line("velocity", "expected 3, 4 or 6 numbers, got " + std::to_string(n));
@@ -121,9 +124,9 @@ void add_control(base::Command& app, Work& work) {
   auto pushed = option_value<std::string>();
   auto forces = option_value<std::vector<double>>();
   auto duration = option_value(0.0);
-  wrench->add_option("MODEL", *pushed, "Model or MODEL::LINK; at its centre of mass")->required();
+  wrench->add_option("MODEL", *pushed, "Model or MODEL::LINK; the force acts at its centre of mass")->required();
   wrench->add_option("NUMBERS", *forces, "FX FY FZ [N], TX TY TZ [N m], in the world")->required()->expected(3, 6);
-  wrench->add_option("--for", *duration, "Simulated seconds; default: one step")->check(base::number_between(0.0, 1e6));
+  wrench->add_option("--for", *duration, "Duration [simulated s] (default: one step)")->check(base::number_between(0.0, 1e6));
   wrench->callback([&work, pushed, forces, duration] {
     if (forces->size() != 3 && forces->size() != 6)
       base::reject_command_line("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
@@ -134,13 +137,13 @@ void add_control(base::Command& app, Work& work) {
   auto counted = option_value<std::string>();
   auto origin = option_value<std::vector<double>>();
   odometry->add_option("IFACE", *counted, "position2d or position3d iface")->required();
-  odometry->add_option("NUMBERS", *origin, "X Y A [m, rad]; default: 0 0 0")->expected(0, 3);
+  odometry->add_option("NUMBERS", *origin, "X Y A [m, rad] (default: 0 0 0)")->expected(0, 3);
   odometry->callback([&work, counted, origin] {
     if (origin->size() == 1 || origin->size() == 2) base::reject_command_line("odometry", "expected X Y A or nothing");
     work = [=](Control& c) { simctl::reset_odometry(c, *counted, *origin); };
   });
 
-  auto* motors = app.add_subcommand("motors", "Switch the motors of a robot: motors IFACE on|off");
+  auto* motors = app.add_subcommand("motors", "Switch the motors of a robot on or off: motors IFACE on|off");
   auto driven = option_value<std::string>();
   auto how = option_value<std::string>();
   motors->add_option("IFACE", *driven, "position2d or position3d iface")->required();
@@ -150,8 +153,10 @@ void add_control(base::Command& app, Work& work) {
   auto* spawn = app.add_subcommand("spawn", "Add a model");
   auto options = option_value<simctl::SpawnOptions>();
   spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, or SDF text")->required();
-  spawn->add_option("--name", options->name, "Name; default: the file's, with a number when it is taken");
-  spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW; words or one")->expected(1, 6)->delimiter(' ');
+  spawn->add_option("--name", options->name, "Name of the model (default: the name in the file, with a number if it is taken)");
+  spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad], as separate words or one")
+      ->expected(1, 6)
+      ->delimiter(' ');
   spawn->callback([&work, options] {
     if (const auto n = options->pose.size(); n == 1 || n == 2 || n == 5 || n > 6) {
       base::reject_command_line("--pose",
@@ -160,17 +165,17 @@ void add_control(base::Command& app, Work& work) {
     work = [options](Control& c) { simctl::spawn(c, *options); };
   });
 
-  auto* remove = app.add_subcommand("delete", "Remove a model");
+  auto* remove = app.add_subcommand("delete", "Delete a model");
   auto gone = option_value<std::string>();
   remove->add_option("MODEL", *gone)->required();
   remove->callback([&work, gone] { work = [gone](Control& c) { c.ask(shm::DeleteRequest{*gone}); }; });
 
-  auto* drop = app.add_subcommand("drop", "Let lock step go on without a participant that hangs");
+  auto* drop = app.add_subcommand("drop", "Remove a hanging participant from the lock step");
   auto participant = option_value<std::string>();
-  drop->add_option("NAME", *participant, "As 'participants' lists it")->required();
+  drop->add_option("NAME", *participant, "Name of the participant, as listed by 'participants'")->required();
   drop->callback([&work, participant] { work = [participant](Control& c) { c.ask(shm::DropParticipantRequest{*participant}); }; });
 
-  auto* contacts = app.add_subcommand("contacts", "Show what a model touches");
+  auto* contacts = app.add_subcommand("contacts", "List the models that a model touches");
   auto touched = option_value<std::string>();
   contacts->add_option("MODEL", *touched)->required();
   contacts->callback([&work, touched] { work = [touched](Control& c) { simctl::contacts(c, *touched); }; });
@@ -187,17 +192,17 @@ std::string meanings_of_faults() {
 
 void add_fault(base::Command& app, Work& work) {
   auto* fault = app.add_subcommand(
-      "fault", "Put a sensor or drive out of order, or show which are: fault [IFACE [KIND [AMOUNT]]]; --end: in order again");
+      "fault", "Inject a fault into a sensor or drive, list active faults, or end them: fault [IFACE [KIND [AMOUNT]]] [--end]");
   auto options = option_value<simctl::FaultOptions>();
   auto amount = option_value<std::string>();
   std::vector<std::string> kinds;
   for (const auto& row : shm::fault_rows) kinds.emplace_back(row.name);
-  fault->add_option("IFACE", options->iface, "Iface of a sensor, or of a drive");
+  fault->add_option("IFACE", options->iface, "Iface of a sensor or drive");
   fault->add_option("KIND", options->kind, meanings_of_faults())->check(base::one_of(std::move(kinds)));
-  fault->add_option("AMOUNT", *amount, "Default: that in brackets");
-  auto* seconds = fault->add_option("--for", options->seconds, "Simulated seconds; default: until it is ended, or the world is reset")
+  fault->add_option("AMOUNT", *amount, "Strength of the fault (default: the number in brackets)");
+  auto* seconds = fault->add_option("--for", options->seconds, "Duration [simulated s] (default: until --end or reset)")
                       ->check(base::number_between(1e-9, 1e9));
-  auto* end = fault->add_flag("--end", options->ends, "End the faults of IFACE, of that KIND; without, all");
+  auto* end = fault->add_flag("--end", options->ends, "End the faults of this IFACE and KIND (default: all)");
   end->excludes(seconds);
   fault->callback([&work, options, amount] {
     if (!amount->empty()) {
@@ -209,7 +214,8 @@ void add_fault(base::Command& app, Work& work) {
     if (!options->kind.empty()) {
       const auto row = shm::check_fault(options->kind, options->amount);
       if (!row) base::reject_command_line("AMOUNT", row.error().message);
-      if (options->amount && !(*row)->amount) base::reject_command_line("AMOUNT", "a fault that is " + options->kind + " has none");
+      if (options->amount && !(*row)->amount)
+        base::reject_command_line("AMOUNT", "fault " + base::in_quotes(options->kind) + " takes no AMOUNT");
     }
     work = [options](Control& c) { simctl::fault(c, *options); };
   });
@@ -221,34 +227,34 @@ void reject_unless_finite(const std::string& option, const std::vector<double>& 
 }
 
 void add_pictures(base::Command& app, Work& work) {
-  auto* screenshot = app.add_subcommand("screenshot", "Write a picture of the world");
+  auto* screenshot = app.add_subcommand("screenshot", "Save an image of the world (PNG)");
   auto options = option_value<simctl::ScreenshotOptions>();
-  screenshot->add_option("FILE", options->file, "PNG")->required()->check([](const std::string& file) {
+  screenshot->add_option("FILE", options->file, "PNG file")->required()->check([](const std::string& file) {
     return shm::picture_name_problem(file);
   });
-  auto* from =
-      screenshot->add_option("--from", options->from, "Camera at X Y Z ROLL PITCH YAW, six words or one")->expected(1, 6)->delimiter(' ');
-  auto* follow = screenshot->add_option("--follow", options->follow, "From behind a model");
-  auto* top = screenshot->add_flag("--top", options->from_top, "From above");
-  auto* camera = screenshot->add_option("--camera", options->camera, "As a camera of the world sees it");
+  auto* from = screenshot->add_option("--from", options->from, "Pose of the camera, X Y Z ROLL PITCH YAW [m, rad], as six words or one")
+                   ->expected(1, 6)
+                   ->delimiter(' ');
+  auto* follow = screenshot->add_option("--follow", options->follow, "View from behind this model");
+  auto* top = screenshot->add_flag("--top", options->from_top, "View from above");
+  auto* camera = screenshot->add_option("--camera", options->camera, "View of this camera of the world");
   for (auto* one : {from, follow, top, camera}) {
     for (auto* other : {from, follow, top, camera}) {
       if (one != other) one->excludes(other);
     }
   }
-  screenshot->add_option("--size", options->size, "WIDTHxHEIGHT")->capture_default_str();
-  screenshot->add_flag("--scans", options->with_scans, "With laser fans, trails and names");
+  screenshot->add_option("--size", options->size, "Size, WIDTHxHEIGHT [pixels]")->capture_default_str();
+  screenshot->add_flag("--scans", options->with_scans, "Also draw laser scans, trails and names");
   screenshot->add_option("--show")
-      ->description("visuals or collisions")
+      ->description("Shapes to draw: visuals or collisions (default visuals)")
       ->check(base::one_of({"visuals", "collisions"}))
       ->each([options](const std::string& what) { options->with_collisions = what == "collisions"; });
-  auto* span = screenshot->add_option("--span", options->span, "Metres across (--top) or field of view in rad (--from, --follow)")
+  auto* span = screenshot->add_option("--span", options->span, "Width of the view [m] (--top), or field of view [rad] (--from, --follow)")
                    ->check(base::number_between(1e-3, 1e6));
   span->excludes(camera);
-  auto* at =
-      screenshot->add_option("--at", options->at, "Middle of a picture from above, X Y [m]; goes with --top and --span; default: 0 0")
-          ->expected(1, 2)
-          ->delimiter(' ');
+  auto* at = screenshot->add_option("--at", options->at, "With --top and --span: centre of the view, X Y [m] (default: 0 0)")
+                 ->expected(1, 2)
+                 ->delimiter(' ');
   screenshot->callback([&work, options, from, top, follow, span, at] {
     if (span->count() > 0 && from->count() + top->count() + follow->count() == 0)
       base::reject_command_line("--span", "goes with --top, --from or --follow");
@@ -267,25 +273,28 @@ void add_pictures(base::Command& app, Work& work) {
   auto* exported = app.add_subcommand("export", "Write the world as glTF 2.0 binary: models, links, lights, sensors");
   auto world_file = option_value<std::string>();
   auto show = option_value<std::string>("visuals");
-  exported->add_option("FILE", *world_file, "Ends in .glb")->required()->check([](const std::string& file) {
+  exported->add_option("FILE", *world_file, "Output file, ends in .glb")->required()->check([](const std::string& file) {
     return base::to_lower(std::filesystem::path(file).extension().string()) == ".glb"
                ? std::string()
                : "worlds are glTF binaries; expected a name that ends in .glb, got " + base::in_quotes(file);
   });
-  exported->add_option("--show", *show, "visuals or collisions")->check(base::one_of({"visuals", "collisions"}))->capture_default_str();
+  exported->add_option("--show", *show, "Shapes to export: visuals or collisions")
+      ->check(base::one_of({"visuals", "collisions"}))
+      ->capture_default_str();
   exported->callback([&work, world_file, show] {
     work = [world_file, show](Control& c) { simctl::export_world(c, *world_file, *show == "collisions"); };
   });
 
-  auto* record = app.add_subcommand("record", "Record a camera as film (.mp4) or as PNG files in a folder");
+  auto* record = app.add_subcommand("record", "Record a camera as video (.mp4) or as PNG files in a folder");
   auto camera_name = option_value<std::string>();
   auto target = option_value<std::string>();
   auto frames = option_value(0);
   auto seconds = option_value(0.0);
-  record->add_option("CAMERA", *camera_name, "camera iface")->required();
-  record->add_option("TARGET", *target, "File.mp4 or folder")->required();
-  record->add_option("-n,--count", *frames, "End after so many frames")->check(base::number_between(0, 1e9));
-  record->add_option("--for", *seconds, "End after so many simulated seconds")->check(base::number_between(0.0, 1e9));
+  record->add_option("CAMERA", *camera_name, "Iface of a camera")->required();
+  record->add_option("TARGET", *target, "Output: FILE.mp4, or a folder for PNG files")->required();
+  record->add_option("-n,--count", *frames, "Stop after N frames (default: until interrupted)")->check(base::number_between(0, 1e9));
+  record->add_option("--for", *seconds, "Stop after this time [simulated s] (default: until interrupted)")
+      ->check(base::number_between(0.0, 1e9));
   record->callback([&work, camera_name, target, frames, seconds] {
     work = [=](Control& c) { simctl::record(c, *camera_name, *target, *frames, *seconds); };
   });
@@ -294,13 +303,13 @@ void add_pictures(base::Command& app, Work& work) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  base::Command app{"simctl: show and control a running simulation"};
+  base::Command app{"simctl: show and control a running simulator"};
   base::add_standard_options(app, "simctl", RTMSIM_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   std::uint32_t server_id = 0;
   bool json = false;
-  app.add_option("-s,--server-id", server_id, "Which server")
+  app.add_option("-s,--server-id", server_id, "Simulator ID")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
@@ -310,6 +319,11 @@ int main(int argc, char** argv) {
   add_control(app, work);
   add_fault(app, work);
   add_pictures(app, work);
+  app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts"})
+      ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
+      ->group_subcommands("Robots and models", {"pose", "velocity", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
+      ->group_subcommands("Record", {"screenshot", "record", "export"})
+      ->group_subcommands("Clean up", {"clean"});
   const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control server(server_id, json);

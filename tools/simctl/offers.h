@@ -1,4 +1,4 @@
-// What runs on this machine, for the tab key: servers, their ifaces and models. Any thread.
+// Completion candidates from this machine: simulators, their ifaces and models. Any thread.
 #pragma once
 
 #include "base/completion.h"

@@ -195,7 +195,7 @@ base::Result<Film> take_frames(shm::Iface& camera, const std::string& folder, in
   while (!is_interrupted() && (frames <= 0 || film.frames < frames)) {
     const auto what = camera.wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed) {
-      if (film.frames == 0) return base::Error{"iface " + camera.name() + ": the simulator is gone"};
+      if (film.frames == 0) return base::Error{"iface " + camera.name() + ": the simulator has exited"};
       film.is_cut = frames > 0 || seconds > 0;
       break;
     }
@@ -239,7 +239,7 @@ void record(Control& control, const std::string& name, const std::string& target
       return control.fail("record: " + std::string(encoder) + " could not write " + target + "; the frames are in " + folder);
     remove_frames(folder, film->frames);
   }
-  if (film->is_cut) control.fail("iface " + name + ": the simulator is gone after " + std::to_string(film->frames) + " frames");
+  if (film->is_cut) control.fail("iface " + name + ": the simulator has exited after " + std::to_string(film->frames) + " frames");
   if (control.json()) return control.print(Json{{"frames", film->frames}, {"missed", film->missed}, {"rate", film->rate(0)}});
   std::cout << film->frames << " frames, " << film->missed << " missed\n";
 }

@@ -1,4 +1,4 @@
-// What every command of simctl works with, and the commands. One thread at a time.
+// The commands of simctl, and their common state. One thread at a time.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

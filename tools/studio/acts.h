@@ -1,5 +1,5 @@
-// What a viewer can ask for by name: one row each. A row reads the arguments and makes a plan, which says what one would type in a terminal
-// to the same effect, and does it. Plans run on workers, several at a time; each uses what it makes itself.
+// The actions that a viewer can request by name: one row each. A row reads the arguments and makes a plan, which has the equivalent command
+// line and executes the action. Plans run on workers, several at a time; each uses only objects that it creates.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,5 +1,5 @@
-// The channels that viewers of foxglove.websocket.v1 subscribe to: what the simulator shows, as ROS 2 messages, and every OutPort. A source
-// works while somebody has subscribed. The loop's thread only.
+// The channels for viewers with foxglove.websocket.v1: the simulator's view as ROS 2 messages, and every OutPort. A source works while it
+// has a subscriber. The loop's thread only.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

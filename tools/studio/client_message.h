@@ -1,4 +1,4 @@
-// What a viewer may say, read strictly. Values; any thread. Nothing that comes in here can do more than be refused.
+// Parses the messages of a viewer strictly. Invalid ones are rejected, with no other effect. Values; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Who may come in: the token, the Host and the Origin of what a browser or another client asks. Values; any thread.
+// Access control of the studio server: checks the token, the Host and the Origin of a request. Values; any thread.
 //
 // A page of somebody else's that runs in the user's browser can send requests here. It does not know the token; its Origin is not ours; and
 // a name that it has made to lead here (DNS rebinding) is none of our hosts. Each of the three is enough to keep it out, and all are asked.

@@ -1,4 +1,4 @@
-// Robots that viewers drive by hand. A drive that its viewer does not renew stops, so does one whose viewer goes. The loop's thread only.
+// Robots that viewers drive by hand. A drive stops if its viewer does not renew the command, or disconnects. The loop's thread only.
 #pragma once
 
 #include <chrono>

@@ -123,7 +123,7 @@ void Hall::open(const Viewer& viewer, const Request& request) {
   const auto file = recording_in(options_.folder, *name);
   if (!file) return answer(viewer.id(), request.id, file.error(), command);
   const auto work = [this, to = viewer.id(), id = request.id, name = *name, file = file->string()] {
-    Result<Facts> facts = Error{"it failed in a way that nobody has foreseen"};
+    Result<Facts> facts = Error{"internal error (unexpected exception)"};
     try {
       auto read = RecordingFacts::read(file);
       facts = read ? Result<Facts>(std::make_shared<const RecordingFacts>(std::move(*read))) : Result<Facts>(read.error());

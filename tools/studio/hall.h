@@ -1,5 +1,5 @@
-// What viewers are shown: what the program was started for, or a recording that one of them has opened. All of them see the same; whoever
-// may act may change it. Only recordings in the folder that the program was started in, or below it, are opened. The loop's thread only.
+// The session that viewers see: the system that the program was started for, or a recording that a viewer opened. All viewers see the same;
+// every viewer with write access can change it. Only recordings in or below the start folder are opened. The loop's thread only.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

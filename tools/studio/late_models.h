@@ -1,5 +1,5 @@
-// Models that have come to a recorded world after its beginning, and those that have gone: what `/sim/shapes` says of a moment, beside the
-// scene of the beginning. One thread at a time.
+// Models that were added to, or deleted from, a recorded world after its start: `/sim/shapes` at a given time, in addition to the initial
+// scene. One thread at a time.
 #pragma once
 
 #include <set>

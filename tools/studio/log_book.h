@@ -1,6 +1,6 @@
-// What components say in their logs while somebody looks: attached to each component as it comes, and taken off when it goes or nobody
-// looks any more. The newest thousand lines are kept, for those who come and for viewers that are slow. The loop's thread only; components
-// are asked by workers.
+// Log lines of components, for viewers. A logger is attached to each component while there is a viewer. The
+// newest thousand lines are kept, for new and for slow viewers. The loop's thread only; workers call the
+// components.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

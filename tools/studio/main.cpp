@@ -28,15 +28,14 @@ struct Settings {
 };
 
 void add_options(base::Command& app, Settings& settings) {
-  app.add_option("-w,--world", settings.start.world, "SDFormat world: start a simulator of it, paused")->check(base::existing_file());
+  app.add_option("-w,--world", settings.start.world, "Start a simulator of this SDFormat world, paused")->check(base::existing_file());
   app.add_option("FILE", settings.start.system,
-                 "RTSProfile: start its components and a simulator of --world, as rtse run does, paused; or a recording (MCAP): show it")
+                 "RTSProfile: start its components and a simulator of --world, paused, as rtse run does. Recording (MCAP): show it")
       ->check(recorder::check_recording);
   app.add_option("--ns", settings.studio.name_server,
-                 "Name server HOST[:PORT] of what runs already (a system that is started here gets one of its own); default: the first of "
-                 "$RTCTREE_NAMESERVERS, else localhost:2809");
-  app.add_option("-s,--server-id", settings.studio.server_id,
-                 "Which simulator to attach to; a system that is started here gets one of its own")
+                 "Name server HOST[:PORT] of a running system (default: the first of $RTCTREE_NAMESERVERS, else localhost:2809). FILE gets "
+                 "one of its own");
+  app.add_option("-s,--server-id", settings.studio.server_id, "ID of the simulator of a running system. FILE gets one of its own")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID")
       ->capture_default_str();
@@ -44,12 +43,12 @@ void add_options(base::Command& app, Settings& settings) {
       ->check(base::integer_between(0, 65535))
       ->capture_default_str();
   app.add_option("--bind", settings.web.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
-  app.add_flag("--read-only", settings.studio.is_read_only, "Show everything, do nothing");
-  app.add_option("--host", settings.web.hosts, "A host name that browsers may use for this machine")->allow_extra_args(false);
-  app.add_option("--allow-origin", settings.web.origins, "A page of another origin that may connect, as https://HOST[:PORT]")
+  app.add_flag("--read-only", settings.studio.is_read_only, "Reject all changes by viewers");
+  app.add_option("--host", settings.web.hosts, "Additional host name of this machine, for browsers")->allow_extra_args(false);
+  app.add_option("--allow-origin", settings.web.origins, "Origin of another page that may connect: https://HOST[:PORT]")
       ->allow_extra_args(false);
   app.add_option("--page", settings.page, "Folder with the built page")->capture_default_str();
-  app.add_option("--call-timeout", settings.call_limit_s, "Seconds that one call to a component may take")
+  app.add_option("--call-timeout", settings.call_limit_s, "Timeout of a call to a component [s]")
       ->check(base::number_between(0.01, 600.0))
       ->capture_default_str();
 }

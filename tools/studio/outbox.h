@@ -1,5 +1,5 @@
-// What waits to be sent to one viewer. Answers wait in order. Of everything else only the newest waits: a viewer that is slow gets fewer,
-// never older ones. One thread at a time.
+// The queue of messages to one viewer. Replies wait in order. Of each other kind only the newest message waits: a slow viewer gets fewer
+// messages, never older ones. One thread at a time.
 #pragma once
 
 #include <cstddef>

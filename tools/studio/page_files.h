@@ -1,5 +1,5 @@
-// The page as it was built: index.html and the folder assets/, read once and kept, each also compressed. Without a built page there is a
-// plain one that says so. Immutable after it was read; any thread.
+// The built page: index.html and the folder assets/, read once and cached, also compressed. Without a built page a plain page says so.
+// Immutable after reading; any thread.
 #pragma once
 
 #include <map>

@@ -47,7 +47,7 @@ class Pictures::Camera {
     if (!iface_ && !open()) return;
     if (iface_->status() != shm::Status::live) {
       iface_.reset();
-      problem_ = "camera " + name_ + ": the simulator is gone, or has removed it";
+      problem_ = "camera " + name_ + ": the simulator has exited, or has removed it";
       return;
     }
     if (iface_->sequence() == sequence_) return;

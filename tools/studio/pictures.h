@@ -1,5 +1,5 @@
-// What cameras see, as JPEG for the viewers that want it. A thread of its own looks for new frames and encodes each once. A camera works
-// while somebody watches it. Any thread.
+// Encodes new camera frames as JPEG once, for all viewers that subscribed. It has a thread of its own. A camera works while it has a
+// viewer. Any thread.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// One viewer's place on the time line of a recording: what held at that moment, of what this viewer looks at. Going on from a moment reads
-// on in the file; a jump reads the chunks before it that are needed, whatever the length of the file. One thread at a time.
+// One viewer's position on the time line of a recording, and the values at that time. Playing continues in the file; a jump reads the
+// chunks before it that are needed, for any length of the file. One thread at a time.
 #pragma once
 
 #include <chrono>

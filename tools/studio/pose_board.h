@@ -1,4 +1,4 @@
-// Where the links of the scene are, and since when: each viewer is sent what has moved since it was sent something last. One thread at a
+// The current poses of all links, with their times: each viewer gets what has moved since its last message. One thread at a
 // time.
 #pragma once
 

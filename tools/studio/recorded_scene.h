@@ -1,5 +1,5 @@
-// What the world of a recording looks like: the glTF that a simulator makes of the recorded world, which ends again at once, and where its
-// links are by what a recording says of frames. The scene is a value for any thread; places belong to one thread at a time.
+// The scene of a recording: the glTF of the recorded world, exported by a simulator that exits again, and the poses of links from the
+// recorded frames. The scene is a value for any thread; poses belong to one thread at a time.
 #pragma once
 
 #include <array>

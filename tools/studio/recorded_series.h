@@ -1,4 +1,4 @@
-// A signal of a recording over time, for plots. Reads the file by itself; any thread.
+// A signal of a recording over time, for plots. Opens the file itself; any thread.
 #pragma once
 
 #include <string>

@@ -100,7 +100,7 @@ WebHandlers RecordedStudio::handlers() {
 
 void RecordedStudio::make_scene() {
   const auto work = [this, file = facts_->file] {
-    Result<Scene> scene = Error{"the world cannot be made in a way that nobody has foreseen"};
+    Result<Scene> scene = Error{"the world cannot be built: internal error (unexpected exception)"};
     try {
       scene = RecordedScene::make(file);
     } catch (const std::exception& e) {
@@ -284,7 +284,7 @@ Result<SeriesOrder> RecordedStudio::series_of(const Json& args) const {
 void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
   const auto job = [this, viewer = guest.viewer->id(), id, playhead = guest.playhead, work = std::move(work)] {
     Playhead::News news;
-    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = work(*playhead, news);
     } catch (const std::exception& e) {
@@ -301,7 +301,7 @@ void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
 
 void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder order) {
   const auto job = [this, viewer = guest.viewer->id(), id, facts = facts_, order = std::move(order)] {
-    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = recorded_series(*facts, order);
     } catch (const std::exception& e) {

@@ -1,5 +1,5 @@
-// A recording for viewers: each has a playhead of its own, asks for moments (request "look") and is shown what held then, in the events and
-// frames of a live run. Nothing can be done to it. The loop's thread only; the file is read by workers, which post to the loop.
+// A recording for viewers: each has a playhead, requests times (request "look") and gets the values in the events and frames of a live run.
+// Changes are rejected. The loop's thread only; workers read the file and post to the loop.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

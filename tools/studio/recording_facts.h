@@ -1,5 +1,5 @@
-// What a recording says of its run as a whole: how long it is, which components, ports and sensors there were, their states and their logs.
-// Read once, when it is opened. Values; any thread.
+// Facts about a recording as a whole: duration, components, ports, sensors, states and logs. Read once, when it is opened. Values; any
+// thread.
 #pragma once
 
 #include <chrono>

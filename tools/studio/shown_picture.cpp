@@ -123,7 +123,7 @@ Result<std::string> jpeg_of(const RawPicture& picture, base::JpegEncoder& encode
   if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > most_pixels || picture.stride < row ||
       picture.stride > most_pixels * 4 || picture.data.size() < picture.stride * (picture.height - 1) + row)
     return Error{"a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels in " +
-                 std::to_string(picture.data.size()) + " octets"};
+                 std::to_string(picture.data.size()) + " bytes"};
   if (coding->second.pixels)
     return compress(encoder, {reinterpret_cast<const std::uint8_t*>(picture.data.data()), picture.data.size()}, picture, picture.stride,
                     *coding->second.pixels);

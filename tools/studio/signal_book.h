@@ -1,5 +1,5 @@
-// Which signals there are to be watched, by the names that recordings give them: "/sim/laser/robot/laser" for the iface robot::laser,
-// "/Component0/out" for an OutPort; where two components have one name, the whole path. One thread at a time.
+// The names of all signals, as recordings name them: "/sim/laser/robot/laser" for the iface robot::laser, "/Component0/out" for an OutPort;
+// the whole path if two components have one name. One thread at a time.
 #pragma once
 
 #include <map>

@@ -31,7 +31,7 @@ class IfaceSource final : public SignalSource {
     if (!iface_ && !open()) return {};
     if (iface_->status() != shm::Status::live) {
       iface_.reset();
-      problem_ = "iface " + topic_ + ": the simulator is gone, or has removed it";
+      problem_ = "iface " + topic_ + ": the simulator has exited, or has removed it";
       return {};
     }
     return shm::has_frames(iface_->type()) ? take_frame() : take_sample();

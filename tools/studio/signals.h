@@ -1,5 +1,5 @@
-// The values behind the plots: what ifaces publish and what OutPorts send, watched for viewers. A thread of its own looks at shared memory
-// and gathers what ports have sent; connections to ports are made by a worker. A watch goes on by itself when its source has been away. Any
+// The values for plots: samples of ifaces and OutPorts. A thread of its own reads shared memory and collects samples
+// of ports; a worker connects to ports. A subscription continues when its source was unavailable for a while. Any
 // thread.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What rtm-studio has started itself: a saved system with its simulator and naming service, as `rtse run` starts it, paused; or a simulator
-// alone. Its end takes all of it down. One thread at a time.
+// The processes that rtm-studio started: a saved system with its simulator and name server, as `rtse run` starts it, paused; or a simulator
+// alone. The destructor ends them. One thread at a time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -298,7 +298,7 @@ void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
   // What is done to the same component or model is done in the order in which it was asked for: values are read, changed and written back.
   const auto subject = act.is_reading ? std::string() : text_or(request.args, "path", text_or(request.args, "model", ""));
   const auto work = [this, subject, viewer = guest.viewer->id(), id = request.id, plan = std::move(*plan)] {
-    Result<Json> result = Error{"it failed in a way that nobody has foreseen"};
+    Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = plan.run();
     } catch (const CORBA::Exception& e) {

@@ -1,5 +1,5 @@
-// What stands between the viewers and the system: keeps the newest of everything, gives it to who comes, and has done what they ask for.
-// The loop's thread only; the watches and workers that it owns post to the loop.
+// Caches the latest state of the system, sends it to new viewers, and executes their requests. The loop's thread only; its watches and
+// workers post to the loop.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -101,7 +101,7 @@ Json connection_json(const editor::ConnectorView& connector, const PortIndex& in
   for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
     const auto path = index.path_of(connector.ports[i]);
     if (path.empty()) {
-      absent.push_back("a port of a component that is not on this naming service");
+      absent.push_back("a port of a component that is not on this name server");
     } else {
       ports.push_back(path);
     }

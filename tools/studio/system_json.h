@@ -1,4 +1,4 @@
-// A running system of components as the page is told of it (docs/studio-protocol.md). Pure; any thread.
+// Converts a running system to the JSON of the page (docs/develop/studio-protocol.md). Pure; any thread.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Looks at the naming service and its components again and again, on a thread of its own, and tells what has changed. Components that hang
-// delay it by their time-out and nobody else. Any thread.
+// Polls the name server and its components on a thread of its own, and reports changes. Hanging components delay only this thread, by their
+// timeout. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

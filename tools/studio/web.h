@@ -1,5 +1,5 @@
-// The web side of the studio: HTTP and WebSocket on one event loop. All of it runs on the thread that runs the loop; only the answer of a
-// fetch may be given from any thread.
+// HTTP and WebSocket of the studio on one event loop. Everything runs on the thread of the loop; only the answer of a fetch can be given
+// from any thread.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,7 @@ class Listener final : public WebServer {
   bool make_room() {
     const auto least = std::ranges::min_element(shared_->peers, {}, [](const HttpPeer* peer) { return peer->standing(); });
     if (least == shared_->peers.end()) return false;
-    complain((*least)->address() + " sent away: too many connections, and it has been silent longest");
+    complain((*least)->address() + " rejected: too many connections, and this one was silent longest");
     (*least)->give_way();
     return true;
   }

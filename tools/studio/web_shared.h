@@ -1,4 +1,4 @@
-// What the connections of one server share. The loop's thread only.
+// The shared state of the connections of one server. The loop's thread only.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>

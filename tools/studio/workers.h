@@ -1,5 +1,5 @@
-// Threads for what may take long: calls to components, requests to the simulator, programs. The loop gives them work and never waits. Any
-// thread may give work; the end of the object drops what has not begun and waits for what has.
+// Threads for slow work: calls to components, requests to the simulator, programs. The loop posts work and never waits. Any thread can
+// post; the destructor drops work that has not started and waits for the rest.
 #pragma once
 
 #include <condition_variable>

@@ -147,7 +147,7 @@ void WorldWatch::detach(const std::string& problem) {
 void WorldWatch::look() {
   auto& simulation = simulator_->simulation();
   if (simulation.status() != shm::Status::live)
-    return detach("simulator " + std::to_string(server_id_) + " is gone; this page waits for it to come back");
+    return detach("simulator " + std::to_string(server_id_) + " has exited; this page waits for it to restart");
   (void)simulation.read();  // without a sample the last one stays
   look_at_poses(std::exchange(was_hurried_, false));
   if (!simulator_) return;

@@ -1,5 +1,5 @@
-// Looks at a simulator through its shared memory, on a thread of its own: where its links are, its clock, what the world holds. It comes
-// back when the simulator does. It never takes part in the lock step and nothing waits for it. Any thread.
+// Reads a simulator through its shared memory on a thread of its own: poses, clock, models. It reconnects after a restart. It does not
+// participate in the lock step, and no process waits for it. Any thread.
 #pragma once
 
 #include <chrono>

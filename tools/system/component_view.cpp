@@ -181,9 +181,10 @@ std::vector<ComponentView> read_components(const NamingTree& tree, Detail detail
 
 std::string absent_port(RTC::PortService_ptr port) {
   try {
-    return CORBA::is_nil(port) || port->_non_existent() ? "a port that is gone" : "a port of a component that is not on the name server";
+    return CORBA::is_nil(port) || port->_non_existent() ? "a port that does not exist any more"
+                                                        : "a port of a component that is not on the name server";
   } catch (const CORBA::Exception& e) {
-    return is_time_out(e) ? "a port that does not answer" : "a port that is gone";
+    return is_time_out(e) ? "a port that does not answer" : "a port that does not exist any more";
   }
 }
 

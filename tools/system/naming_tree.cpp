@@ -85,7 +85,7 @@ void probe(Entry& entry) {
       entry.problem = "is a nil reference";
     } else if (entry.object->_non_existent()) {
       entry.health = Health::zombie;
-      entry.problem = "is gone (its process lives, the object does not)";
+      entry.problem = "does not exist any more (its process is running)";
     }
   } catch (const CORBA::Exception& e) {
     entry.health = is_time_out(e) ? Health::hung : Health::zombie;
@@ -163,7 +163,7 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
   if (!reached) {
     return Error{reached.error().message + "; start one with: omniNames -start, or name another with --ns HOST:PORT"};
   }
-  if (CORBA::is_nil(context)) return Error{"name server " + server + ": answers, but is no naming service"};
+  if (CORBA::is_nil(context)) return Error{"name server " + server + ": responds, but is not a name server"};
   std::vector<Entry*> objects;
   collect(tree.root_, objects);
   if (only) {

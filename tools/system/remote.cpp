@@ -45,17 +45,17 @@ bool is_time_out(const CORBA::Exception& exception) {
 }
 
 std::string describe(const CORBA::Exception& exception) {
-  if (is_time_out(exception)) return "does not answer within the time-out (hung, or stopped?)";
-  if (dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&exception)) return "is gone (its process lives, the object does not)";
+  if (is_time_out(exception)) return "does not answer within the timeout (hung, or stopped?)";
+  if (dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&exception)) return "does not exist any more (its process is running)";
   if (const auto* transient = dynamic_cast<const CORBA::TRANSIENT*>(&exception)) {
     if (transient->minor() == omni::TRANSIENT_NoUsableProfile)
       return "cannot be reached (no such host, or nothing in its address can be used)";
-    return corba::tls_of_environment().is_on() ? "cannot be reached (its process is gone, there is no such host, or over TLS one side does "
-                                                 "not take the other's certificate)"
-                                               : "cannot be reached (its process is gone, or there is no such host)";
+    return corba::tls_of_environment().is_on() ? "cannot be reached (its process has exited, the host does not exist, or over TLS one side "
+                                                 "rejects the other's certificate)"
+                                               : "cannot be reached (its process has exited, or the host does not exist)";
   }
-  if (dynamic_cast<const CORBA::NO_PERMISSION*>(&exception)) return "does not let this call in (its log says why)";
-  if (dynamic_cast<const CORBA::BAD_PARAM*>(&exception)) return "has an address that is none, expected HOST:PORT (BAD_PARAM)";
+  if (dynamic_cast<const CORBA::NO_PERMISSION*>(&exception)) return "rejected the call (NO_PERMISSION); see its log";
+  if (dynamic_cast<const CORBA::BAD_PARAM*>(&exception)) return "has an invalid address, expected HOST:PORT (BAD_PARAM)";
   if (dynamic_cast<const CORBA::COMM_FAILURE*>(&exception)) return "closed the connection in the middle of the call";
   if (dynamic_cast<const CORBA::NO_IMPLEMENT*>(&exception)) return "does not have this service (NO_IMPLEMENT)";
   if (dynamic_cast<const CORBA::MARSHAL*>(&exception)) return "sent an answer that cannot be read (MARSHAL)";

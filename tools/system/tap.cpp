@@ -207,7 +207,7 @@ Tap::~Tap() {
 
 Result<void> Tap::put(std::span<const unsigned char> payload) {
   OpenRTM::InPortCdr_var target = port_->target();
-  if (CORBA::is_nil(target)) return Error{"port: the connection is gone"};
+  if (CORBA::is_nil(target)) return Error{"port: the connection does not exist any more"};
   const OpenRTM::CdrData data(static_cast<CORBA::ULong>(payload.size()), static_cast<CORBA::ULong>(payload.size()),
                               const_cast<CORBA::Octet*>(payload.data()), false);  // borrowed: omniORB only reads it
   OpenRTM::PortStatus status = OpenRTM::UNKNOWN_ERROR;

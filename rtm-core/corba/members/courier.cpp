@@ -107,7 +107,7 @@ bool Courier::carry(const Message& message) {
     dropped.swap(data->waiting);
   }
   finished_.notify_all();
-  base::log(base::Level::warn, name_, "the peer does not answer and gets nothing any more: {}", reason);
+  base::log(base::Level::warn, name_, "the peer does not respond; notifications to it stop: {}", reason);
   return false;
 }
 

@@ -1,5 +1,5 @@
-// Carries messages to one peer on a thread of its own, in order, so that a peer that hangs costs nobody else anything; and does something
-// at regular intervals on the same thread. Any thread.
+// An asynchronous notifier: sends messages to one peer in order, on a thread of its own, so that a hanging peer delays no other thread. It
+// also runs periodic work on that thread. Any thread.
 #pragma once
 
 #include <chrono>

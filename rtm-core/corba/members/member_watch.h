@@ -1,6 +1,6 @@
-// Tells of other processes that take long, where time waits for them: the log names each call that has lasted a second, once, and how long
-// it took in the end. Nothing depends on it. One per execution context that has members of other processes, and one for the ports of this
-// process; any thread. Its own thread sleeps while nobody is called.
+// Logs calls to other processes that take long while time waits for them: each call that exceeds one second, once, and its duration at the
+// end. It changes no behaviour. One per execution context with remote members, and one for the ports of this process; any thread. Its own
+// thread sleeps while there is no call.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// A component of another process, of any maker, inside one of our execution contexts. Any thread.
+// A component of another process, of any maker, as a member of an execution context of this runtime. Any thread.
 //
 // Rights: it is called by the operations of RTC::ComponentAction and RTC::DataFlowComponentAction, with the handle that its attach_context
 // has given; nothing else of it is touched. Its own contexts stay as they are.

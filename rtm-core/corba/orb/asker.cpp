@@ -127,7 +127,7 @@ bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds patience) {
   }
   // Not before: it may be one of ours, that we call for ourselves meanwhile.
   if (remember(fingerprint(reference), asker_of_thread)) return true;
-  base::log(base::Level::warn, "doors", "{}: a reference of its call is not taken: strangers have given {}", caller(), most_given);
+  base::log(base::Level::warn, "doors", "{}: a reference of its call is rejected: untrusted callers have sent {}", caller(), most_given);
   return false;
 }
 

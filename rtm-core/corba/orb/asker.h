@@ -1,7 +1,7 @@
-// For whom a thread works. A call from another account or host makes this process call others in turn: a manager its slaves, a port the
-// next one, a context a member. They would see a caller of our account. So the call says for whom it is (call_context.h), and is refused by
-// a process that does not let the asker in itself. So is every later call, by whatever thread, through a reference that a stranger gave:
-// its object may send the call elsewhere, or have more addresses than the one that answered first. Any thread.
+// The principal of a call. A call from another account or host can cause further calls of this process: of a manager to its slaves, of a
+// port to the next one, of a context to a member. The further call carries the principal (call_context.h), and a process rejects calls on
+// behalf of a principal that it would reject itself. The same holds for later calls, on any thread, through a reference that an untrusted
+// caller sent: its object can forward the call, or have more addresses than the one that replied first. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -151,7 +151,7 @@ class Bindings::Server {
     auto found = root_context(orb_, address_, settings_.call_timeout);
     if (found) {
       root_ = *found;
-      if (complained_) base::log(base::Level::info, log_name, "naming service {} answers again", address_);
+      if (complained_) base::log(base::Level::info, log_name, "name server {} responds again", address_);
       complained_ = false;
       return true;
     }
@@ -180,7 +180,7 @@ class Bindings::Server {
       if (remove_contexts) remove_empty_contexts();
       return true;
     } catch (const CORBA::Exception& e) {
-      if (is_last) complain("naming service " + address_ + ": stopped answering: " + to_text(e));
+      if (is_last) complain("name server " + address_ + ": stopped answering: " + to_text(e));
       root_ = CosNaming::NamingContext::_nil();
       return false;
     }

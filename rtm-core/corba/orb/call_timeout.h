@@ -1,4 +1,4 @@
-// How long calls to other ports may take. Any thread.
+// Timeouts of calls to other ports. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,8 +1,8 @@
-// Tells (base/chance.h) of calls from other processes that change something while the time of a lock step passes: when they come is chance.
-// What comes while time stands still (before the first step, where the script of a run stops, after the last) is not. Reading calls,
-// samples and the callbacks of contexts in other processes are no such calls, and neither are services that are called by a tick of the
-// phase that runs: its process says so, and rules of the wiring hold for both (callers of one phase, and called in the own phase). Any
-// thread.
+// Reports (base/chance.h) calls from other processes that change something while lock-step time passes: their time is
+// nondeterministic. Calls while time is paused (before the first step, at a stop of a run script, after the last step) are not
+// reported. Reading calls, samples and callbacks of contexts in other processes are not reported either, nor services called by a tick
+// of the running phase: the caller's process reports it, and rules of the wiring apply (callers of one phase, callers in the own
+// phase). Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Lets callers from outside into an object and, when the object is about to die, waits until all of them have left. Any thread.
+// Counts calls from outside into an object. Before the object is destroyed, the gate waits until all calls have returned. Any thread.
 #pragma once
 
 #include <condition_variable>

@@ -156,7 +156,7 @@ int GiopGate::collect(const Read& read) {
   }
   const Room room = may_be_long ? room_for(header) : Room{header.has_more ? small : limits_.request, false};
   if (header.size > room.limit) {
-    return refuse("a message of " + std::to_string(header.size) + " octets, expected at most " + std::to_string(room.limit) +
+    return refuse("a message of " + std::to_string(header.size) + " bytes, expected at most " + std::to_string(room.limit) +
                   (room.is_port ? " for this port" : " (corba.max_request_size)"));
   }
   ++messages_;
@@ -188,7 +188,7 @@ int GiopGate::collect_fragments(const Read& read, const Header& first, std::size
     const bool is_next = next.type == fragment && next.minor == first.minor && next.is_little == first.is_little && next.size >= id_size;
     if (!is_cancel && !is_next) return refuse("something else than the rest of a message");
     if (start - header_size + next.size > limit) {
-      return refuse("a message in fragments of more than " + std::to_string(limit) + " octets");
+      return refuse("a message in fragments of more than " + std::to_string(limit) + " bytes");
     }
     if (const int result = fill(read, start + header_size + next.size); result <= 0) return result;
     if ((is_cancel || id_size > 0) && number_at(held_, start + header_size, next.is_little) != id) {

@@ -1,7 +1,7 @@
-// Hands what a connection receives to the ORB in whole GIOP messages. omniORB 4.2 takes memory for what a message claims before it has
-// come, and writes into freed memory when fragments of messages come as it does not expect them; so messages are collected here, in memory
-// that grows with the octets that have really come, and fragments are put together. Samples of data ports pass without a copy: they are
-// octets, for which nothing is taken but their number. Knows no ORB. One thread at a time.
+// Passes received data to the ORB as complete GIOP messages. omniORB 4.2 allocates memory for the length in a message header before the
+// data arrive, and writes to freed memory if fragments arrive in an unexpected order. So messages are collected here, in memory that grows
+// with the received bytes, and fragments are merged. Samples of data ports pass without a copy: only their number of bytes is allocated.
+// Independent of the ORB. One thread at a time.
 #pragma once
 
 #include <atomic>

@@ -157,9 +157,9 @@ class GuardedConnection final : public omni::giopConnection {
     const int got = gate_.receive(static_cast<std::byte*>(to), size, read);
     last_use_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed);  // a hint, it orders nothing
     if (got > 0) return got;
-    if (!gate_.problem().empty() && !std::exchange(is_complained_, true)) complain(to_text(visitor_) + " sent away: " + gate_.problem());
+    if (!gate_.problem().empty() && !std::exchange(is_complained_, true)) complain(to_text(visitor_) + " rejected: " + gate_.problem());
     if (gate_.messages() == 0 && gate_.problem().empty() && Clock::now() - born_ >= first_message_time) {
-      complain(to_text(visitor_) + " sent away: no whole message in " + std::to_string(first_message_time.count()) + " s");
+      complain(to_text(visitor_) + " rejected: no whole message in " + std::to_string(first_message_time.count()) + " s");
     }
     return -1;
   }
@@ -172,7 +172,7 @@ class GuardedConnection final : public omni::giopConnection {
   // Over TLS the handshake.
   _CORBA_Boolean gatekeeperCheckSpecific(omni::giopStrand* strand) override {
     if (inner_->gatekeeperCheckSpecific(strand)) return true;
-    complain(to_text(visitor_) + " sent away: no certificate of corba.tls.authority");
+    complain(to_text(visitor_) + " rejected: no certificate of corba.tls.authority");
     return false;
   }
   void setSelectable(int now, _CORBA_Boolean has_more) override { inner_->setSelectable(now, has_more || gate_.has_more()); }
@@ -338,7 +338,7 @@ class GuardedEndpoint final : public omni::giopEndpoint {
       gone = to_text(oldest->visitor());
       oldest->send_away();
     }
-    complain(gone + " sent away: too many connections, and it has been silent longest");
+    complain(gone + " rejected: too many connections, and this one was silent longest");
   }
 
   // The ORB forgets a connection before it goes; nothing keeps it from going between the socket's news and this call but the count.

@@ -1,6 +1,6 @@
-// The doors of the ORB: every end point that it listens on is one of omniORB's own, looked after by this transport. Who comes in is asked
-// for the account; what comes in passes a GiopGate; who says nothing is sent away. An end point "giop:guarded:tcp:HOST:PORT" is
-// "giop:tcp:HOST:PORT" with a guard, and is published as that. Any thread.
+// Access control of the ORB: every end point is one of omniORB's own, guarded by this transport. It checks the account of a caller, passes
+// received data through a GiopGate, and closes silent connections. An end point "giop:guarded:tcp:HOST:PORT" is "giop:tcp:HOST:PORT" with a
+// guard, and is published as that. Any thread.
 #pragma once
 
 #include <string>

@@ -68,7 +68,7 @@ std::string naming_url(std::string_view address) {
 
 base::Result<CosNaming::NamingContext_var> root_context(CORBA::ORB_ptr orb, std::string_view address, std::chrono::milliseconds timeout) {
   const auto complain = [&](const std::string& why) {
-    return base::Error{"naming service " + base::in_quotes(base::trim(address)) + ": " + why};
+    return base::Error{"name server " + base::in_quotes(base::trim(address)) + ": " + why};
   };
   try {
     CORBA::Object_var object = orb->string_to_object(naming_url(address).c_str());

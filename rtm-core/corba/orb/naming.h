@@ -1,4 +1,4 @@
-// Names in CORBA naming services: the text form, look-ups with a time-out, and Bindings, which keeps objects bound. Any thread.
+// Names in CORBA name servers: their text form, look-ups with a timeout, and Bindings, which keeps objects bound. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

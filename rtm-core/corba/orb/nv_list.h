@@ -1,4 +1,4 @@
-// Name-value lists of the wire as texts, and single entries. Any thread; the lists are values.
+// Converts name-value lists of the wire to texts, and reads single entries. Any thread; the lists are values.
 #pragma once
 
 #include <optional>

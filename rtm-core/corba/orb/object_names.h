@@ -1,4 +1,4 @@
-// What the objects of this process belong to, for messages about the calls that come in: "component Laser0", "port Arm0:control". Any
+// Names of the owners of objects of this process, for messages about received calls: "component Laser0", "port Arm0:control". Any
 // thread.
 #pragma once
 

@@ -326,7 +326,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
                 base::join(result->addresses(), ", "));
     }
     if (doors.has_tls) {
-      base::log(base::Level::info, "orb", "open over TLS to whoever has a certificate of {}", base::in_quotes(settings.tls.authority));
+      base::log(base::Level::info, "orb", "open over TLS to every owner of a certificate of {}", base::in_quotes(settings.tls.authority));
     }
     begin_farewells();
     begin_port_watch();

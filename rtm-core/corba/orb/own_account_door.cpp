@@ -181,7 +181,7 @@ void tell_refused(std::optional<uid_t> account) {
     return;
   }
   last = now;
-  std::string line = "naming service: " + (account ? "account " + std::to_string(*account) : std::string("another host or account")) +
+  std::string line = "name server: " + (account ? "account " + std::to_string(*account) : std::string("another host or account")) +
                      " refused: it serves account " + std::to_string(geteuid()) + " alone";
   if (const auto missed = std::exchange(others, 0); missed > 0) line += "; so were " + std::to_string(missed) + " others";
   line += '\n';

@@ -1,4 +1,4 @@
-// The return codes of core and of the wire, one as the other. Any thread.
+// Converts return codes between core and the wire. Any thread.
 #pragma once
 
 #include "core/return_code.h"

@@ -1,5 +1,5 @@
-// TLS between hosts, by omniORB's own transport (Debian's libomniorb4-2 has it). Both sides show a certificate of the same authority:
-// whoever has one comes in, nobody else does. Names of hosts in certificates are not looked at. A value; any thread.
+// TLS between machines, by omniORB's own transport (in Debian's libomniorb4-2). Both sides need a certificate of the same authority; all
+// others are rejected. Host names in certificates are not checked. A value; any thread.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where the object of a data port stands in a ConnectorProfile. Any thread.
+// The keys of a ConnectorProfile that contain the object of a data port. Any thread.
 #pragma once
 
 #include <optional>

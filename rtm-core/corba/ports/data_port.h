@@ -1,4 +1,4 @@
-// The connections of a data port, of either side: what the facade knows about engines. Any thread; one reader at a time.
+// The connections of a data port, of either side: the interface of the engines for the facade. Any thread; one reader at a time.
 #pragma once
 
 #include <chrono>

@@ -107,7 +107,7 @@ bool connect_again(const RTC::ConnectorProfile& profile) {
     // PRECONDITION_NOT_MET: somebody was faster.
     return code == RTC::RTC_OK || code == RTC::PRECONDITION_NOT_MET;
   } catch (const CORBA::OBJECT_NOT_EXIST&) {
-    base::log(base::Level::info, "port", "connection {} does not come back: a port is gone", base::in_quotes(name));
+    base::log(base::Level::info, "port", "connection {} is not restored: a port was deleted", base::in_quotes(name));
     return true;
   } catch (const CORBA::Exception&) {
     return false;

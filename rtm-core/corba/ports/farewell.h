@@ -1,4 +1,5 @@
-// Tells other ports that a connection ends, without waiting long for one that hangs. Any thread; no lock is held while it calls.
+// Disconnect notices: notifies other ports that a connection ended, with a short timeout for hanging ones. Any thread; no lock is held
+// while it calls.
 //
 // Who disconnects waits a second for a process that hangs, whatever number of connections go there; the process is told in the background
 // when it wakes within the usual time-out. One that was dropped because it hung is told when it wakes within ten minutes, so that it can be

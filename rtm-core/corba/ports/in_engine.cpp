@@ -147,7 +147,7 @@ rt::PortStatus InConnection::receive(rt::Sample sample) {
 rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most) {
   bool has_leftovers = false;
   if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order, &has_leftovers)) {
-    base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are refused", base::in_quotes(plan_.name),
+    base::log(base::Level::warn, "data port", "connection {}: {} bytes rejected: not a valid {}", base::in_quotes(plan_.name),
               sample.block->size(), ops_.type_id);
     return rt::PortStatus::error;
   }
@@ -472,7 +472,7 @@ rt::PortStatus InEngine::deliver(const rt::Sample& received, InConnection& conne
   if (sample->value) {
     ops.assign(value, sample->value.get());
   } else if (!decode_safely(ops, value, sample->block->octets(), sample->order)) {
-    base::log(base::Level::warn, "data port", "connection {}: {} octets that are no {} are dropped", base::in_quotes(connection.name()),
+    base::log(base::Level::warn, "data port", "connection {}: {} bytes dropped: not a valid {}", base::in_quotes(connection.name()),
               sample->block->size(), ops.type_id);
     mailbox_->forget_last(connection.channel());
     return rt::PortStatus::error;

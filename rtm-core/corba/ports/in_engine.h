@@ -1,4 +1,4 @@
-// The connections of one InPort: what comes in over any transport waits here until it is read. Any thread; one reader at a time.
+// The connections of one InPort: samples of any transport wait here until they are read. Any thread; one reader at a time.
 #pragma once
 
 #include <chrono>

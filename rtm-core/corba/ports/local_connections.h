@@ -1,4 +1,4 @@
-// Finds the other end of a connection inside this process, by the connection's id: what the transport `direct` is made of. Any thread.
+// Finds the other end of a connection inside this process, by the ID of the connection, for the transport `direct`. Any thread.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// How a port hears, on any thread, that the other end of a connection is gone. Any thread.
+// Notifies a port, on any thread, that the other end of a connection does not exist any more. Any thread.
 #pragma once
 
 #include <functional>

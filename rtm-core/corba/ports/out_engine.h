@@ -1,4 +1,4 @@
-// The connections of one OutPort: what is written goes to each of them by its own transport, policy and pace. Any thread.
+// The connections of one OutPort: sends each written value to each connection by its transport, policy and pace. Any thread.
 #pragma once
 
 #include <functional>

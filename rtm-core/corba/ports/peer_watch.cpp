@@ -121,7 +121,7 @@ class Rounds {
     }
     suspects_ = std::move(suspects);
     for (const auto& key : dead) {
-      base::log(base::Level::warn, "port", "connection {}: its other end is gone", key.second);
+      base::log(base::Level::warn, "port", "connection {}: the other port does not exist any more", key.second);
       suspects_.erase(key);
       try {
         connections.at(key).loss->lost(key.second);

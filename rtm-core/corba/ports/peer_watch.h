@@ -1,6 +1,6 @@
-// Finds the ports whose process has died though nobody sends them anything, so that no connection to them stays listed. A thread asks one
-// port of each other process now and then and sleeps while there is no connection to another process; it has no lock when it calls. A
-// process that hangs is not dead. Any thread.
+// Finds ports whose process has exited, even if no sample is sent to them, so that their connections are removed. A thread calls one port
+// of each other process from time to time, without a lock, and sleeps while there is no connection to another process. A hanging process
+// has not exited. Any thread.
 //
 // It asks every corba.peer_check_interval seconds (2; 0: never). Connections of processes that are gone are dropped, with their listeners;
 // a process that only hangs keeps its connections until a call to it has taken its time-out. Profiles of ports are answered without asking

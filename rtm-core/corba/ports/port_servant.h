@@ -1,5 +1,5 @@
-// The PortService object: connections between ports, made and undone along the daisy chain of the ConnectorProfile's ports.
-// Any thread. No lock is held while another port, a hook or the log is called; every call to another port has a time-out.
+// The PortService object: makes and ends connections along the daisy chain of the ports of a ConnectorProfile. Any thread. No lock is held
+// while another port, a hook or the log is called; every call to another port has a timeout.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// How long the samples may be that come for an object of this process: a port says so for its servant, by the type of its data, and the
-// guards of the end points ask (corba/orb/giop_gate.h). Any thread.
+// Maximum length of samples for an object of this process: a port sets it for its servant, by the type of its data, and the guards of the
+// end points read it (corba/orb/giop_gate.h). Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

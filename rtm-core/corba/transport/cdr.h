@@ -1,5 +1,5 @@
-// Values to octets and back: the plain CDR of data ports, no header, aligned from the first octet, or what the type's codec makes of them.
-// Any thread.
+// Encodes and decodes values: the plain CDR of data ports, without a header, aligned from the first byte, or the encoding of the type's
+// codec. Any thread.
 #pragma once
 
 #include <memory>

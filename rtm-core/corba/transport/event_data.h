@@ -1,4 +1,4 @@
-// One sample as listeners see it: decoded, encoded and copied only when somebody asks, and changeable. One thread at a time.
+// One sample as listeners see it: decoded, encoded and copied only on demand, and changeable. One thread at a time.
 #pragma once
 
 #include <memory>

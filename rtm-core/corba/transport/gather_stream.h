@@ -1,4 +1,4 @@
-// An encoder that leaves long arrays where they are and only remembers where that is. One thread at a time.
+// A CDR encoder that does not copy long arrays, and stores their addresses instead. One thread at a time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

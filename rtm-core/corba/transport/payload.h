@@ -1,5 +1,5 @@
-// One value on its way out, encoded at most once per byte order and copied at most once, whatever number of connections it is for.
-// One thread at a time.
+// One value to send, encoded at most once per byte order and copied at most once, for any number of connections. One thread at a
+// time.
 #pragma once
 
 #include <cstdint>

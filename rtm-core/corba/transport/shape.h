@@ -1,5 +1,5 @@
-// Whether octets can be a value of an IDL type, told without building the value: what is cut short, counts more than it brings, or holds an
-// enumerator that is none is refused before anybody reads it. Immutable, so any thread.
+// Checks whether bytes are a valid value of an IDL type, without building the value: truncated data, false counts and invalid enumerators
+// are rejected before the value is read. Immutable, so any thread.
 //
 // Payloads of data ports have no anys. A payload that cannot be a value of the port's type is answered with PORT_ERROR.
 #pragma once

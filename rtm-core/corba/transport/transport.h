@@ -83,7 +83,7 @@ struct Line {
 CORBA::ORB_var orb();
 
 // What the log says of a connection over which nothing more comes, before the reason.
-inline constexpr std::string_view lost_mark = ": nothing more comes over it: ";
+inline constexpr std::string_view lost_mark = ": connection lost: ";
 
 // What an exception of a call says about the connection; logs it.
 rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line);

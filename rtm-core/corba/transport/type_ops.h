@@ -1,5 +1,5 @@
-// What a data port must know about its type, as a table of functions, so that everything about ports is compiled once.
-// Any thread.
+// The operations of a data type as a table of functions, so that the code of ports is compiled once. Any
+// thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

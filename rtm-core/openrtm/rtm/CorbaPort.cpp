@@ -181,7 +181,7 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
     if (!reference) reference = value_of(short_key(consumer.type, consumer.instance));
     if (!reference) {
       if (!is_strict) continue;
-      RTC_WARN_STR("connection refused: nobody provides " << consumer.type << " " << consumer.instance);
+      RTC_WARN_STR("connection rejected: no port provides " << consumer.type << " " << consumer.instance);
       return RTC::RTC_ERROR;
     }
     if (means_unbound(*reference)) continue;

@@ -1,5 +1,5 @@
-// A search for faults, events, starts and parameters that break what a plan expects. Random cases, and changed ones of those that reached
-// something new; the cases of a seed are always the same, however many are tried at a time. Called from one thread.
+// Searches for faults, events, starts and parameters that violate a plan. Cases are random, or changes of cases that reached something new.
+// A seed always gives the same cases, for any number of parallel runs. Called from one thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,5 +1,5 @@
-// One thing that a hunt tries: a row of the plan with faults and events, and how such things are made, changed and written down. Values;
-// one thread at a time.
+// One case of a hunt: a row of the plan with faults and events; how cases are created, changed and written. Values; one thread at a
+// time.
 #pragma once
 
 #include <cstdint>

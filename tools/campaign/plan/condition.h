@@ -1,4 +1,4 @@
-// A statement about a running system that is true or false between two steps. Values; any thread.
+// A condition on a running system that is true or false between two steps. Values; any thread.
 #pragma once
 
 #include <optional>

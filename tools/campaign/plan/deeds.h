@@ -1,5 +1,5 @@
-// What a plan does to a run: events, which anybody could do to a running system, and faults, which break something for a while. Values; any
-// thread.
+// The actions of a plan in a run: events, which change the system as a user could, and faults, which break a part of it for a while.
+// Values; any thread.
 #pragma once
 
 #include <optional>

@@ -22,25 +22,25 @@ constexpr std::array plan_keys = {
     Key{"duration", Form::positive, {}, true, "Simulated seconds of each run"},
     Key{"expect", Form::any, {}, false, "A file with expectations as of rtse run, or the list itself"},
     Key{"seed", Form::count, {}, false, "Seed of the world's noise and of faults in the first repetition; default: 1"},
-    Key{"repeat", Form::count, {}, false, "So many runs of each combination, each with the next seed; default: 1"},
+    Key{"repeat", Form::count, {}, false, "Number of runs of each combination, each with the next seed; default: 1"},
     Key{"vary", Form::named, "vary", false, "Parameter paths and the values they take"},
     Key{"scatter", Form::maps, "scatter", false, "Models that are placed at random without touching anything"},
-    Key{"samples", Form::count, {}, false, "How many samples are drawn of the ranges (uniform, normal, log); default: 10"},
-    Key{"sampling", Form::words, "random latin sobol", false, "How samples are drawn; default: random"},
+    Key{"samples", Form::count, {}, false, "Number of samples of the ranges (uniform, normal, log); default: 10"},
+    Key{"sampling", Form::words, "random latin sobol", false, "Sampling method; default: random"},
     Key{"sampling_seed", Form::count, {}, false, "Seed of the sampling and of scatter; default: 1"},
-    Key{"measure", Form::list, "measure", false, "Numbers that are taken from each run"},
-    Key{"events", Form::maps, "event", false, "What happens at a simulated time or on a condition"},
-    Key{"faults", Form::maps, "fault", false, "What breaks, and when"},
-    Key{"never", Form::maps, "condition", false, "What must at no moment be true"},
-    Key{"eventually", Form::maps, "condition", false, "What must become true"},
-    Key{"hunt", Form::map, "hunt", false, "What a hunt may try"},
-    Key{"properties", Form::texts, {}, false, "INSTANCE:KEY=VALUE, properties that components are created with"},
+    Key{"measure", Form::list, "measure", false, "Numbers to take from each run"},
+    Key{"events", Form::maps, "event", false, "Actions at a simulated time or on a condition"},
+    Key{"faults", Form::maps, "fault", false, "Faults to inject, and their times"},
+    Key{"never", Form::maps, "condition", false, "Conditions that must never be true"},
+    Key{"eventually", Form::maps, "condition", false, "Conditions that must become true"},
+    Key{"hunt", Form::map, "hunt", false, "Faults and events that a hunt can try"},
+    Key{"properties", Form::texts, {}, false, "Properties of components at their creation: INSTANCE:KEY=VALUE"},
     Key{"module_path", Form::texts, {}, false, "Folders with modules of components"},
     Key{"resource_path", Form::texts, {}, false, "Folders with models"},
-    Key{"one_process_each", Form::flag, {}, false, "A process for every component instead of one for all"},
-    Key{"hang_timeout", Form::positive, {}, false, "Seconds of real time that one tick may take; default: 30"},
-    Key{"invariants", Form::flag, {}, false, "Whether no port may send a NaN; default: false, and true in a hunt"},
-    Key{"pictures", Form::flag, {}, false, "Pictures of runs that fail; default: true"},
+    Key{"one_process_each", Form::flag, {}, false, "Start one process per component; default: one for all"},
+    Key{"hang_timeout", Form::positive, {}, false, "Timeout of one tick [wall-clock s]; default: 30"},
+    Key{"invariants", Form::flag, {}, false, "Fail if a port sends a NaN; default: false, and true in a hunt"},
+    Key{"pictures", Form::flag, {}, false, "Save an image of failed runs; default: true"},
 };
 
 constexpr std::array vary_keys = {
@@ -56,19 +56,19 @@ constexpr std::array vary_keys = {
 
 constexpr std::array scatter_keys = {
     Key{"models", Form::texts, {}, true, "Models of the world"},
-    Key{"region", Form::region, {}, true, "Where their middles may lie [m]"},
+    Key{"region", Form::region, {}, true, "Region for their centres [m]"},
     Key{"clearance", Form::number, {}, false, "Least distance between them and all other models [m]; default: 0.05"},
-    Key{"turn", Form::flag, {}, false, "Whether they get a random yaw too; default: true"},
+    Key{"turn", Form::flag, {}, false, "Also set a random yaw; default: true"},
 };
 
 constexpr std::array measure_keys = {
-    Key{"path_length", Form::map, "of_model", false, "Metres that a model has gone"},
+    Key{"path_length", Form::map, "of_model", false, "Path length of a model [m]"},
     Key{"time_to", Form::map, "time_to", false, "Seconds until a model is in a region"},
     Key{"clearance", Form::map, "clearance", false,
         "Smallest distance between a model and others [m], seen from above, ten times a second"},
-    Key{"contacts", Form::map, "of_model", false, "How often a model began to touch another one than the ground"},
-    Key{"value", Form::map, "value", false, "Of a member of what a port sends"},
-    Key{"wall_time", Form::map, "named_only", false, "Seconds of real time of the run"},
+    Key{"contacts", Form::map, "of_model", false, "Number of times that a model started to touch something other than the ground"},
+    Key{"value", Form::map, "value", false, "Member of the samples of a port"},
+    Key{"wall_time", Form::map, "named_only", false, "Duration of the run [wall-clock s]"},
 };
 
 constexpr std::array of_model_keys = {
@@ -138,20 +138,20 @@ constexpr std::array pose_keys = {
 };
 constexpr std::array set_keys = {
     Key{"component", Form::text, {}, true, "Component of the system"},
-    Key{"parameter", Form::text, {}, true, "Of its active configuration set"},
-    Key{"value", Form::text, {}, true, "What it becomes"},
+    Key{"parameter", Form::text, {}, true, "Parameter of its active configuration set"},
+    Key{"value", Form::text, {}, true, "New value"},
 };
 
 constexpr std::array fault_keys = {
     Key{"at", Form::number, {}, true, "Simulated time [s]"},
-    Key{"for", Form::positive, {}, false, "Simulated seconds; default: to the end"},
+    Key{"for", Form::positive, {}, false, "Duration [simulated s]; default: to the end"},
     Key{"sensor", Form::text, {}, false, "iface of a sensor; with is"},
     Key{"actuator", Form::text, {}, false, "iface of a drive; with is"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system; with is"},
     Key{"component", Form::text, {}, false, "Component of the system; with is"},
-    Key{"naming", Form::words, "gone", false, "The naming service does not answer"},
+    Key{"naming", Form::words, "gone", false, "The name server does not respond"},
     Key{"is", Form::words, "off stuck bias noise missing latency dropout weak drop delay duplicate reorder error exception slow hang kill",
-        false, "What happens to it"},
+        false, "Kind of the fault"},
     Key{"amount",
         Form::number,
         {},
@@ -161,18 +161,18 @@ constexpr std::array fault_keys = {
 };
 
 constexpr std::array hunt_keys = {
-    Key{"faults", Form::maps, "hunt_fault", false, "Faults that it may ask for; default: any that the system allows"},
-    Key{"events", Form::maps, "event", false, "Events that it may ask for, at any time"},
-    Key{"most", Form::count, {}, false, "Faults and events of one run; default: 3"},
-    Key{"seed", Form::count, {}, false, "Of the hunt itself; default: 1"},
+    Key{"faults", Form::maps, "hunt_fault", false, "Faults to try; default: all that the system allows"},
+    Key{"events", Form::maps, "event", false, "Events to try, at any time"},
+    Key{"most", Form::count, {}, false, "Maximum number of faults and events of one run; default: 3"},
+    Key{"seed", Form::count, {}, false, "Seed of the hunt; default: 1"},
 };
 constexpr std::array hunt_fault_keys = {
     Key{"sensor", Form::text, {}, false, "iface of a sensor"},
     Key{"actuator", Form::text, {}, false, "iface of a drive"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system"},
     Key{"component", Form::text, {}, false, "Component of the system"},
-    Key{"naming", Form::words, "gone", false, "The naming service does not answer"},
-    Key{"is", Form::texts, {}, false, "Only these; default: all that fit"},
+    Key{"naming", Form::words, "gone", false, "The name server does not respond"},
+    Key{"is", Form::texts, {}, false, "Kinds of faults to try; default: all that fit"},
 };
 
 constexpr std::array shapes = {

@@ -1,5 +1,5 @@
-// What may stand in a plan, as a table: each kind of map with its keys, and what a key's value must be. The reader checks a file against
-// it, and the published JSON Schema is made from it, so both say the same. Values; any thread.
+// The grammar of plans as a table: each kind of map with its keys, and the form of their values. The reader checks files against it, and
+// the published JSON Schema is generated from it. Values; any thread.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

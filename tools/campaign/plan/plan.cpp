@@ -126,7 +126,7 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
     if (std::ranges::find(result_columns, measure.name) != result_columns.end())
       fail_at(entry, "the results have a column " + base::in_quotes(measure.name) + " already; name the measure otherwise with as");
     if (measure.kind == Measure::Kind::clearance && std::ranges::find(measure.to, measure.model) != measure.to.end())
-      fail_at(entry, "clearance of " + base::in_quotes(measure.model) + " to itself is none");
+      fail_at(entry, "cannot measure the clearance of " + base::in_quotes(measure.model) + " to itself");
     if (!names.insert(measure.name).second)
       fail_at(entry, "there are two measures " + base::in_quotes(measure.name) + "; name one with as");
     measures.push_back(measure);

@@ -1,5 +1,5 @@
-// A plan of a campaign: what is run, what varies, what is measured, what happens and what breaks. docs/campaigns.md has the format. Values;
-// any thread.
+// A plan of a campaign: system, world, variation, measures, events and faults. docs/campaign-plan.md has the format. Values; any
+// thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// SQLite behind one door: a file, statements, values. Not for several threads at a time.
+// A thin interface to SQLite: a file, statements, values. One thread at a time.
 #pragma once
 
 #include <chrono>

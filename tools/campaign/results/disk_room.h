@@ -1,4 +1,4 @@
-// Whether the disks that a campaign writes to have room. A row that fails for want of it says nothing about its system. Any thread.
+// Checks that the disks of a campaign have room. A row that fails on a full disk says nothing about its system. Any thread.
 #pragma once
 
 #include <cstdint>

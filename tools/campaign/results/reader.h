@@ -1,4 +1,4 @@
-// What a results file holds, read for a report. Values; any thread.
+// Reads a results file for a report. Values; any thread.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Numbers about numbers. Any thread.
+// Statistics of measures. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The results of a campaign: one SQLite file. Its schema is written down in docs/campaigns.md; what has been stored survives the end of the
-// process at any moment, also by SIGKILL. One thread at a time.
+// The results of a campaign in one SQLite file (docs/campaigns-on-a-cluster.md has the schema). Stored results survive the end of the
+// process at any time, also by SIGKILL. One thread at a time.
 #pragma once
 
 #include <map>

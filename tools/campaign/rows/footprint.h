@@ -1,4 +1,4 @@
-// What a model covers of the ground, seen from above: convex polygons, and the distance between them. Values; any thread.
+// The footprint of a model on the ground, seen from above: convex polygons, and the distance between them. Values; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// The models that a world's file includes: where they are, and what stands in them. Copies of some can stand for changed ones. Reading
-// keeps what it has read; one thread at a time.
+// The models that a world file includes: their files and contents. Changed copies can replace them. Contents are cached; one thread at a
+// time.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The shapes of a model that collide, as corners in its frame. Planes, height fields and meshes are left out. Any thread.
+// The colliding shapes of a model, as corners in its frame. Planes, height fields and meshes are left out. Any thread.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// The rows of a plan: each a seed and the values of what varies. They are made one by one from their number, so a million takes no room.
-// One thread at a time.
+// The rows of a plan: each has a seed and the values of the varied parameters. A row is computed from its number, so a million rows need no
+// memory. One thread at a time.
 #pragma once
 
 #include <cstdint>

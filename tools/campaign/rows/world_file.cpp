@@ -277,7 +277,7 @@ Result<void> WorldFile::State::set_light(const std::string& path, const std::vec
                  "; lights: " + (names.empty() ? "none" : base::join(names, ", "))};
   const auto what = words.size() == 3 ? words[2] : "";
   if (what != "intensity" && what != "diffuse" && what != "direction")
-    return Error{path + ": of a light intensity, diffuse and direction can be set"};
+    return Error{path + ": a light supports intensity, diffuse and direction only"};
   const auto count = what == "intensity" ? 1U : what == "direction" ? 3U : base::split_list(value, ' ').size() == 3 ? 3U : 4U;
   const auto given = numbers(path, value, count);
   if (!given) return given.error();

@@ -1,6 +1,6 @@
-// A world as its files say it, of which single values can be changed by path. Only what a plan may vary is understood here; what the world
-// means is the simulator's business. Models that a world includes are changed in copies, so the files of others stay as they are. One
-// thread at a time; reading is const.
+// A world file in which single values can be changed by a path. Only values that a plan can vary are understood
+// here; the simulator interprets the world. Included models are changed in copies. One thread at a time; reading is
+// const.
 //
 //   model/NAME/pose          x y z roll pitch yaw; also .../pose/x, y, z, roll, pitch, yaw   [m, rad]
 //   model/NAME/mass          of all links together [kg]; the inertia goes with it

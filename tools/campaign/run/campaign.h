@@ -1,5 +1,5 @@
-// A plan with all that it speaks of, read and found good: every file is there, every path leads to a parameter, every program can be
-// started. So what is wrong with a plan is said before the first run. Constant after prepare(); any thread.
+// A plan that was read and checked with everything that it refers to: files exist, paths name parameters, programs can be started. So
+// errors of a plan are reported before the first run. Constant after prepare(); any thread.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Whether what a plan does to its runs, or lets a hunt do, speaks of things that are there: components, parameters, connections, models,
-// ifaces. Said before the first run, else every row would fail with it. Any thread.
+// Checks that the actions of a plan or hunt refer to existing components, parameters, connections, models and ifaces. Errors are reported
+// before the first run, since every row would fail. Any thread.
 #pragma once
 
 #include <map>

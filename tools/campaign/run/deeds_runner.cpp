@@ -177,7 +177,7 @@ Result<void> DeedsRunner::end_fault(editor::RunScene& scene, std::size_t place) 
     if (killed_.erase(place) == 0) return {};
     if (naming_gone_ == 0) return restart(scene, fault.target);
     // Nobody would find it, nor it the others.
-    note("fault " + fault.text() + ": its host starts again when the naming service is back");
+    note("fault " + fault.text() + ": its host restarts when the name server responds again");
     late_.push_back(fault.target);
     return {};
   }
@@ -264,9 +264,9 @@ std::vector<editor::Verdict> DeedsRunner::verdicts() const {
     const auto done = fulfilled_.find(i);
     const double limit = condition.within_s.value_or(duration_s_);
     std::string problem;
-    if (done == fulfilled_.end()) problem = "it never was";
+    if (done == fulfilled_.end()) problem = "never became true";
     if (done != fulfilled_.end() && done->second > limit + step_s_ / 2)
-      problem = "it was so only at " + base::format_number(std::round(done->second * 1e6) / 1e6) + " s";
+      problem = "became true at t = " + base::format_number(std::round(done->second * 1e6) / 1e6) + " s, too late";
     verdicts.push_back({"eventually: " + condition.text, problem});
   }
   return verdicts;

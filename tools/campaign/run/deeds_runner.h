@@ -1,5 +1,5 @@
-// Carries out the events and faults of a run at their steps, and looks whether conditions are true. One thread at a time; see run_script.h
-// of the system editor.
+// Executes the events and faults of a run at their steps, and evaluates conditions. One thread at a time; see
+// run/run_script.h.
 #pragma once
 
 #include <cstdint>

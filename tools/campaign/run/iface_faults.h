@@ -1,5 +1,5 @@
-// Which faults the simulator can give to the sensors and drives of a plan's world: it is asked, since it alone knows what they are. One
-// thread at a time.
+// The faults that the simulator supports for the sensors and drives of the plan's world, as reported by the simulator. One thread at a
+// time.
 #pragma once
 
 #include <vector>

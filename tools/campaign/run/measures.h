@@ -1,4 +1,4 @@
-// The numbers that a plan takes from a run that has ended. Any thread.
+// Computes the measures of a plan from a finished run. Any thread.
 #pragma once
 
 #include <map>

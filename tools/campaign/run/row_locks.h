@@ -1,5 +1,5 @@
-// Which rows of a folder for kept files are being run, among all processes that sweep into it: the folders of their runs have the same
-// names. A process that is killed holds nothing. Any thread.
+// Locks of rows that are being run, among all processes that sweep into the same folder. A killed process holds no lock. Any
+// thread.
 #pragma once
 
 #include <cstddef>

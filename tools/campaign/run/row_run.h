@@ -1,4 +1,4 @@
-// One row, run: a system of its own, as rtse run starts it. Any thread; each run belongs to one.
+// Runs one row: a system of its own, as rtse run starts it. Any thread; each run belongs to one.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,4 +1,4 @@
-// What a row does to its run, and takes from it. One thread at a time; see run_script.h of the system editor.
+// The hooks of a row in its run. One thread at a time; see run/run_script.h.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// The models that events of a plan spawn: where they are. Any thread.
+// The files of the models that events of a plan spawn. Any thread.
 #pragma once
 
 #include <set>

@@ -1,4 +1,4 @@
-// Whether what a plan measures and expects is there: models, components, ports. Any thread.
+// Checks that the models, components and ports that a plan measures and expects exist. Any thread.
 #pragma once
 
 #include <map>

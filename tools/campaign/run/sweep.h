@@ -1,4 +1,4 @@
-// All rows of a campaign, run by so many workers at a time, their results stored. Called from one thread.
+// Runs all rows of a campaign with N parallel workers and stores the results. Called from one thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

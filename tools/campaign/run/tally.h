@@ -1,5 +1,5 @@
-// The rows that a sweep has to run, and what has become of them: in the results file, and in numbers. Every engine has one. Only take(),
-// keep() and is_stopped() may be called from several threads.
+// The rows of a sweep that have to run, and their results: in the results file, and as counters. Every engine has one. Only take(), keep()
+// and is_stopped() can be called from several threads.
 #pragma once
 
 #include <chrono>

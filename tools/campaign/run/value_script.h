@@ -1,5 +1,5 @@
-// Whether the components of a system take the values that a plan has for their parameters. Only they know the types, so a run is begun for
-// it, and given up before its first step. One thread at a time; see run_script.h of the system editor.
+// Checks that the components of a system accept the parameter values of a plan. Only components know the types, so a run is started for it
+// and ended before its first step. One thread at a time; see run/run_script.h.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What has come out of a row, as one line of JSON: how a task on another machine tells it. Numbers come back as they were. Any thread.
+// The result of a row as one line of JSON, as written by a task on another machine. Numbers keep their exact value. Any thread.
 #pragma once
 
 #include <optional>

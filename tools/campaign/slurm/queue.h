@@ -1,5 +1,5 @@
-// Slurm's queue, by the commands that people type: sbatch, squeue, scancel. Jobs are known by their name, so a caller that was killed finds
-// them again. Every call has a time-out. One thread at a time.
+// The queue of Slurm, by the commands sbatch, squeue, scancel. Jobs are identified by name, so a restarted caller finds them. Every call
+// has a timeout. One thread at a time.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// A sweep whose rows run as job arrays of Slurm. The caller submits tasks of so many rows each, gathers what they write into the folder
-// that all machines share, and alone writes the results file. What tasks have found is not lost when the caller is killed, nor when they
-// are. One thread at a time.
+// A sweep whose rows run as job arrays of Slurm. The caller submits tasks of N rows, reads their results from the shared
+// folder, and alone writes the results file. Results of tasks survive a crash of the caller or of a task. One thread at a
+// time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

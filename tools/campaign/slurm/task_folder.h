@@ -1,5 +1,5 @@
-// The folder that the caller of a sweep shares with its tasks on other machines. Every file has one writer, and none is locked: that is all
-// that a network file system must be good for. One thread at a time.
+// The folder that the caller of a sweep shares with its tasks on other machines. Every file has one writer, and no file is locked, so any
+// network file system is sufficient. One thread at a time.
 //
 //   name            of the jobs in the queue, chosen once
 //   key             of the campaign: tasks with other programs, worlds or plans refuse

@@ -1,5 +1,5 @@
-// An iface of the simulator as channels of ROS 2 messages: which channels it has, and what a sample says on each. No thread of its own; one
-// thread at a time.
+// Converts an iface of the simulator to channels of ROS 2 messages. No thread of its own; one thread at a
+// time.
 #pragma once
 
 #include <functional>

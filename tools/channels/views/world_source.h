@@ -6,7 +6,7 @@
 //   /tf, /tf_static                             tf2_msgs/msg/TFMessage: models in `world`, links and sensors on their models
 //   /sim/shapes                                 visualization_msgs/msg/MarkerArray: what the links look like
 //   /sim/joints/MODEL                           sensor_msgs/msg/JointState
-//   /sim/TYPE/NAME, "::" in names as "/"        LaserScan, Odometry, Imu, ... (docs/recordings.md has the table)
+//   /sim/TYPE/NAME, "::" in names as "/"        LaserScan, Odometry, Imu, ... (docs/recording-format.md has the table)
 //
 // With takes_part it is a participant of the last phase: in lock step nothing is lost and time waits until all sinks have room, else it is
 // woken when something is due and time goes on. It has a thread of its own; any thread may call it.

@@ -1,4 +1,4 @@
-// Little-endian numbers, texts and records of MCAP as octets, and back. Values; any thread.
+// Encodes and decodes little-endian numbers, texts and records of MCAP. Values; any thread.
 #pragma once
 
 #include <cstdint>

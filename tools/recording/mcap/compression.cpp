@@ -25,7 +25,7 @@ void make_room(std::string& out, std::size_t used, std::uint64_t size) {
   out.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, std::max(first_room, used * 2))));
 }
 
-base::Error wrong_size(std::uint64_t size) { return {"does not decompress to the " + std::to_string(size) + " octets that it announces"}; }
+base::Error wrong_size(std::uint64_t size) { return {"does not decompress to the " + std::to_string(size) + " bytes that it announces"}; }
 
 base::Result<void> decompress_zstd(std::string_view octets, std::uint64_t size, std::string& out) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);

@@ -1,4 +1,4 @@
-// Octets of chunks, compressed and back, and their CRC-32 (IEEE 802.3). An object belongs to one thread at a time.
+// Compresses and decompresses chunks, and computes their CRC-32 (IEEE 802.3). An object belongs to one thread at a time.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A file by its descriptor: written at its end, read anywhere. Errors name the path. One thread at a time.
+// A file with writes at its end and reads anywhere. Errors name the path. One thread at a time.
 #pragma once
 
 #include <cstdint>

@@ -237,7 +237,7 @@ base::Result<std::vector<Metadata>> Reader::metadata() {
     total += state_->index.summary.metadata[n].length;
     if (total > most_descriptions)
       return base::Error{base::in_quotes(state_->file.path()) + ": metadata of more than " + std::to_string(most_descriptions) +
-                         " octets are not read"};
+                         " bytes are not read"};
     auto one = metadata(n);
     if (!one) return one.error();
     all.push_back(std::move(*one));

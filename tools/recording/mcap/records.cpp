@@ -45,16 +45,16 @@ base::Result<void> read_chunk(const File& file, std::uint64_t offset, std::uint6
   const auto chunk = take_chunk(in.rest());
   // Where the summary says that a chunk is, its own CRC is worth more than the octets before it.
   const bool is_sure = (opcode == Opcode::chunk && size == in.rest().size()) || (chunk && chunk->crc != 0);
-  if (!chunk || !is_sure) return at(file, offset, "expected a chunk of " + std::to_string(length) + " octets");
+  if (!chunk || !is_sure) return at(file, offset, "expected a chunk of " + std::to_string(length) + " bytes");
   if (chunk->uncompressed > Reader::largest_chunk) {
     return at(file, offset,
-              "the chunk announces " + std::to_string(chunk->uncompressed) + " octets; at most " + std::to_string(Reader::largest_chunk) +
+              "the chunk announces " + std::to_string(chunk->uncompressed) + " bytes; at most " + std::to_string(Reader::largest_chunk) +
                   " are read");
   }
   if (const auto done = decompress(chunk->compression, chunk->records, chunk->uncompressed, records); !done) {
     return at(file, offset, "the chunk " + done.error().message);
   }
-  if (chunk->crc != 0 && crc32(0, records) != chunk->crc) return at(file, offset, "the chunk's octets do not match their CRC");
+  if (chunk->crc != 0 && crc32(0, records) != chunk->crc) return at(file, offset, "the chunk's data do not match their CRC");
   return {};
 }
 

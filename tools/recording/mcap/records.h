@@ -1,4 +1,4 @@
-// Records as they stand in a file. Whatever they say of lengths is checked before it is believed. Any thread.
+// The records of an MCAP file. Lengths are checked before they are used. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ class Collector {
   base::Result<void> describe(Opcode opcode, std::string_view content, std::uint64_t offset) {
     described_ += content.size();
     if (described_ > most_descriptions) {
-      return at(file_, offset, "schemas and channels of more than " + std::to_string(most_descriptions) + " octets are not read");
+      return at(file_, offset, "schemas and channels of more than " + std::to_string(most_descriptions) + " bytes are not read");
     }
     if (opcode == Opcode::schema) {
       auto schema = take_schema(content);
@@ -49,7 +49,7 @@ base::Result<std::uint64_t> read_header(const File& file, std::uint64_t size, In
   std::string octets;
   const std::uint64_t first = std::min<std::uint64_t>(size, magic.size());
   if (const auto done = file.read(0, first, octets); !done) return done.error();
-  if (octets != magic) return base::Error{base::in_quotes(file.path()) + ": is no MCAP file: it does not begin with the magic octets"};
+  if (octets != magic) return base::Error{base::in_quotes(file.path()) + ": is not an MCAP file: it does not start with the magic bytes"};
   const auto head = read_head(file, magic.size(), size);
   if (!head) return head.error();
   if (!head->has_value() || (*head)->opcode != Opcode::header) return at(file, magic.size(), "expected the header of an MCAP file");
@@ -416,7 +416,7 @@ base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t 
   if (const auto done = file.read(start, size - magic.size() - start, octets); !done) return done.error();
   const std::string_view all = octets;
   if ((*footer)->crc != 0 && crc32(0, all.substr(0, all.size() - 4)) != (*footer)->crc) {
-    return broken(start, "the summary's octets do not match their CRC; the file is read without it");
+    return broken(start, "the summary does not match its CRC; the file is read without it");
   }
 
   Collector collector(file, index);

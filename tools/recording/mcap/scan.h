@@ -1,5 +1,5 @@
-// What a reader knows of a file before it reads messages: from the summary at its end or, without one, from a walk over all its records.
-// Whatever a file says of lengths and offsets is checked against its size before it is believed. Values; any thread.
+// The index of an MCAP file: from the summary at its end or, without one, from a scan of all records. Lengths and offsets are checked
+// against the size of the file. Values; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What stands at the end of a file: all that a reader must know before it reads messages. A value.
+// The summary at the end of an MCAP file. A value.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The verbs of rtse that are about campaigns. Each adds its part of the command line; see command.h of the system editor.
+// The campaign verbs of rtse. Each adds its part of the command line; see rtse/command.h.
 #pragma once
 
 namespace base {

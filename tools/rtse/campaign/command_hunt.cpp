@@ -108,17 +108,21 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
 }  // namespace
 
 void add_hunt(base::Command& app, editor::Chosen& chosen) {
-  auto* command = app.add_subcommand("hunt", "Look for faults, events and parameters that break what a plan expects");
+  auto* command = app.add_subcommand("hunt", "Search for faults, events and parameters that violate the plan");
   auto call = std::make_shared<HuntCall>();
-  command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->required()->check(base::existing_file());
-  command->add_option("--budget", call->budget, "How long: 90s, 10m, 2h")->capture_default_str()->check([](const std::string& text) {
-    return seconds_of(text) ? std::string() : "expected a time as 90s, 10m or 2h, got " + base::in_quotes(text);
-  });
-  command->add_option("-j,--jobs", call->jobs, "So many cases at a time")->check(base::integer_between(1, 64))->capture_default_str();
-  command->add_option("--cases", call->cases, "End after so many cases")->check(base::number_between(1, 1e9));
-  command->add_option("--finds", call->finds, "End after so many finds")->check(base::number_between(1, 1e6));
-  command->add_option("--seed", call->seed, "Of the hunt; default: the plan's")->check(base::number_between(0, 1e18));
-  command->add_option("-o,--folder", call->folder, "Folder for finds; default: the plan's name with .finds");
+  command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->required()->check(base::existing_file());
+  command->add_option("--budget", call->budget, "Duration of the search [wall clock]: 90s, 10m, 2h")
+      ->capture_default_str()
+      ->check([](const std::string& text) {
+        return seconds_of(text) ? std::string() : "expected a time as 90s, 10m or 2h, got " + base::in_quotes(text);
+      });
+  command->add_option("-j,--jobs", call->jobs, "Number of cases to run in parallel")
+      ->check(base::integer_between(1, 64))
+      ->capture_default_str();
+  command->add_option("--cases", call->cases, "Stop after N cases")->check(base::number_between(1, 1e9));
+  command->add_option("--finds", call->finds, "Stop after N failures found")->check(base::number_between(1, 1e6));
+  command->add_option("--seed", call->seed, "Seed of the hunt (default: that of the plan)")->check(base::number_between(0, 1e18));
+  command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)");
   command->callback(
       [&chosen, call] { chosen.work = [call](const Session& session, Console& console) { hunt_plan(session, console, *call); }; });
 }

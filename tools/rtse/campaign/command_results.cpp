@@ -65,10 +65,10 @@ void show_results(Console& console, const ResultsCall& call) {
 void add_results(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("results", "Show the results of a campaign");
   auto call = std::make_shared<ResultsCall>();
-  command->add_option("FILE", call->file, "Results of rtse sweep")->required()->check(base::existing_file());
-  command->add_option("--by", call->by, "A table of pass rates by this parameter")->allow_extra_args(false);
-  command->add_flag("--csv", call->csv, "Print one line for each row");
-  command->add_option("--junit", call->junit, "Write a test case for each row, JUnit XML");
+  command->add_option("FILE", call->file, "Results file of rtse sweep")->required()->check(base::existing_file());
+  command->add_option("--by", call->by, "Print pass rates by this parameter")->allow_extra_args(false);
+  command->add_flag("--csv", call->csv, "Print one line per row");
+  command->add_option("--junit", call->junit, "Write a test case per row (JUnit XML)");
   command->add_option("--html", call->html, "Write one page with plots and failed runs");
   command->add_option("--runs", call->runs,
                       "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");

@@ -230,24 +230,23 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
   tell(console, *result, call);
 }
 
-// Who runs the rows.
+// The engine that runs the rows.
 void add_engines(base::Command& command, SweepCall& call) {
   command
-      .add_option("--engine", call.engine,
-                  "local; slurm: job arrays of a cluster; parallel: print command lines that run all rows, for GNU parallel")
+      .add_option("--engine", call.engine, "Engine: local; slurm: job arrays of a cluster; parallel: print command lines for GNU parallel")
       ->check(base::one_of({"local", "slurm", "parallel"}))
       ->capture_default_str();
-  command.add_option("--chunk", call.chunk, "Rows of each task of Slurm, or of each command line")
+  command.add_option("--chunk", call.chunk, "Number of rows per Slurm task or command line")
       ->check(base::integer_between(1, 1000000))
       ->capture_default_str();
   command.add_option("--shared", call.shared,
-                     "With --engine slurm: folder that all machines share; default: the results' name with .slurm");
-  command.add_option("--tries", call.tries, "With --engine slurm: how often a row is tried whose task ends without its result")
+                     "With --engine slurm: shared folder of all machines (default: the results' name with .slurm)");
+  command.add_option("--tries", call.tries, "With --engine slurm: attempts per row if its task ends without a result")
       ->check(base::integer_between(1, 100))
       ->capture_default_str();
-  command.add_option("--sbatch", call.sbatch, "With --engine slurm: an option for sbatch, as --sbatch=--partition=short")
+  command.add_option("--sbatch", call.sbatch, "With --engine slurm: an option for sbatch, e.g. --sbatch=--partition=short")
       ->allow_extra_args(false);
-  command.add_option("--task", call.task, "What tasks of Slurm are called with: FOLDER:ATTEMPT:TASK")->check([](const std::string& text) {
+  command.add_option("--task", call.task, "Internal, for Slurm tasks: FOLDER:ATTEMPT:TASK")->check([](const std::string& text) {
     return parse_task(text) ? std::string() : "expected FOLDER:ATTEMPT:TASK, got " + base::in_quotes(text);
   });
 }
@@ -257,19 +256,20 @@ void add_engines(base::Command& command, SweepCall& call) {
 void add_sweep(base::Command& app, editor::Chosen& chosen) {
   auto* command = app.add_subcommand("sweep", "Run all rows of a plan and store their results");
   auto call = std::make_shared<SweepCall>();
-  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaigns.md)")->check(base::existing_file());
-  command->add_option("-j,--jobs", call->jobs, "So many rows at a time")->check(base::integer_between(1, 256))->capture_default_str();
-  command->add_option("-o,--results", call->results, "SQLite file; default: the plan's name with .db");
-  command->add_option("--keep", call->keep, "Folder for files of rows that fail; default: the results' name with .runs");
-  auto* row = command->add_option("--row", call->row, "Run only this row, whatever is stored, and keep its files")
+  auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->check(base::existing_file());
+  command->add_option("-j,--jobs", call->jobs, "Number of rows to run in parallel")
+      ->check(base::integer_between(1, 256))
+      ->capture_default_str();
+  command->add_option("-o,--results", call->results, "Results file, SQLite (default: the plan's name with .db)");
+  command->add_option("--keep", call->keep, "Folder for files of failed rows (default: the results' name with .runs)");
+  auto* row = command->add_option("--row", call->row, "Run only this row, even if its result is stored, and keep its files")
                   ->check(base::number_between(1, 1e6));
-  command->add_option("--state", call->state, "With --row: fail when the state at the end is another; -: it does not get there")
-      ->needs(row);
-  command->add_option("--rows", call->rows, "Only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
+  command->add_option("--state", call->state, "With --row: expected final state hash; -: the run must not finish")->needs(row);
+  command->add_option("--rows", call->rows, "Run only the rows FIRST..LAST")->excludes(row)->check([](const std::string& text) {
     return parse_row_range(text) ? std::string() : "expected N or FIRST..LAST, got " + base::in_quotes(text);
   });
   add_engines(*command, *call);
-  auto* audit = command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, as 5% or 0.05")
+  auto* audit = command->add_option("--audit", call->audit, "Run this fraction of the stored rows again and compare, e.g. 5% or 0.05")
                     ->excludes(row)
                     ->check([](const std::string& text) {
                       const bool is_percent = text.ends_with("%");
@@ -278,8 +278,8 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
                                  ? std::string()
                                  : "expected a fraction as 5% or 0.05, got " + base::in_quotes(text);
                     });
-  command->add_flag("--record", call->records, "Record what all ports send, of rows that fail");
-  auto* fails_fast = command->add_flag("--fail-fast", call->fails_fast, "Begin no row after one that failed");
+  command->add_flag("--record", call->records, "Record all ports of failed rows");
+  auto* fails_fast = command->add_flag("--fail-fast", call->fails_fast, "Start no further rows after a failure");
   command->add_flag("--schema", call->prints_schema, "Print the JSON Schema of plans");
   command->callback([&chosen, call, plan, audit, fails_fast] {
     editor::require(call->prints_schema || plan->count() > 0, "sweep", "expected a PLAN");

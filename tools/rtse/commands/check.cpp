@@ -108,11 +108,11 @@ void check_system(const Session& session, Console& console, const std::string& f
 }  // namespace
 
 void add_check(base::Command& app, Chosen& chosen) {
-  auto* check = app.add_subcommand("check", "Compare the running system with a saved one; a line per difference");
+  auto* check = app.add_subcommand("check", "Compare the running system with a saved one; print a line per difference");
   auto file = std::make_shared<std::string>();
   auto state = std::make_shared<std::string>("any");
   check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
-  check->add_option("-s,--state", *state, "State that every component should be in; saved: each in its own")
+  check->add_option("-s,--state", *state, "Expected state of every component; saved: the state in FILE")
       ->capture_default_str()
       ->check(base::one_of({"created", "inactive", "active", "error", "any", "saved"}, base::Case::does_not_matter));
   check->callback([&chosen, file, state] {

@@ -1,4 +1,4 @@
-// The commands of rtse. Each adds its part of the command line to `app`; the one that the user names leaves in `chosen` what is to be done.
+// The commands of rtse. Each adds its command line to `app`; the selected one stores its work in `chosen`.
 #pragma once
 
 namespace base {

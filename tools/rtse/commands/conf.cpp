@@ -117,9 +117,9 @@ void add_conf(base::Command& app, Chosen& chosen) {
   conf->add_option("PATH", options->path, "Component")->required();
   conf->add_option("ACTION", options->action, "list, get, set or use")->check(base::one_of({"list", "get", "set", "use", "act"}));
   conf->add_option("ARGUMENT", options->arguments, "Parameter, value or set");
-  conf->add_option("-s,--set", options->set, "The set to read or change; default: the active one");
-  conf->add_flag("-a,--all", options->all, "Hidden sets too");
-  conf->add_flag("--force", options->force, "Set also what the component's own types and constraints forbid");
+  conf->add_option("-s,--set", options->set, "Set to read or change (default: the active one)");
+  conf->add_flag("-a,--all", options->all, "Also list hidden sets");
+  conf->add_flag("--force", options->force, "Also set values that violate the component's types and constraints");
   conf->callback([&chosen, options] {
     for (auto& argument : options->arguments) {
       if (argument.starts_with(" [")) argument.erase(0, 1);  // see words_of

@@ -159,18 +159,18 @@ void add_connect(base::Command& app, Chosen& chosen) {
   auto* con = app.add_subcommand("con", "Connect ports");
   auto options = std::make_shared<ConnectOptions>();
   con->add_option("PORT", options->ports, "COMPONENT:PORT, two or more")->required()->expected(2, 64);
-  con->add_option("-i,--id", options->id, "Connector id; default: a new one");
+  con->add_option("-i,--id", options->id, "Connector ID (default: a new one)");
   con->add_option("-n,--name", options->name, "Name of the connection");
   con->add_option("-p,--property", options->properties, "KEY=VALUE, e.g. subscription_type=new")->allow_extra_args(false);
-  con->add_flag("-d,--no-duplicates", options->no_duplicates, "Do nothing when they are connected already");
+  con->add_flag("-d,--no-duplicates", options->no_duplicates, "Do nothing if the ports are already connected");
   con->callback(
       [&chosen, options] { chosen.work = [options](const Session& session, Console& console) { connect(session, console, *options); }; });
 
-  auto* dis = app.add_subcommand("dis", "Disconnect: two ports, all of a port or component, or one by id");
+  auto* dis = app.add_subcommand("dis", "Disconnect two ports, all connections of a port or component, or one by its ID");
   auto paths = std::make_shared<std::vector<std::string>>();
   auto id = std::make_shared<std::string>();
   dis->add_option("PATH", *paths, "Ports or a component")->expected(0, 2);
-  dis->add_option("-i,--id", *id, "Connector id");
+  dis->add_option("-i,--id", *id, "Connector ID");
   dis->callback([&chosen, paths, id] {
     require(!paths->empty() || !id->empty(), "dis", "expected one component or port, two ports, or -i ID");
     chosen.work = [=](const Session& session, Console& console) { disconnect(session, console, *paths, *id); };

@@ -67,7 +67,7 @@ void add_context(base::Command& app, Chosen& chosen) {
   auto rate = std::make_shared<std::vector<double>>();
   command->add_option("PATH", options->path, "Component")->required();
   command->add_option("ACTION", options->action, "list, rate, start or stop")->check(base::one_of({"list", "rate", "start", "stop"}));
-  command->add_option("HZ", *rate, "Of rate: ticks a second")->check(base::number_between(1e-6, 1e6));
+  command->add_option("HZ", *rate, "With rate: ticks per second")->check(base::number_between(1e-6, 1e6));
   command->add_option("-e,--context", options->index, "Index of the execution context")
       ->capture_default_str()
       ->check(base::number_between(0, 1000));

@@ -175,12 +175,12 @@ void inject(const Session& session, Console& console, const InjectOptions& optio
 }  // namespace
 
 void add_data(base::Command& app, Chosen& chosen) {
-  auto* print = app.add_subcommand("print", "Print what OutPorts send");
+  auto* print = app.add_subcommand("print", "Print the samples of OutPorts");
   auto options = std::make_shared<PrintOptions>();
   print->add_option("PORT", options->ports, "OutPorts")->required();
-  print->add_option("-n,--count", options->count, "End after so many samples")->check(base::number_between(0, 1e9));
-  print->add_option("-t,--timeout", options->timeout_s, "End after so many seconds")->check(base::number_between(0.0, 1e9));
-  print->add_option("-r,--rate", options->rate, "At most so many samples a second")->check(base::number_between(0.0, 1e6));
+  print->add_option("-n,--count", options->count, "Stop after N samples")->check(base::number_between(0, 1e9));
+  print->add_option("-t,--timeout", options->timeout_s, "Stop after N seconds")->check(base::number_between(0.0, 1e9));
+  print->add_option("-r,--rate", options->rate, "Maximum number of samples per second")->check(base::number_between(0.0, 1e6));
   print->callback([&chosen, options] {
     chosen.work = [options](const Session& session, Console& console) { editor::print_ports(session, console, *options); };
   });
@@ -189,10 +189,10 @@ void add_data(base::Command& app, Chosen& chosen) {
   auto values = std::make_shared<InjectOptions>();
   inject->add_option("PORT", values->port, "InPort")->required();
   inject->add_option("VALUE", values->values, "JSON, or RTC.TimedLong({time}, 42)")->required();
-  inject->add_option("-n,--count", values->count, "How often; 0: until stopped")
+  inject->add_option("-n,--count", values->count, "Number of samples; 0: until stopped")
       ->check(base::number_between(0, 1e9))
       ->capture_default_str();
-  inject->add_option("-r,--rate", values->rate, "How often a second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
+  inject->add_option("-r,--rate", values->rate, "Samples per second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
   inject->callback([&chosen, values] {
     chosen.work = [values](const Session& session, Console& console) { editor::inject(session, console, *values); };
   });

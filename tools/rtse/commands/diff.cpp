@@ -48,7 +48,7 @@ void add_diff(base::Command& app, Chosen& chosen) {
       app.add_subcommand("diff", "Compare two runs: hash logs of rtse run --hash-log, or recordings; name the first difference");
   auto files = std::make_shared<std::pair<std::string, std::string>>();
   command->add_option("RUN1", files->first, "Hash log or recording")->required()->check(base::existing_file());
-  command->add_option("RUN2", files->second, "Another of the same kind")->required()->check(base::existing_file());
+  command->add_option("RUN2", files->second, "Hash log or recording to compare with")->required()->check(base::existing_file());
   command->callback([&chosen, files] {
     chosen.needs_orb = false;
     chosen.work = [files](const Session&, Console& console) { diff(console, files->first, files->second); };

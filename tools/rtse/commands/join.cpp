@@ -105,7 +105,7 @@ Result<Joining> look_at(const Session& session, Console& console, const std::str
   const auto how = options.ticks ? TimeMember::How::tick : TimeMember::How::member;
   if (options.ticks && ticks_on_its_own(*component))
     console.warn("component " + component->path +
-                 ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick, which nobody can wait for; "
+                 ": its context, an ExtTrigExecutionContext, runs it after each tick on a thread of its own, for which nothing can wait; "
                  "join it as a member (without --tick)");
   return Joining{component->path, {component->instance, options.phase, base::format_number(rate), how, options.turn}};
 }
@@ -200,24 +200,24 @@ std::string usual_server() {
 }  // namespace
 
 void add_join(base::Command& app, Chosen& chosen) {
-  auto* join = app.add_subcommand("join", "Let running components, of any maker, take part in the simulated time of a simulator");
+  auto* join = app.add_subcommand("join", "Add running components, of any maker, to the simulated time of a simulator");
   auto options = std::make_shared<JoinOptions>();
   options->server_id = usual_server();
-  join->add_option("COMPONENT", options->components, "Components; they join in this order")->required();
-  join->add_option("-p,--phase", options->phase, "Order inside a tick: 0 sensors, 1 clients, 2 actuators")
+  join->add_option("COMPONENT", options->components, "Components, in the order of their calls")->required();
+  join->add_option("-p,--phase", options->phase, "Phase inside a tick: 0 sensors, 1 clients, 2 actuators")
       ->check(base::integer_between(0, highest_phase))
       ->capture_default_str();
-  join->add_option("--turn", options->turn, "Order inside the phase: who reads from the others of its phase comes before them")
+  join->add_option("--turn", options->turn, "Call order within the phase; a reader needs a lower number than its senders")
       ->check(base::integer_between(0, highest_turn))
       ->capture_default_str();
-  join->add_option("-r,--rate", options->rate, "Ticks per simulated second; default: the rate of the component's own context")
+  join->add_option("-r,--rate", options->rate, "Ticks per simulated second (default: rate of the component's own context)")
       ->check(base::number_between(1e-6, 1e6));
-  join->add_option("-s,--server-id", options->server_id, "Which simulator")
+  join->add_option("-s,--server-id", options->server_id, "Simulator ID")
       ->check(base::integer_between(0, highest_server))
       ->capture_default_str();
-  join->add_flag("--tick", options->ticks, "Tick the component's own context, which must be one that is ticked from outside");
-  join->add_option("--log", options->log, "File for what the host of the contexts says");
-  join->add_option("-o,--option", options->options, "KEY:VALUE of rtc.conf for that host, such as corba.endpoints")
+  join->add_flag("--tick", options->ticks, "Tick the component's own context, which must be an externally triggered one");
+  join->add_option("--log", options->log, "Log file of the context host");
+  join->add_option("-o,--option", options->options, "Key of rtc.conf for that host, KEY:VALUE, e.g. of corba.endpoints")
       ->allow_extra_args(false);
   join->callback([&chosen, options] {
     chosen.work = [options](const Session& session, Console& console) { editor::join(session, console, *options); };

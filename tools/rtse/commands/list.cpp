@@ -335,24 +335,24 @@ void cat(const Session& session, Console& console, const std::string& path, bool
 void add_list(base::Command& app, Chosen& chosen) {
   auto* ls = app.add_subcommand("ls", "List components, managers and contexts");
   auto list = std::make_shared<ListOptions>();
-  ls->add_option("PATH", list->path, "Where to look; default: the whole name server");
-  ls->add_flag("-l,--long", list->is_long, "With state, rate and ports (all/connected)");
-  ls->add_flag("-R,--recurse", list->recurse, "Contexts inside contexts too");
+  ls->add_option("PATH", list->path, "Path to list (default: the whole name server)");
+  ls->add_flag("-l,--long", list->is_long, "Also show state, rate and ports (all/connected)");
+  ls->add_flag("-R,--recurse", list->recurse, "Also list nested contexts");
   ls->callback(
       [&chosen, list] { chosen.work = [list](const Session& session, Console& console) { editor::list(session, console, *list); }; });
 
   auto* tree = app.add_subcommand("tree", "Show the name server as a tree, with states and ports");
   auto tree_path = std::make_shared<std::string>();
-  tree->add_option("PATH", *tree_path, "Where to start");
+  tree->add_option("PATH", *tree_path, "Path of the root (default: the whole name server)");
   tree->callback([&chosen, tree_path] {
     chosen.work = [tree_path](const Session& session, Console& console) { editor::tree(session, console, *tree_path); };
   });
 
-  auto* cat = app.add_subcommand("cat", "Show all of a component, port or manager");
+  auto* cat = app.add_subcommand("cat", "Show the details of a component, port or manager");
   auto cat_path = std::make_shared<std::string>();
   auto cat_long = std::make_shared<bool>(false);
   cat->add_option("PATH", *cat_path, "COMPONENT, COMPONENT:PORT or MANAGER")->required();
-  cat->add_flag("-l,--long", *cat_long, "With all properties");
+  cat->add_flag("-l,--long", *cat_long, "Also show all properties");
   cat->callback([&chosen, cat_path, cat_long] {
     chosen.work = [cat_path, cat_long](const Session& session, Console& console) { editor::cat(session, console, *cat_path, *cat_long); };
   });

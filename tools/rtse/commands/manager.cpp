@@ -80,7 +80,7 @@ std::string why_not_created(RTM::Manager_ptr manager, const std::string& argumen
   RTM::ModuleProfileList_var factories = manager->get_factory_profiles();
   for (CORBA::ULong i = 0; i < factories->length(); ++i) {
     if (property(to_properties(factories[i].properties), "implementation_id") == type)
-      return "its initialisation failed, or the manager may not; its log says why";
+      return "initialization failed or was denied; see the manager's log";
   }
   return "the manager has no type " + base::in_quotes(type) + " and finds no module with it; see: rtse mgr list";
 }
@@ -168,13 +168,13 @@ void manage(const Session& session, Console& console, const ManagerOptions& opti
 
 void add_manager(base::Command& app, Chosen& chosen) {
   auto* mgr = app.add_subcommand(
-      "mgr", "Talk to a manager: mgr list | create TYPE[?key=value&...] | delete INSTANCE | load FILE [INIT] | unload FILE");
+      "mgr", "Send a request to a manager: mgr list | create TYPE[?key=value&...] | delete INSTANCE | load FILE [INIT] | unload FILE");
   auto options = std::make_shared<ManagerOptions>();
   mgr->add_option("ACTION", options->action, "list, create, delete, load, unload")
       ->required()
       ->check(base::one_of({"list", "create", "delete", "load", "unload"}));
   mgr->add_option("ARGUMENT", options->arguments, "Types, instances or files");
-  mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID]; default: the only one of the name server");
+  mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID] (default: the only manager of the name server)");
   mgr->callback([&chosen, options] {
     require(options->action != "list" || options->arguments.empty(), "mgr list", "expected nothing more");
     require(options->action == "list" || !options->arguments.empty(), "mgr " + options->action, "expected a name");

@@ -103,20 +103,20 @@ void add_new(base::Command& app, Chosen& chosen) {
   command->add_option("NAME", options->name, "Name of the component; a C++ identifier");
   command->add_option("--spec", options->specification,
                       "RTC.xml (RTCBuilder) or YAML with name, in_ports, out_ports, parameters, services");
-  command->add_option("--idl", options->idl_files, "IDL file with data types of ports; it is copied, with what it includes")
+  command->add_option("--idl", options->idl_files, "IDL file with data types of ports; it is copied, with its includes")
       ->allow_extra_args(false);
   command->add_option("--in", options->in_ports, "InPort as NAME:TYPE, e.g. range:RTC::RangeData")->allow_extra_args(false);
   command->add_option("--out", options->out_ports, "OutPort as NAME:TYPE")->allow_extra_args(false);
   command->add_option("--param", options->parameters, "Parameter as NAME:TYPE=DEFAULT, e.g. gain:double=0.5")->allow_extra_args(false);
   command->add_option("--provide", options->provided, "Service as PORT,MODULE::INTERFACE,FILE.idl")->allow_extra_args(false);
   command->add_option("--require", options->required, "Service as PORT,MODULE::INTERFACE,FILE.idl")->allow_extra_args(false);
-  command->add_option("--description", options->description, "One line on what it does");
+  command->add_option("--description", options->description, "Description, one line");
   command->add_option("--vendor", options->vendor, "Vendor");
   command->add_option("--category", options->category, "Category");
   command->add_option("--component-version", options->version, "Version of the component");
   command->add_option("--rate", options->rate, "Rate of its execution context [Hz]")->check(base::number_between(1e-3, 1e5));
   command->add_option("--action", options->actions, "A further callback: " + base::join(further_actions(), ", "))->allow_extra_args(false);
-  command->add_option("-C,--directory", options->folder, "Where to; default: a folder of the component's name");
+  command->add_option("-C,--directory", options->folder, "Output folder (default: the component's name)");
   command->callback([&chosen, options] {
     if (options->name.empty() && options->specification.empty()) base::require_on_command_line("NAME or --spec");
     chosen = {[options](const Session&, Console& console) { make_component(console, *options); }, /*needs_orb*/ false};

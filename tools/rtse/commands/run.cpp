@@ -269,7 +269,7 @@ Result<RunOptions> read_input() {
 }
 
 void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const std::function<std::string(const std::string&)>& check) {
-  auto* run = app.add_subcommand("run", "Run a saved system against a simulated world in lock step, and judge it");
+  auto* run = app.add_subcommand("run", "Run a saved system in a simulated world, in lock step, and check the expectations");
   auto given = std::make_shared<RunOptions>();
   auto seeds = std::make_shared<std::optional<std::string>>();
   auto jobs = std::make_shared<int>(1);
@@ -286,12 +286,10 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
     run->option("SYSTEM")->required();
     run->option("--world")->required();
   }
-  run->add_option("--seeds", *seeds, "A run for each seed FIRST..LAST")
-      ->excludes(run->option("--seed"))
-      ->check([](const std::string& text) {
-        const auto parsed = parse_seeds(text);
-        return parsed ? std::string() : parsed.error().message;
-      });
+  run->add_option("--seeds", *seeds, "Run once per seed FIRST..LAST")->excludes(run->option("--seed"))->check([](const std::string& text) {
+    const auto parsed = parse_seeds(text);
+    return parsed ? std::string() : parsed.error().message;
+  });
   run->add_option("-j,--jobs", *jobs, "Number of seeds to run in parallel")->check(base::integer_between(1, 64))->capture_default_str();
   run->add_flag(options_from_input, *has_input)->group("");  // of run_apart() alone
   run->callback([=, &chosen] {

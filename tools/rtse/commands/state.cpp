@@ -114,7 +114,7 @@ void add_state(base::Command& app, Chosen& chosen) {
     auto paths = std::make_shared<std::vector<std::string>>();
     auto context = std::make_shared<int>(-1);
     command->add_option("PATH", *paths, "Components")->required();
-    command->add_option("-e,--context", *context, "Index of the execution context; default: the first that runs, which ls shows")
+    command->add_option("-e,--context", *context, "Index of the execution context (default: the first running one, as shown by ls)")
         ->check(base::number_between(0, 1000));
     command->callback([&chosen, paths, context, transition] {
       chosen.work = [=](const Session& session, Console& console) { change_state(session, console, *paths, transition, *context); };
@@ -124,22 +124,22 @@ void add_state(base::Command& app, Chosen& chosen) {
   add("deact", "Deactivate components", Transition::deactivate);
   add("reset", "Reset components that are in the error state", Transition::reset);
 
-  auto* exit = app.add_subcommand("exit", "End components");
+  auto* exit = app.add_subcommand("exit", "Finalize components");
   auto exit_paths = std::make_shared<std::vector<std::string>>();
   exit->add_option("PATH", *exit_paths, "Components")->required();
   exit->callback([&chosen, exit_paths] {
     chosen.work = [exit_paths](const Session& session, Console& console) { exit_components(session, console, *exit_paths); };
   });
 
-  auto* del = app.add_subcommand("del", "Delete names from the name server; what they name need not answer");
+  auto* del = app.add_subcommand("del", "Delete name server entries, even of unreachable objects");
   auto del_paths = std::make_shared<std::vector<std::string>>();
   auto zombies = std::make_shared<bool>(false);
   del->add_option("PATH", *del_paths, "Names");
-  del->add_flag("-z,--zombies", *zombies, "All names whose object is gone");
+  del->add_flag("-z,--zombies", *zombies, "Delete all names of objects that do not exist");
   auto force = std::make_shared<bool>(false);
-  del->add_flag("--force", *force, "Contexts that hold living objects too");
+  del->add_flag("--force", *force, "Also delete contexts that contain existing objects");
   del->callback([&chosen, del_paths, zombies, force] {
-    require(!del_paths->empty() || *zombies, "del", "expected names, or -z for all whose object is gone");
+    require(!del_paths->empty() || *zombies, "del", "expected names, or -z for all names of objects that do not exist");
     chosen.work = [=](const Session& session, Console& console) { delete_bindings(session, console, *del_paths, *zombies, *force); };
   });
 
@@ -148,10 +148,10 @@ void add_state(base::Command& app, Chosen& chosen) {
   auto state = std::make_shared<std::string>("Active");
   auto timeout = std::make_shared<double>(10);
   wait->add_option("PATH", *wait_paths, "Components")->required();
-  wait->add_option("--state", *state, "Inactive, Active, Error, any (is there), gone")
+  wait->add_option("--state", *state, "State: Inactive, Active, Error, any (exists), gone (does not exist)")
       ->capture_default_str()
       ->check(base::one_of({"created", "inactive", "active", "error", "any", "gone"}, base::Case::does_not_matter));
-  wait->add_option("--timeout", *timeout, "Seconds")->capture_default_str()->check(base::number_between(0.0, 1e6));
+  wait->add_option("--timeout", *timeout, "Timeout [s]")->capture_default_str()->check(base::number_between(0.0, 1e6));
   wait->callback([&chosen, wait_paths, state, timeout] {
     chosen.work = [=](const Session& session, Console& console) { wait_for_state(session, console, *wait_paths, *state, *timeout); };
   });

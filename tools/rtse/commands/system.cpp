@@ -49,12 +49,12 @@ void change_system(Console& console, const std::string& file, bool dry_run, F ch
 void add_system(base::Command& app, Chosen& chosen) {
   auto* save = app.add_subcommand("save", "Save the running system as RTSProfile (XML; YAML by the file's ending)");
   auto call = std::make_shared<SaveCall>();
-  save->add_option("FILE", call->file, "Where to; default: standard output");
+  save->add_option("FILE", call->file, "Output file (default: standard output)");
   save->add_option("-n,--name", call->system.name, "System name")->capture_default_str();
   save->add_option("-e,--vendor", call->system.vendor, "Vendor")->capture_default_str();
   save->add_option("-v,--version", call->system.version, "Version of the system")->capture_default_str();
-  save->add_option("-a,--abstract", call->system.abstract, "What it is");
-  save->add_flag("-y,--yaml", call->yaml, "YAML on standard output");
+  save->add_option("-a,--abstract", call->system.abstract, "Description");
+  save->add_flag("-y,--yaml", call->yaml, "Write YAML to standard output");
   save->callback(
       [&chosen, call] { chosen.work = [call](const Session& session, Console& console) { save_system(session, console, *call); }; });
 
@@ -63,7 +63,7 @@ void add_system(base::Command& app, Chosen& chosen) {
     auto file = std::make_shared<std::string>();
     auto dry_run = std::make_shared<bool>(false);
     command->add_option("FILE", *file, "RTSProfile, XML or YAML; -: standard input")->required();
-    command->add_flag("--dry-run", *dry_run, "Say what would be done");
+    command->add_flag("--dry-run", *dry_run, "Print the actions without executing them");
     command->callback([&chosen, file, dry_run, change] {
       chosen.work = [=](const Session& session, Console& console) {
         change_system(console, *file, *dry_run, [&](const SavedSystem& system) { return change(session, system, *dry_run); });
@@ -73,9 +73,9 @@ void add_system(base::Command& app, Chosen& chosen) {
   auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
   auto load_call = std::make_shared<LoadCall>();
   load->add_option("FILE", load_call->file, "RTSProfile, XML or YAML; -: standard input")->required();
-  load->add_flag("--dry-run", load_call->options.dry_run, "Say what would be done");
-  load->add_flag("--states", load_call->options.with_states, "The components' states too: activate, deactivate and reset as saved");
-  load->add_flag("--force", load_call->options.force, "Set also values that the components' own types and constraints forbid");
+  load->add_flag("--dry-run", load_call->options.dry_run, "Print the actions without executing them");
+  load->add_flag("--states", load_call->options.with_states, "Also restore component states (activate, deactivate, reset)");
+  load->add_flag("--force", load_call->options.force, "Also set values that violate the components' types and constraints");
   load->callback([&chosen, load_call] {
     chosen.work = [load_call](const Session& session, Console& console) {
       const auto& options = load_call->options;

@@ -254,22 +254,22 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
 }  // namespace
 
 void add_goto(base::Command& app, editor::Chosen& chosen) {
-  auto* command =
-      app.add_subcommand("goto", "Make a recorded run again, as fast as it can, and stand at a moment of it with all processes alive");
+  auto* command = app.add_subcommand("goto", "Repeat a recorded run and stop at a given time, with all processes running");
   auto options = std::make_shared<GotoOptions>();
-  command->add_option("RUN", options->what, "A recording of rtse run --record, or an RTSProfile with --world")
+  command->add_option("RUN", options->what, "Recording of rtse run --record, or an RTSProfile with --world")
       ->required()
       ->check(check_recording);
-  auto* time = command->add_option("TIME", options->time_s, "Simulated seconds")->seconds_between(0.0, 1e7);
-  command->add_option("--until", options->time_s, "The same")->seconds_between(0.0, 1e7)->excludes(time);
+  auto* time = command->add_option("TIME", options->time_s, "Time to stop at [simulated s]")->seconds_between(0.0, 1e7);
+  command->add_option("--until", options->time_s, "Same as TIME")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(
       "--break", options->condition,
-      "Stand at the first tick in which this holds, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME ends the search");
-  command->add_option("--back", options->back, "So many ticks before that")->check(base::integer_between(0, 1000000));
-  command->add_option("-w,--world", options->world, "With a profile: SDFormat world")->check(base::existing_file());
-  command->add_option("--then", options->then, "Run this shell command there and end, instead of reading commands");
-  command->add_option("--seed", options->seed, "Seed of the world's noise, if not the recorded one")->check(base::number_between(0, 1e18));
-  command->add_option("--start", options->start, "Command that starts components of others, in the place of the recorded ones")
+      "Stop at the first tick where this condition is true, e.g. 'pose(pioneer2dx).x > 2 && A0:out.data < 0.1'; TIME limits the search");
+  command->add_option("--back", options->back, "Stop N ticks earlier")->check(base::integer_between(0, 1000000));
+  command->add_option("-w,--world", options->world, "SDFormat world, for an RTSProfile")->check(base::existing_file());
+  command->add_option("--then", options->then, "Run this shell command at that time and exit, instead of reading commands");
+  command->add_option("--seed", options->seed, "Seed of the sensor noise (default: the recorded one)")
+      ->check(base::number_between(0, 1e18));
+  command->add_option("--start", options->start, "Command that starts third-party components (default: the recorded commands)")
       ->allow_extra_args(false);
   editor::add_run_options(*command, options->run, {"run-file", "module-path", "resource-path", "property", "hang-timeout"});
   command->callback([&chosen, options, command] {

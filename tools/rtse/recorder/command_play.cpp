@@ -245,18 +245,19 @@ void play(const Session& session, Console& console, const PlayOptions& options) 
 }  // namespace
 
 void add_play(base::Command& app, editor::Chosen& chosen) {
-  auto* command = app.add_subcommand("play", "Send a recording into InPorts of a running system, as fast as it was recorded");
+  auto* command = app.add_subcommand("play", "Send a recording to InPorts of a running system");
   auto options = std::make_shared<PlayOptions>();
-  command->add_option("FILE", options->file, "The recording")->required();
+  command->add_option("FILE", options->file, "Recording")->required();
   command->add_option("LINK", options->links,
-                      "What goes where: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in; default: where it went in the recording");
-  command->add_option("-r,--rate", options->rate, "So many times as fast")->check(base::number_between(1e-3, 1e6))->capture_default_str();
+                      "Receiver of a channel: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in (default: as recorded)");
+  command->add_option("-r,--rate", options->rate, "Playback speed (1: as recorded)")
+      ->check(base::number_between(1e-3, 1e6))
+      ->capture_default_str();
   command->add_flag("--loop", options->loop, "Start over at the end, until stopped");
-  command->add_option("--from", options->from_s, "From this time on [s]")->seconds_between(0.0, 1e10);
-  command->add_option("--to", options->to_s, "Up to this time [s]")->seconds_between(0.0, 1e10);
-  command->add_flag("--sim-time", options->by_simulation,
-                    "By the clock of the simulator; in lock step time waits until all that is due was sent");
-  command->add_option("-s,--server-id", options->server_id, "With --sim-time: which simulator; default: $RTMSIM_SERVER_ID, else 0")
+  command->add_option("--from", options->from_s, "Start time [s]")->seconds_between(0.0, 1e10);
+  command->add_option("--to", options->to_s, "End time [s]")->seconds_between(0.0, 1e10);
+  command->add_flag("--sim-time", options->by_simulation, "Use simulated time; in lock step, simulated time waits for playback");
+  command->add_option("-s,--server-id", options->server_id, "With --sim-time: simulator ID (default: $RTMSIM_SERVER_ID, else 0)")
       ->check(base::number_between(0, 9999));
   command->callback(
       [&chosen, options] { chosen.work = [options](const Session& session, Console& console) { play(session, console, *options); }; });

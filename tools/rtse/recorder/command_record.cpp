@@ -127,9 +127,9 @@ base::Result<std::vector<Session::Port>> chosen_ports(const Session& session, Co
     }
   }
   if (ports.empty() && excluded > 0)
-    return base::Error{"record: --exclude leaves none of the " + std::to_string(excluded) + " OutPorts of the naming service " +
+    return base::Error{"record: --exclude leaves none of the " + std::to_string(excluded) + " OutPorts of the name server " +
                        session.server()};
-  if (ports.empty()) return base::Error{"record: the naming service " + session.server() + " has no component with an OutPort"};
+  if (ports.empty()) return base::Error{"record: the name server " + session.server() + " has no component with an OutPort"};
   return ports;
 }
 
@@ -455,44 +455,42 @@ void record(const Session& session, Console& console, const RecordOptions& optio
 }  // namespace
 
 void add_record(base::Command& app, editor::Chosen& chosen) {
-  auto* command = app.add_subcommand("record", "Record what ports send into an MCAP file");
+  auto* command = app.add_subcommand("record", "Record the samples of ports into an MCAP file");
   auto options = std::make_shared<RecordOptions>();
-  command->add_option("PORT", options->ports, "OutPorts");
-  command->add_flag("--all", options->all, "All OutPorts of the naming service");
-  command->add_flag("--views", options->views, "What the simulator shows, too: poses, sensors, cameras, as messages of ROS 2");
+  command->add_option("PORT", options->ports, "OutPorts to record");
+  command->add_flag("--all", options->all, "Record all OutPorts of the name server");
+  command->add_flag("--views", options->views,
+                    "Also record the simulator's view: poses, sensors, cameras, as ROS 2 messages (implied by --all)");
   command->add_flag("--components", options->components,
-                    "What components say of themselves, too: states, configuration, events, log; with --all they do");
-  command->add_flag("--only-ports", options->only_ports, "With --all: without what the simulator shows and components say")->needs("--all");
-  command->add_flag("--raw-pictures", options->raw_pictures, "Pictures of cameras to the bit; else as JPEG");
-  command->add_option("--exclude", options->excluded,
-                      "Not the ports and topics that the pattern fits, e.g. 'RTCCamera*:*', '/sim/camera/*'");
-  command->add_option("--attach", options->attached, "NAME=FILE: a file that the recording is to hold, too")
-      ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=FILE" : ""; });
-  command->add_option("--note", options->notes, "KEY=VALUE: a text among those that say how the run was made")
+                    "Also record states, configuration, events and logs of components (implied by --all)");
+  command->add_flag("--only-ports", options->only_ports, "With --all: record ports only")->needs("--all");
+  command->add_flag("--raw-pictures", options->raw_pictures, "Record camera images uncompressed (default: JPEG)");
+  command->add_option("--exclude", options->excluded, "Leave out the ports and topics that match, e.g. 'RTCCamera*:*', '/sim/camera/*'");
+  command->add_option("--attach", options->attached, "Attach a file to the recording: NAME=FILE")->check([](const std::string& text) {
+    return text.find('=') == std::string::npos ? "expected NAME=FILE" : "";
+  });
+  command->add_option("--note", options->notes, "Add KEY=VALUE to the metadata of the recording")
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected KEY=VALUE" : ""; });
-  command->add_option("-o,--output", options->file, "The file to write")->required();
-  command->add_option("-t,--duration", options->duration_s, "End after so many seconds of real time")->seconds_between(0.0, 1e9);
+  command->add_option("-o,--output", options->file, "Output file")->required();
+  command->add_option("-t,--duration", options->duration_s, "Stop after this time [wall-clock s]")->seconds_between(0.0, 1e9);
   auto split = std::make_shared<std::string>();
-  auto* splitting = command->add_option("--split", *split, "Begin a new file after so many octets (500M) or so much time (10m)")
+  auto* splitting = command->add_option("--split", *split, "Start a new file after this size (500M) or duration (10m)")
                         ->check([](const std::string& text) {
                           const auto parsed = parse_split(text);
                           return parsed ? std::string() : parsed.error().message;
                         });
-  command->add_option("--rate", options->rate, "At most so many samples of each channel in a second")
-      ->check(base::number_between(1e-3, 1e6));
-  command->add_option("--last", options->last_s, "Keep only so many seconds before the end")
-      ->seconds_between(0.1, 1e6)
-      ->excludes(splitting);
-  command->add_flag("--until-error", options->until_error, "End when a component is in its error state");
+  command->add_option("--rate", options->rate, "Maximum number of samples per channel and second")->check(base::number_between(1e-3, 1e6));
+  command->add_option("--last", options->last_s, "Keep only the last N seconds")->seconds_between(0.1, 1e6)->excludes(splitting);
+  command->add_flag("--until-error", options->until_error, "Stop when a component goes to the ERROR state");
   command->add_flag("--controlled", options->controlled)->group("");                   // of rtse run alone
   command->add_option("--hashes", options->hashes)->group("")->needs("--controlled");  // the same
-  command->add_option("--compression", options->compression, "zstd, lz4 or none")
+  command->add_option("--compression", options->compression, "Compression: zstd, lz4 or none")
       ->check(base::one_of({"zstd", "lz4", "none"}))
       ->capture_default_str();
-  command->add_option("-s,--server-id", options->server_id, "The simulator whose time counts; default: $RTMSIM_SERVER_ID, else 0")
+  command->add_option("-s,--server-id", options->server_id, "Simulator ID, for the time (default: $RTMSIM_SERVER_ID, else 0)")
       ->check(base::number_between(0, 9999));
-  command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+  command->add_flag("-q,--quiet", options->quiet, "Print errors only");
   command->callback([&chosen, options, split] {
     if (!split->empty()) options->split = *parse_split(*split);
     editor::require(options->all ? options->ports.empty() : options->views || !options->ports.empty(), "record",

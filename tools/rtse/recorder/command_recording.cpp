@@ -121,7 +121,7 @@ void print_channel(const Json& channel) {
                 channel["rate"].get<double>());
   std::cout << line;
   if (!channel["octets"].is_null()) {
-    std::snprintf(line, sizeof line, "  %10llu octets", channel["octets"].get<unsigned long long>());
+    std::snprintf(line, sizeof line, "  %10llu bytes", channel["octets"].get<unsigned long long>());
     std::cout << line;
     if (channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
   }
@@ -156,7 +156,7 @@ void list(Console& console, const std::string& file, bool with_run) {
   if (console.json()) return console.print(with_run ? all : all["channels"]);
   if (std::ranges::any_of(facts, [](const auto& one) { return !one.second.is_read; }))
     console.warn("samples of more than " + std::to_string(most_read >> 30) +
-                 " GiB are counted by their indexes: without octets and missing ones");
+                 " GiB are counted by their indexes: without bytes and missing ones");
   if (with_run) {
     std::cout << "file        " << file << "\nwritten by  " << base::printable(reader->library()) << "\ntime        "
               << seconds_text(reader->statistics().first) << " to " << seconds_text(reader->statistics().last) << " s\nsamples     "
@@ -164,7 +164,7 @@ void list(Console& console, const std::string& file, bool with_run) {
     for (const auto& [key, value] : all["run"].items())
       std::cout << "run         " << base::printable(key) << " = " << base::printable(value.get<std::string>()) << '\n';
     for (const auto& one : all["attachments"])
-      std::cout << "attachment  " << base::printable(one["name"].get<std::string>()) << ", " << one["octets"] << " octets\n";
+      std::cout << "attachment  " << base::printable(one["name"].get<std::string>()) << ", " << one["octets"] << " bytes\n";
   }
   for (const auto& channel : all["channels"]) {
     if (with_run) std::cout << "channel     ";
@@ -273,8 +273,8 @@ void repair(Console& console, const std::string& file, const std::string& output
     if (done->messages_lost) json["samples_lost"] = *done->messages_lost;
     return console.print(json);
   }
-  std::cout << done->messages << " samples kept, " << done->octets_lost << " octets lost";
-  const std::string samples = done->messages_lost ? std::to_string(*done->messages_lost) + " samples" : "samples that nobody counted";
+  std::cout << done->messages << " samples kept, " << done->octets_lost << " bytes lost";
+  const std::string samples = done->messages_lost ? std::to_string(*done->messages_lost) + " samples" : "an unknown number of samples";
   if (done->broken_chunks > 0)
     std::cout << ", " << done->broken_chunks << (done->broken_chunks == 1 ? " broken chunk with " : " broken chunks with ") << samples;
   else if (done->messages_lost != 0)
@@ -286,16 +286,16 @@ void repair(Console& console, const std::string& file, const std::string& output
 }
 
 void add_selection(base::Command& command, Selection& selection) {
-  command.add_option("FILE", selection.file, "The recording")->required();
-  command.add_option("CHANNEL", selection.topics, "Topics or COMPONENT:PORT, patterns too; default: all");
-  command.add_option("--from", selection.from_s, "From this time on [s]")->seconds_between(0.0, 1e10);
-  command.add_option("--to", selection.to_s, "Up to this time [s]")->seconds_between(0.0, 1e10);
+  command.add_option("FILE", selection.file, "Recording")->required();
+  command.add_option("CHANNEL", selection.topics, "Topics, COMPONENT:PORT or patterns (default: all)");
+  command.add_option("--from", selection.from_s, "Start time [s]")->seconds_between(0.0, 1e10);
+  command.add_option("--to", selection.to_s, "End time [s]")->seconds_between(0.0, 1e10);
 }
 
 }  // namespace
 
 void add_recording(base::Command& app, editor::Chosen& chosen) {
-  auto* recording = app.add_subcommand("recording", "Look into recordings");
+  auto* recording = app.add_subcommand("recording", "Inspect recordings");
   recording->require_subcommand(1);
   const auto choose = [&chosen](base::Command* command, std::function<void(const Session&, Console&)> work) {
     command->callback([&chosen, work = std::move(work)] {
@@ -304,33 +304,33 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
     });
   };
   for (const bool with_run : {true, false}) {
-    auto* command = with_run ? recording->add_subcommand("info", "What a recording is of: time, run, attachments, channels, gaps")
-                             : recording->add_subcommand("ls", "Its channels, a line each");
+    auto* command = with_run ? recording->add_subcommand("info", "Show duration, run, attachments, channels and gaps")
+                             : recording->add_subcommand("ls", "List the channels");
     auto file = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "The recording")->required();
+    command->add_option("FILE", *file, "Recording")->required();
     choose(command, [file, with_run](const Session&, Console& console) { list(console, *file, with_run); });
   }
-  auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, a line each");
+  auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, one per line");
   auto selection = std::make_shared<Selection>();
   add_selection(*cat_command, *selection);
-  cat_command->add_option("-n,--count", selection->count, "End after so many samples")->check(base::number_between(0, 1e9));
+  cat_command->add_option("-n,--count", selection->count, "Stop after N samples")->check(base::number_between(0, 1e9));
   choose(cat_command, [selection](const Session&, Console& console) { cat(console, *selection); });
 
-  auto* export_command = recording->add_subcommand("export", "Write a CSV table for each channel, or its pictures");
+  auto* export_command = recording->add_subcommand("export", "Write a CSV table per channel, or the camera images");
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
-  export_command->add_option("-o,--output", exported->folder, "The folder for what is written")->required();
-  export_command->add_flag("--png", exported->png, "The pictures of cameras as PNG files, instead of tables");
+  export_command->add_option("-o,--output", exported->folder, "Output folder")->required();
+  export_command->add_flag("--png", exported->png, "Write the camera images as PNG files instead of tables");
   choose(export_command, [exported](const Session&, Console& console) { export_samples(console, *exported); });
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();
-  compare_command->add_option("A", compared->first, "A recording")->required();
-  compare_command->add_option("B", compared->second, "Another one")->required();
-  compare_command->add_option("--channel", compared->topics, "Only these topics or COMPONENT:PORT, patterns too");
-  compare_command->add_option("--ignore", compared->tolerated.ignored, "Members that do not count, e.g. tm");
+  compare_command->add_option("A", compared->first, "Recording")->required();
+  compare_command->add_option("B", compared->second, "Recording to compare with")->required();
+  compare_command->add_option("--channel", compared->topics, "Compare only these topics, COMPONENT:PORT or patterns");
+  compare_command->add_option("--ignore", compared->tolerated.ignored, "Members to ignore, e.g. tm");
   auto tolerances = std::make_shared<std::vector<std::string>>();
-  compare_command->add_option("--tolerance", *tolerances, "MEMBER=EPS, or EPS for all: numbers may differ so far")
+  compare_command->add_option("--tolerance", *tolerances, "Absolute tolerance: MEMBER=EPS, or EPS for all members")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         const auto parsed = parse_tolerance(text);
@@ -342,11 +342,11 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
   });
 
   auto* repair_command =
-      recording->add_subcommand("repair", "Give a file that was cut off its summary again, or put a ring's pieces together");
+      recording->add_subcommand("repair", "Rebuild the summary of a truncated file, or merge the segments of a ring recording");
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
-  repair_command->add_option("FILE", *file, "The recording")->required();
-  repair_command->add_option("-o,--output", *output, "Write to this file instead");
+  repair_command->add_option("FILE", *file, "Recording")->required();
+  repair_command->add_option("-o,--output", *output, "Output file (default: FILE)");
   choose(repair_command, [file, output](const Session&, Console& console) { repair(console, *file, *output); });
 }
 

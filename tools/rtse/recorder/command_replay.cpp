@@ -276,7 +276,7 @@ void replay_file(const Session& session, Console& console, const Options& option
   const auto made = editor::run_system(session.orb(), call, console, hooks);
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
-    problem += "; it was in a process of others, which --start COMMAND starts here";
+    problem += "; it was in a third-party process: start that with --start COMMAND";
   // Of all that can be refused this has a reason that the component's log does not give.
   if (problem.find(": activating ") != std::string::npos)
     problem = "replay: " + options.component +
@@ -294,32 +294,32 @@ void replay_file(const Session& session, Console& console, const Options& option
 }  // namespace
 
 void add_replay(base::Command& app, editor::Chosen& chosen) {
-  auto* command = app.add_subcommand("replay", "Send a component its recorded inputs again, in lock step, and compare what it answers");
+  auto* command = app.add_subcommand("replay", "Send recorded inputs to one component, in lock step, and compare its outputs");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "The recording, of rtse run --record")->required();
-  command->add_option("--into", options->component, "The component, by its instance name")->required();
-  command->add_flag("--compare", options->compares, "Its outputs are to be the recorded ones, to the bit");
-  command->add_option("--tolerance", options->tolerances, "MEMBER=EPS, or EPS for all: numbers may differ so far")
+  command->add_option("FILE", options->file, "Recording of rtse run --record")->required();
+  command->add_option("--into", options->component, "Instance name of the component")->required();
+  command->add_flag("--compare", options->compares, "Fail unless the outputs are bit-identical to the recording");
+  command->add_option("--tolerance", options->tolerances, "Absolute tolerance: MEMBER=EPS, or EPS for all members")
       ->allow_extra_args(false)
       ->check([](const std::string& text) {
         const auto parsed = parse_tolerance(text);
         return parsed ? std::string() : parsed.error().message;
       });
-  command->add_option("--ignore", options->ignored, "Members that do not count, e.g. tm")->allow_extra_args(false);
-  command->add_option("--link", options->links, "COMPONENT:PORT=INPORT: what was recorded there goes to this port")
-      ->allow_extra_args(false);
-  command->add_option("--set", options->settings, "NAME=VALUE: another value of a configuration parameter than the recorded one")
+  command->add_option("--ignore", options->ignored, "Members to ignore, e.g. tm")->allow_extra_args(false);
+  command->add_option("--link", options->links, "Send a recorded port to another InPort: COMPONENT:PORT=INPORT")->allow_extra_args(false);
+  command->add_option("--set", options->settings, "Override a recorded parameter: NAME=VALUE")
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected NAME=VALUE" : ""; });
-  command->add_option("--start", options->start, "Command that starts the component, if it is one of others")->allow_extra_args(false);
-  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
-  command->add_option("--property", options->properties, "INSTANCE:KEY=VALUE, a property that the component is created with")
+  command->add_option("--start", options->start, "Command that starts the component, if it is a third-party component")
       ->allow_extra_args(false);
-  command->add_option("--hang-timeout", options->hang_timeout_s, "Seconds of real time that one tick may take")
+  command->add_option("--module-path", options->module_paths, "Folder with modules of components")->allow_extra_args(false);
+  command->add_option("--property", options->properties, "Property of the component at its creation: INSTANCE:KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
-  command->add_option("--keep", options->keep, "Keep logs in this folder");
+  command->add_option("--keep", options->keep, "Folder for the logs");
   command->callback([&chosen, options] {
     chosen.work = [options](const Session& session, Console& console) { replay_file(session, console, *options); };
   });

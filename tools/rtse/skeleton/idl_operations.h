@@ -1,4 +1,4 @@
-// What `rtse new` asks of IDL files: which files belong together, and the operations of an interface as C++ declarations, from omniidl. Any
+// Reads IDL files for `rtse new`: their dependencies, and the operations of an interface as C++ declarations, by omniidl. Any
 // thread.
 #pragma once
 

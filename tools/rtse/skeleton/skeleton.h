@@ -1,4 +1,4 @@
-// The sources of a new component, complete and ready to build. Pure; any thread.
+// Generates the sources of a new component, complete and ready to build. Pure; any thread.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// What a new component shall be, as files say it. Any thread.
+// The specification of a new component, as read from files. Any thread.
 #pragma once
 
 #include <string>
