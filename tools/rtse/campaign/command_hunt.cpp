@@ -75,13 +75,16 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
   options.call_limit = session.call_timeout();
   const bool shows = isatty(2) != 0 && !console.json();
-  const auto result = hunt(session.orb(), *campaign, options, [&](const HuntProgress& progress) {
-    if (shows) std::fprintf(stderr, "\r\033[K");
-    if (progress.find && !console.json()) tell(*progress.find, progress.finds);
-    if (shows)
-      std::fprintf(stderr, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds, progress.features,
-                   progress.wall_s, static_cast<long>(options.budget.count()));
-  });
+  const auto result = hunt(
+      session.orb(), *campaign, options,
+      [&](const HuntProgress& progress) {
+        if (shows) std::fprintf(stderr, "\r\033[K");
+        if (progress.find && !console.json()) tell(*progress.find, progress.finds);
+        if (shows)
+          std::fprintf(stderr, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds, progress.features,
+                       progress.wall_s, static_cast<long>(options.budget.count()));
+      },
+      console);
   if (shows) std::fprintf(stderr, "\r\033[K");
   if (!result) return console.fail(result.error());
   if (console.json()) {
