@@ -278,13 +278,6 @@ Result<Plan> connection_options(const ActContext& context, const Json& args) {
 
 // ---- configuration
 
-const editor::ConfigurationSetView* find_set(const ComponentView& component, const std::string& id) {
-  for (const auto& set : component.configuration_sets) {
-    if (set.id == id) return &set;
-  }
-  return nullptr;
-}
-
 using Values = std::vector<std::pair<std::string, std::string>>;
 
 // `is_forced`: also what the component's own types and constraints forbid.
