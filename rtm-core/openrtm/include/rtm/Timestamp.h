@@ -16,4 +16,4 @@ using ::setTimestamp;
 // True while this thread runs a callback for an execution context in simulated time. Such a callback must not wait for time to pass, and
 // must not let the wall clock decide what it does. OpenRTM-aist has no such function.
 bool inSimulatedTime();
-}
+}  // namespace RTC
