@@ -89,7 +89,9 @@ Result<std::shared_ptr<const RecordedScene>> RecordedScene::make(const std::stri
   if (!run) return run.error();
   StartOptions options;
   options.world = run->world();
-  options.resource_paths = run->options().resource_paths;
+  const auto recorded = run->options();
+  if (!recorded) return recorded.error();
+  options.resource_paths = recorded->resource_paths;
   editor::SilentReporter reporter;  // the error says enough
   Result<std::unique_ptr<StartedRun>> started = Error{"no server id is free"};
   for (std::uint32_t i = 0; i < tries && !started; ++i) {
