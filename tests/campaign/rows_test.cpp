@@ -57,7 +57,7 @@ TEST(PassRates, have_wilsons_interval) {
 }
 
 TEST(ContentHashes, of_a_device_are_refused) {
-  ContentHash hash;
+  base::ContentHash hash;
   EXPECT_FALSE(hash.add_file("/dev/zero"));
 }
 

@@ -1,4 +1,4 @@
-#include "studio/door.h"
+#include "door.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "device.h"
 #include "mapping.h"
 #include "sensor_devices.h"
-#include "studio/outbox.h"
+#include "outbox.h"
 #include "timeline.h"
 
 namespace gateway {

@@ -5,6 +5,7 @@
 // is the same to the bit.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -20,7 +21,6 @@ namespace editor {
 
 // What a script may use of the run while it stands between two steps.
 struct RunScene {
-  const Session& session;  // of the run's naming service
   Simulator& simulator;
   const Workplace& place;
   const std::string& naming;  // HOST:PORT of its service
@@ -32,6 +32,7 @@ struct RunScene {
   std::function<void(bool is_there)> set_naming;                          // stops the naming service, or lets it go on
   // As the editor sees it; also while the naming service is stopped.
   std::function<Result<ComponentView>(const std::string& instance, Detail)> component;
+  std::chrono::milliseconds transition_timeout{0};  // of a component's state, see Session
 };
 
 class RunScript {

@@ -41,7 +41,7 @@ Result<void> unless_missing(editor::RunScene& scene, const std::string& model, c
 Result<void> change(editor::RunScene& scene, const std::string& instance, editor::Transition transition) {
   const auto view = scene.component(instance, {.contexts = true});
   if (!view) return view.error();
-  static_cast<void>(editor::change_state(*view, transition, -1, scene.session.transition_timeout()));
+  static_cast<void>(editor::change_state(*view, transition, -1, scene.transition_timeout));
   return {};
 }
 
