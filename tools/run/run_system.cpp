@@ -437,11 +437,11 @@ class Run final : public RunningSystem {
 
   Result<void> begin_script() {
     if (!hooks_.script) return {};
-    scene_.emplace(RunScene{
-        *session_, simulator_, place_, naming_.address(), system_, ports_, [this](const auto& instance) { return kill_host(instance); },
-        [this](const auto& instance) { return restart_host(instance); },
-        [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
-        [this](const auto& instance, Detail detail) { return component(instance, detail); }});
+    scene_.emplace(
+        RunScene{simulator_, place_, naming_.address(), system_, ports_, [this](const auto& instance) { return kill_host(instance); },
+                 [this](const auto& instance) { return restart_host(instance); },
+                 [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
+                 [this](const auto& instance, Detail detail) { return component(instance, detail); }, session_->transition_timeout()});
     return hooks_.script->begin(*scene_);
   }
 
