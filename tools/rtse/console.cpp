@@ -1,8 +1,5 @@
 #include "rtse/console.h"
 
-#include <unistd.h>
-
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -25,13 +22,5 @@ void Console::fail(const std::vector<base::Error>& errors) {
 }
 
 void Console::warn(const std::string& text) { std::cerr << "rtse: " + base::printable(text, "\n\t") + "\n"; }
-
-void Console::show_progress(double done_s, double all_s) {
-  if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r%6.1f of %.1f s", done_s, all_s);
-}
-
-void Console::end_progress() {
-  if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r                         \r");
-}
 
 }  // namespace editor

@@ -26,9 +26,6 @@ class Console final : public Reporter {
   bool failed() const { return failed_; }
 
   void warn(const std::string& text) override;
-  // On a terminal only.
-  void show_progress(double done_s, double all_s) override;
-  void end_progress() override;
 
  private:
   const bool json_;

@@ -455,7 +455,7 @@ class Run final : public RunningSystem {
       last = now;
       if (Clock::now() - shown < 1s) return;
       shown = Clock::now();
-      if (!hooks_.driver) reporter_.show_progress(now, options_.duration_s);
+      reporter_.show_progress(now, options_.duration_s);
       static_cast<void>(judge_.watch());  // so that the simulator need not keep it; at the end it must succeed
     };
     for (std::int64_t done = 0; left > 0;) {

@@ -243,6 +243,23 @@ Result<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {
   return seeds;
 }
 
+// Shows the simulated time of one run on a terminal. Of many runs at a time, as in campaigns, nobody could read it.
+class RunProgress final : public Reporter {
+ public:
+  explicit RunProgress(Console& console) : console_(console) {}
+  void warn(const std::string& text) override { console_.warn(text); }
+  void show_progress(double done_s, double all_s) override {
+    if (is_shown_) std::fprintf(stderr, "\r%6.1f of %.1f s", done_s, all_s);
+  }
+  void end_progress() override {
+    if (is_shown_) std::fprintf(stderr, "\r                         \r");
+  }
+
+ private:
+  Console& console_;
+  const bool is_shown_ = isatty(STDERR_FILENO) != 0;
+};
+
 // Prints one line per run and one per unmet expectation. Without `seeds_text` one run with the seed of the options, else one for each,
 // `jobs` of them at a time.
 void run(const Session& session, Console& console, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
@@ -254,7 +271,8 @@ void run(const Session& session, Console& console, const RunOptions& options, co
     if (!seeds) return console.fail(seeds.error());
     results = run_seeds(session, console, options, *seeds, jobs);
   } else {
-    results.push_back(options.twice ? run_twice(session.orb(), options, console) : run_system(session.orb(), options, console));
+    RunProgress progress(console);
+    results.push_back(options.twice ? run_twice(session.orb(), options, progress) : run_system(session.orb(), options, progress));
     report(console, results.back(), false);
     if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
@@ -294,7 +312,7 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
   run->add_flag(options_from_input, *has_input)->group("");  // of run_apart() alone
   run->callback([=, &chosen] {
     chosen.work = [=](const Session& session, Console& console) {
-      auto base = read_like ? read_like(*like) : *has_input ? read_input() : RunOptions();
+      auto base = read_like ? read_like(console, *like) : *has_input ? read_input() : RunOptions();
       if (!base) return console.fail(base.error());
       editor::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
     };

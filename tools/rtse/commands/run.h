@@ -13,10 +13,12 @@ class Command;
 
 namespace editor {
 
+class Console;
 struct Chosen;
 
 // The options of the run of a recording, whose files exist as long as this function.
-using ReadLike = std::function<base::Result<RunOptions>(const std::string& recording)>;
+// Warns of what the recording lacks.
+using ReadLike = std::function<base::Result<RunOptions>(Console& console, const std::string& recording)>;
 
 // `run --like RECORDING`, and all options of `run` in place of the recorded ones.
 // `check`: what is wrong with the name of a recording; empty: nothing.

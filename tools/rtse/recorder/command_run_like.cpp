@@ -1,5 +1,4 @@
 // run --like.
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -16,10 +15,10 @@ void add_run_like(base::Command& app, editor::Chosen& chosen) {
   const auto kept = std::make_shared<std::optional<RecordedRun>>();  // its files, until the run has ended
   editor::add_run_like(
       app, chosen,
-      [kept](const std::string& recording) -> base::Result<editor::RunOptions> {
+      [kept](editor::Console& console, const std::string& recording) -> base::Result<editor::RunOptions> {
         auto run = RecordedRun::unpack(recording);
         if (!run) return run.error();
-        if (const auto lost = run->lost(); !lost.empty()) std::cerr << "rtse: " << lost << '\n';
+        if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
         return kept->emplace(std::move(*run)).options();
       },
       check_recording);
