@@ -14,15 +14,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Descriptor {
+class OpenAt {
  public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(other.number_) { other.number_ = -1; }
-  Descriptor& operator=(Descriptor&& other) noexcept {
+  explicit OpenAt(int number) : number_(number) {}
+  OpenAt(OpenAt&& other) noexcept : number_(other.number_) { other.number_ = -1; }
+  OpenAt& operator=(OpenAt&& other) noexcept {
     std::swap(number_, other.number_);
     return *this;
   }
-  ~Descriptor() {
+  ~OpenAt() {
     if (number_ >= 0) ::close(number_);
   }
   int get() const { return number_; }
@@ -45,10 +45,10 @@ bool stays_below(const fs::path& relative) {
 Result<std::string> read_beneath(const fs::path& folder, const fs::path& relative, std::size_t most) {
   const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes((folder / relative).string()) + ": " + what}; };
   if (!stays_below(relative)) return bad("is not below " + in_quotes(folder.string()));
-  Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  OpenAt at(::open(folder.empty() ? "." : folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (at.get() < 0) return bad(std::strerror(errno));
   for (const auto& part : relative.parent_path()) {
-    at = Descriptor(::openat(at.get(), part.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    at = OpenAt(::openat(at.get(), part.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     if (at.get() < 0) return bad(errno == ENOTDIR || errno == ELOOP ? "a part of its path is no folder" : std::strerror(errno));
   }
   // What it is, before it is opened: to open a device may do something.
@@ -57,7 +57,7 @@ Result<std::string> read_beneath(const fs::path& folder, const fs::path& relativ
   struct stat status {};
   if (::fstatat(at.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return bad(std::strerror(errno));
   if (!is_regular(status)) return bad("is not a regular file");
-  const Descriptor file(::openat(at.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const OpenAt file(::openat(at.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (file.get() < 0) return bad(std::strerror(errno));
   if (::fstat(file.get(), &status) != 0 || !is_regular(status)) return bad("is not a regular file");
   const auto size = static_cast<std::size_t>(status.st_size);

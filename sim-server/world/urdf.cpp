@@ -14,7 +14,7 @@ namespace {
 
 using Fault = std::optional<std::string>;
 
-std::string_view name_of(pugi::xml_node node) { return node.attribute("name").value(); }
+std::string_view urdf_name(pugi::xml_node node) { return node.attribute("name").value(); }
 
 bool is_of_xacro(pugi::xml_node node) { return std::string_view(node.name()).starts_with("xacro:"); }
 
@@ -29,8 +29,8 @@ Fault xacro_left(pugi::xml_node robot) {
 Fault wrong_names(pugi::xml_node robot, const char* kind) {
   std::set<std::string_view> names;
   for (const pugi::xml_node node : robot.children(kind)) {
-    if (name_of(node).empty()) return "a <" + std::string(kind) + "> has no name";
-    if (!names.insert(name_of(node)).second) return std::string(kind) + " " + base::in_quotes(name_of(node)) + " is there twice";
+    if (urdf_name(node).empty()) return "a <" + std::string(kind) + "> has no name";
+    if (!names.insert(urdf_name(node)).second) return std::string(kind) + " " + base::in_quotes(urdf_name(node)) + " is there twice";
   }
   return {};
 }
@@ -48,7 +48,7 @@ Fault wrong_limit(pugi::xml_node joint, const std::string& who) {
 
 Fault wrong_joint(pugi::xml_node robot, pugi::xml_node joint) {
   constexpr std::array<std::string_view, 6> types = {"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
-  const std::string who = "joint " + base::in_quotes(name_of(joint));
+  const std::string who = "joint " + base::in_quotes(urdf_name(joint));
   const std::string_view type = joint.attribute("type").value();
   if (type.empty()) return who + " has no type";
   if (std::find(types.begin(), types.end(), type) == types.end()) return who + " has the unknown type " + base::in_quotes(type);
@@ -56,7 +56,7 @@ Fault wrong_joint(pugi::xml_node robot, pugi::xml_node joint) {
     const std::string_view link = joint.child(end).attribute("link").value();
     if (link.empty()) return who + " has no " + end;
     const auto links = robot.children("link");
-    if (std::none_of(links.begin(), links.end(), [&](pugi::xml_node other) { return name_of(other) == link; }))
+    if (std::none_of(links.begin(), links.end(), [&](pugi::xml_node other) { return urdf_name(other) == link; }))
       return std::string(end) + " " + base::in_quotes(link) + " of " + who + " does not exist";
   }
   return wrong_limit(joint, who);
@@ -67,14 +67,14 @@ Fault wrong_tree(pugi::xml_node robot) {
   std::map<std::string_view, std::string_view> holders;  // joints, by the link that is their child
   for (const pugi::xml_node joint : robot.children("joint")) {
     const std::string_view child = joint.child("child").attribute("link").value();
-    const auto [holder, is_new] = holders.emplace(child, name_of(joint));
+    const auto [holder, is_new] = holders.emplace(child, urdf_name(joint));
     if (!is_new)
       return "link " + base::in_quotes(child) + " is the child of two joints, " + base::in_quotes(holder->second) + " and " +
-             base::in_quotes(name_of(joint));
+             base::in_quotes(urdf_name(joint));
   }
   std::vector<std::string_view> roots;
   for (const pugi::xml_node link : robot.children("link")) {
-    if (!holders.contains(name_of(link))) roots.push_back(name_of(link));
+    if (!holders.contains(urdf_name(link))) roots.push_back(urdf_name(link));
   }
   if (roots.empty()) return robot.child("link") ? "its links hang on each other in a ring" : "it has no link";
   if (roots.size() > 1)
@@ -99,7 +99,7 @@ void mend_urdf(pugi::xml_node robot) {
   for (pugi::xml_node link : robot.children("link")) {
     const pugi::xml_node mass = link.child("inertial").child("mass");
     const std::optional<double> value = base::parse_number(mass.attribute("value").value());
-    if (value && *value == 0 && welded.contains(name_of(link))) link.remove_child("inertial");
+    if (value && *value == 0 && welded.contains(urdf_name(link))) link.remove_child("inertial");
   }
 }
 
@@ -108,7 +108,7 @@ std::vector<std::string> left_out_of_urdf(pugi::xml_node robot) {
   for (const pugi::xml_node joint : robot.children("joint")) {
     const pugi::xml_node mimic = joint.child("mimic");
     if (!mimic) continue;
-    lines.push_back("joint " + base::in_quotes(name_of(joint)) + " does not mimic joint " +
+    lines.push_back("joint " + base::in_quotes(urdf_name(joint)) + " does not mimic joint " +
                     base::in_quotes(mimic.attribute("joint").value()) + "; it moves on its own");
   }
   return lines;
@@ -116,7 +116,7 @@ std::vector<std::string> left_out_of_urdf(pugi::xml_node robot) {
 
 std::optional<std::string> fault_of_urdf(pugi::xml_node robot) {
   if (Fault fault = xacro_left(robot)) return fault;
-  if (name_of(robot).empty()) return "the robot has no name";
+  if (urdf_name(robot).empty()) return "the robot has no name";
   for (const char* kind : {"link", "joint"}) {
     if (Fault fault = wrong_names(robot, kind)) return fault;
   }

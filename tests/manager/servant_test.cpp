@@ -98,7 +98,7 @@ TEST_F(Servant, callers_set_a_limited_number_of_keys_of_a_limited_length) {
   while (taken < 5000 && manager->set_configuration(("test.a." + std::to_string(taken)).c_str(), "x") == RTC::RTC_OK) ++taken;
   EXPECT_EQ(taken, 4096);
   EXPECT_EQ(manager->set_configuration("test.a.9", "y"), RTC::RTC_OK);
-  EXPECT_TRUE(rtcd.wait_for_output("key \"test.a.4096\" is refused")) << rtcd.output();
+  EXPECT_TRUE(rtcd.wait_for_output("key \"test.a.4096\" is rejected")) << rtcd.output();
 }
 
 TEST_F(Servant, a_limit_of_seconds_that_no_clock_can_hold_is_refused) {

@@ -202,7 +202,7 @@ Names offences(const fs::path& root) {
         if (part.empty()) {
           if (match[1] == "<" && !is_everybodys(header)) found.push_back(at + "<" + header + "> is of no library in the table");
           // A quoted name without a part is a header of the same room. Among the tools every name begins with its room.
-          const bool is_here = header.ends_with("Stub.h") || header.ends_with("Skel.h") ||  // made from IDL
+          const bool is_here = header.ends_with("Stub.h") || header.ends_with("Skel.h") || header.ends_with("_manual.h") ||  // generated
                                fs::exists(entry.path().parent_path() / header) || fs::exists(root / layer->folder / header);
           if (match[1] == "\"" && (!is_here || file.starts_with("tools/")))
             found.push_back(at + "\"" + header + "\" is no header of " + layer->folder);

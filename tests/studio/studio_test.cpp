@@ -428,7 +428,7 @@ TEST(Acts, of_components_say_what_one_would_type) {
   EXPECT_EQ(command("load_module", R"({"manager":"/m.mgr","file":"A.so","init":"-x"})"),
             "error: file \"A.so\": expected the name of a module, and perhaps that of its function");
   EXPECT_EQ(command("set_configuration", R"({"path":"/a.rtc","set":"default","values":{"gain":"9"},"force":true})"),
-            rtse + "conf /a.rtc -s default set gain 9 --force");
+            rtse + "conf /a.rtc set gain 9 -s default --force");
   EXPECT_EQ(command("join_time", R"({"path":"/a.rtc","phase":1.5})"), "error: phase: expected a whole number from 0 to 15");
   EXPECT_EQ(command("leave_time", R"({"path":"/a.rtc"})"), rtse + "leave /a.rtc");
   EXPECT_EQ(command("disconnect_all", R"({"path":"/a.rtc:in"})"), rtse + "dis /a.rtc:in");

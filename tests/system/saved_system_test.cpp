@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/orb_environment.h"  // a timeout of calls needs an ORB
 #include "system/fake_components.h"
 
 namespace editor {

@@ -13,11 +13,10 @@ namespace {
 
 using base::Error;
 using base::Result;
-using Json = nlohmann::json;
 
-Json parsed(const std::string& text) {
-  auto json = Json::parse(text, nullptr, false);
-  return json.is_object() ? json : Json::object();
+nlohmann::json parsed(const std::string& text) {
+  auto json = nlohmann::json::parse(text, nullptr, false);
+  return json.is_object() ? json : nlohmann::json::object();
 }
 
 class RecordSink final : public shm::PoseLogSink {
@@ -100,7 +99,7 @@ Result<std::vector<std::string>> ShmSimulator::models() {
   const auto reply = ask(shm::TreeRequest{});
   if (!reply) return reply.error();
   std::vector<std::string> names;
-  for (const auto& model : parsed(reply->text).value("models", Json::array())) names.push_back(model.value("name", ""));
+  for (const auto& model : parsed(reply->text).value("models", nlohmann::json::array())) names.push_back(model.value("name", ""));
   return names;
 }
 
@@ -115,7 +114,7 @@ Result<std::vector<ModelContact>> ShmSimulator::contacts(const std::string& mode
   const auto reply = ask(shm::ContactsRequest{model});
   if (!reply) return reply.error();
   std::vector<ModelContact> contacts;
-  for (const auto& one : parsed(reply->text).value("contacts", Json::array()))
+  for (const auto& one : parsed(reply->text).value("contacts", nlohmann::json::array()))
     contacts.push_back({one.value("link", ""), one.value("other", "")});
   return contacts;
 }
