@@ -14,11 +14,12 @@ if os.geteuid() != 0:
     print("needs a second account, so root")
     sys.exit(77)
 
+# The page of rtm-studio itself is the same for everybody, as an installed file is; what it shows needs the token.
 # One account does what is in `attack` and prints what it has got; its own program, without anything of ours.
 attack = r"""
 import os, socket, sys
 for port in map(int, sys.argv[1].split(",")):
-    for octets in (bytes.fromhex(sys.argv[2]), b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\0" * 64):
+    for octets in (bytes.fromhex(sys.argv[2]), b"GET /access HTTP/1.1\r\nHost: localhost\r\n\r\n", b"GET /world.glb HTTP/1.1\r\nHost: localhost\r\n\r\n", b"\0" * 64):
         try:
             with socket.create_connection(("127.0.0.1", port), timeout=10) as stream:
                 stream.sendall(octets)

@@ -51,7 +51,7 @@ def faults():
                         (["nobody", "--end"], "no iface nobody"), (["nobody"], "no iface nobody")]:
         refused("fault", *words, says=says)
     for words, says in [([laser, "odd"], "odd"), ([laser, "dropout", "2"], "must be from 0 to 1, got 2"), ([laser, "bias", "nan"], "expected a number"),
-                        ([laser, "off", "1"], "has none"), ([laser, "--for", "1"], "goes with IFACE KIND"), ([laser, "off", "--for", "-1"], "-1"),
+                        ([laser, "off", "1"], "takes no AMOUNT"), ([laser, "--for", "1"], "goes with IFACE KIND"), ([laser, "off", "--for", "-1"], "-1"),
                         ([laser, "latency", "2.5"], "must be a whole number of samples, got 2.5"), ([laser, "off", "--for", "0"], "--for")]:
         refused("fault", *words, code=2, says=says)
     assert state() == before

@@ -181,7 +181,7 @@ def bad_images():
     send(32, 24, rgb, "YUV422", 16)
     says(host, "YUV422", "not known, expected RGB8")
     send(8, 8, noise(100, 2), "JPEG")
-    says(host, "no JPEG")
+    says(host, "not a JPEG image")
     send(32, 24, rgb[:6], "DEPTH32F", 32)
     says(host, "DEPTH32F", "3072 bytes, got 6")
     assert state() == "Active"
