@@ -375,7 +375,7 @@ def comes_back():
     viewer.event("world", lambda m: m["present"])
     viewer.wait_for(is_poses)
     rig.kill(simulator)
-    assert "gone" in viewer.event("world", lambda m: not m["present"])["problem"]
+    assert "has exited" in viewer.event("world", lambda m: not m["present"])["problem"]
     assert "error" in viewer.ask("run")
     rig.server("-u")
     viewer.event("world", lambda m: m["present"])

@@ -233,7 +233,9 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
     call.start_folder.clear();
   }
   if (options.seed) call.seed = *options.seed;
-  call = editor::with_given(std::move(call), options.run, command);
+  auto given = options.run;
+  given.world = call.world, given.seed = call.seed;  // options of this command that have the names of a run's
+  call = editor::with_given(std::move(call), given, command);
   editor::catch_interrupts();
   GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
