@@ -522,6 +522,22 @@ TEST(ShownPicture, each_form_of_a_camera_becomes_a_jpeg) {
   EXPECT_FALSE(studio::jpeg_of({1, 1, 4, "points", "1234"}, encoder).ok());
 }
 
+TEST(ShownPicture, a_mosaic_of_red_pixels_is_red) {
+  std::string data(16 * 16, '\0');
+  for (std::size_t y = 0; y < 16; y += 2) {
+    for (std::size_t x = 0; x < 16; x += 2) data[y * 16 + x] = '\xff';
+  }
+  base::JpegEncoder encoder;
+  const auto jpeg = studio::jpeg_of({16, 16, 16, "bayer_rggb8", data}, encoder);
+  ASSERT_TRUE(is_jpeg(jpeg));
+  const auto image = base::decode_jpeg({reinterpret_cast<const std::uint8_t*>(jpeg->data()), jpeg->size()}, base::JpegPixels::rgb);
+  ASSERT_TRUE(image);
+  const std::size_t middle = 3 * (8 * 16 + 8);
+  EXPECT_GT(image->pixels[middle], 200);
+  EXPECT_LT(image->pixels[middle + 1], 60);
+  EXPECT_LT(image->pixels[middle + 2], 60);
+}
+
 TEST(ShownPicture, a_camera_is_named_with_its_type_or_without) {
   EXPECT_EQ(studio::camera_name("depth:rig::eyes").types, (std::vector<std::string>{"depth"}));
   EXPECT_EQ(studio::camera_name("depth:rig::eyes").iface, "rig::eyes");

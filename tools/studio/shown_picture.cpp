@@ -127,7 +127,8 @@ Result<std::string> jpeg_of(const RawPicture& picture, base::JpegEncoder& encode
   if (coding->second.pixels)
     return compress(encoder, {reinterpret_cast<const std::uint8_t*>(picture.data.data()), picture.data.size()}, picture, picture.stride,
                     *coding->second.pixels);
-  if (const auto order = base::parse_bayer_order(picture.encoding.substr(picture.encoding.find('_') + 1))) {
+  const auto order = picture.encoding.starts_with("bayer_") ? base::parse_bayer_order(picture.encoding.substr(6, 4)) : std::nullopt;
+  if (order) {
     std::vector<std::uint8_t> rgb(std::size_t{picture.width} * picture.height * 3);
     base::demosaic({reinterpret_cast<const std::uint8_t*>(picture.data.data()), picture.data.size()}, static_cast<int>(picture.width),
                    static_cast<int>(picture.height), picture.stride, *order, rgb);
