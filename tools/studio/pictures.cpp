@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "channels/views/iface_view.h"
 #include "shm/client.h"
 #include "studio/foxglove.h"
 #include "studio/shown_picture.h"
@@ -15,28 +16,6 @@ using namespace std::chrono_literals;
 constexpr auto look_period = 20ms;
 constexpr auto return_period = 500ms;  // a camera that is away is looked for so often
 constexpr char picture_octet = static_cast<char>(0x83);
-
-// Of those that the encoder does not take as they are, as ROS calls them; empty: there is no picture in it.
-std::string_view encoding_of(shm::Format format) {
-  switch (format) {
-    case shm::Format::depth_float:
-      return "32FC1";
-    case shm::Format::mono16:
-      return "mono16";
-    case shm::Format::bayer_rggb8:
-      return "bayer_rggb8";
-    case shm::Format::bayer_bggr8:
-      return "bayer_bggr8";
-    case shm::Format::bayer_gbrg8:
-      return "bayer_gbrg8";
-    case shm::Format::bayer_grbg8:
-      return "bayer_grbg8";
-    default:
-      return "";
-  }
-}
-
-}  // namespace
 
 // One camera, its newest frame encoded once.
 class Pictures::Camera {
@@ -59,7 +38,7 @@ class Pictures::Camera {
     auto jpeg = jpeg_of({head.width,
                          head.height,
                          head.stride,
-                         encoding_of(static_cast<shm::Format>(head.format)),
+                         channels::encoding_of(static_cast<shm::Format>(head.format)),
                          {reinterpret_cast<const char*>(frame->data().data()), frame->data().size()}},
                         jpeg_);
     problem_ = jpeg ? "" : "camera " + name_ + ": " + jpeg.error().message;

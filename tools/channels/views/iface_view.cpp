@@ -222,6 +222,8 @@ ros::TransformStamped optical_frame(const std::string& sensor) {
   return transform_of({}, sensor, sensor + "/optical", {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
 }
 
+}  // namespace
+
 std::string encoding_of(shm::Format format) {
   using enum shm::Format;
   switch (format) {
@@ -253,6 +255,8 @@ std::string encoding_of(shm::Format format) {
   }
   return "";
 }
+
+namespace {
 
 ros::CameraInfo camera_message(const shm::CameraInfo& info, const ros::Header& header) {
   return {.header = header,

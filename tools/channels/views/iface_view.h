@@ -56,6 +56,8 @@ std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures);
 
 inline constexpr const char* world_frame = "world";
 
+// The name that sensor_msgs/msg/Image has for it.
+std::string encoding_of(shm::Format format);
 ros::Header header_of(const shm::Stamp& stamp, const std::string& frame);
 ros::Pose pose_of(const shm::Pose& pose);
 // `second` is in the frame that `first` puts somewhere.
