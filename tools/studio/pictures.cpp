@@ -17,6 +17,8 @@ constexpr auto look_period = 20ms;
 constexpr auto return_period = 500ms;  // a camera that is away is looked for so often
 constexpr char picture_octet = static_cast<char>(0x83);
 
+}  // namespace
+
 // One camera, its newest frame encoded once.
 class Pictures::Camera {
  public:
