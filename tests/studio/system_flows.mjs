@@ -391,6 +391,7 @@ const flows = [
     await until('its velocity', async () => /^-?0\.\d\d .* m\/s$/.test(await page.locator('.inspector dt:text-is("velocity") + dd').textContent()));
     if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'model.png') });
     await page.locator('.inspector button:has-text("Delete")').click();
+    await page.locator('dialog[open] button.main').click();
     await until('gone', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
     void rig;
   }],
