@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     gateway::Gateway gateway(std::move(options));
     if (const auto done = gateway.run(); !done) return fail(done.error());
   } catch (const std::exception& e) {
-    return fail({std::string("out of system resources (threads or memory): ") + e.what()});
+    return fail({std::string("out of system resources (threads or files): ") + e.what()});
   }
   return 0;
 }

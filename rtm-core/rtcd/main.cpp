@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   try {
     return base::is_warm_start(argc, argv) ? base::make_processes(host) : host(argc, argv);
   } catch (const std::system_error& e) {
-    fail(1, std::string("the system refuses what is needed, as threads or files: ") + e.what());
+    fail(1, std::string("out of system resources (threads or files): ") + e.what());
   } catch (const std::bad_alloc&) {
     fail(1, "out of memory");
   }

@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
   try {
     return studio_of(argc, argv);
   } catch (const std::system_error& e) {
-    fail({std::string("the system refuses what is needed, as threads or files: ") + e.what()});
+    fail({std::string("out of system resources (threads or files): ") + e.what()});
   } catch (const std::bad_alloc&) {
     fail({"out of memory"});
   } catch (const std::exception& e) {

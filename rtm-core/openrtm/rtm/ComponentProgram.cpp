@@ -153,7 +153,7 @@ int runComponentProgram(int argc, char** argv, const std::string& component, con
   manager->runManager();
   return EXIT_SUCCESS;
 } catch (const std::system_error& e) {
-  std::cerr << component << "Comp: the system refuses what is needed, as threads or files: " << e.what() << std::endl;
+  std::cerr << component << "Comp: out of system resources (threads or files): " << e.what() << std::endl;
   std::_Exit(EXIT_FAILURE);  // what has been started cannot be ended in order
 } catch (const std::bad_alloc&) {
   std::cerr << component << "Comp: out of memory" << std::endl;
