@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -210,6 +212,19 @@ base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer, 
   return {};
 }
 
+// A file that a recorder has created and was killed before it wrote what it is a piece of: empty, or a few bytes of an MCAP file without
+// its end. No sample is in it.
+bool is_unbegun(const std::string& path) {
+  constexpr std::string_view magic = "\x89MCAP0\r\n";
+  constexpr std::size_t most = 512;
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(most, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(most));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  if (bytes.size() == most) return false;
+  return bytes.size() <= magic.size() ? magic.starts_with(bytes) : bytes.starts_with(magic) && !bytes.ends_with(magic);
+}
+
 // Files that stand where the ring had another piece: only the two latest are there, so that it is next to the others.
 std::vector<std::string> left_out(const std::string& path, const std::vector<RingPiece>& pieces) {
   std::vector<std::string> lines;
@@ -248,11 +263,18 @@ std::vector<RingPiece> ring_pieces(const std::string& path) {
 
 base::Result<void> check_names(const std::string& path) {
   for (const auto& [number, file] : files_with_numbers(path)) {
-    if (!read_piece(file))
+    if (!read_piece(file) && !is_unbegun(file))
       return base::Error{base::in_quotes(file) + ": is no piece of a ring, and has a name that a piece of this one may take; " +
                          "give the ring another name"};
   }
   return {};
+}
+
+void remove_unbegun_pieces(const std::string& path) {
+  std::error_code ignored;  // a file that stays is written over
+  for (const auto& [number, file] : files_with_numbers(path)) {
+    if (is_unbegun(file) && !mcap::File::is_being_written(file)) fs::remove(file, ignored);
+  }
 }
 
 base::Result<void> check_no_live_ring(const std::string& path) {

@@ -32,6 +32,8 @@ std::vector<RingPiece> ring_pieces(const std::string& path);
 base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces);
 // An error when a file that is no piece has a name that a ring of this name may give to one.
 base::Result<void> check_names(const std::string& path);
+// Removes files with names of pieces in which a killed recorder has not written anything yet.
+void remove_unbegun_pieces(const std::string& path);
 // An error when a ring of this name, or one of which a file of this name would be a piece, is being recorded.
 base::Result<void> check_no_live_ring(const std::string& path);
 void remove_pieces(const std::vector<RingPiece>& pieces);

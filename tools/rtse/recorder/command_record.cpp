@@ -300,6 +300,7 @@ base::Result<std::vector<RingPiece>> make_room_for_ring(const std::string& file)
   if (const auto at_rest = check_at_rest(stale); !at_rest) return at_rest.error();
   if (const auto free = check_names(file); !free) return free.error();
   remove_pieces(stale);
+  remove_unbegun_pieces(file);
   std::remove(file.c_str());
   return stale;
 }
