@@ -8,8 +8,8 @@
 #include "camera_device.h"
 #include "device.h"
 #include "mapping.h"
-#include "sensor_devices.h"
 #include "outbox.h"
+#include "sensor_devices.h"
 #include "timeline.h"
 
 namespace gateway {
