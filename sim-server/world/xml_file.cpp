@@ -129,12 +129,11 @@ bool is_binary(std::string_view text) {
 bool is_lfs_pointer(std::string_view text) { return text.starts_with("version https://git-lfs."); }
 
 bool is_lfs_pointer_file(const std::filesystem::path& path) {
+  constexpr std::uintmax_t most = 4096;  // pointers are shorter than that
   std::error_code problem;
-  if (!std::filesystem::is_regular_file(path, problem)) return false;
-  std::array<char, 40> start{};
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(start.data(), start.size());
-  return is_lfs_pointer({start.data(), static_cast<std::size_t>(stream.gcount())});
+  if (std::filesystem::file_size(path, problem) > most || problem) return false;
+  const auto start = base::read_plain_file(path, most);
+  return start && is_lfs_pointer(*start);
 }
 
 base::Result<std::string> read_file(const std::filesystem::path& path) {
