@@ -1,8 +1,6 @@
 #include "world/xml_file.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <vector>
 
 #include "base/plain_file.h"
