@@ -14,7 +14,7 @@ namespace base {
 // As it is, in single quotes when a shell would read it otherwise, as $'...' when it is not all printable ASCII.
 std::string shell_word(std::string_view text);
 
-// The same for a script of /bin/sh, which nobody copies: all bytes as they are, in single quotes where it needs them.
+// The same for a script of /bin/sh, which is executed and not copied: all bytes unchanged, in single quotes where necessary.
 std::string script_word(std::string_view text);
 
 // The words, separated by blanks.

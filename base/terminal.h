@@ -10,7 +10,7 @@
 
 namespace base {
 
-// Text of others, fit for a terminal: what it would obey (is_obeyed, and single octets of C1) escaped as \x1b, but for line ends
+// Untrusted text, safe for a terminal: what a terminal would obey (is_obeyed, and single bytes of C1) is escaped as \x1b, except line ends
 // and tabs.
 std::string for_terminal(std::string_view text);
 
