@@ -1,4 +1,4 @@
-// Files that a foreign file names, opened without leaving a folder. Any thread.
+// Opens files that an untrusted file names, without leaving a folder. Any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // The locks of the project. Any thread.
 //   Guarded   owns its data: the data can be reached only while the lock is held.
-//   Turn      guards no data; whoever has it may do what one thread at a time may do, such as calling a library with global buffers.
-//   UsersTurn a turn in which code of users is called, whatever that asks for.
+//   Turn      guards no data; its owner may do what one thread at a time may do, such as calling a library with global buffers.
+//   UsersTurn a Turn in which code of users is called. That code can take any lock.
 // Guarded and Turn have ranks; a thread may take one only if its rank is higher than that of every other it has (asserted in builds without
 // NDEBUG). Code of users, the network, the log and the file system are never called while data is held: take a snapshot, release, then
 // act. Where such calls leave us, expect_no_data_held() asserts it.

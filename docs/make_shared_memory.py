@@ -102,8 +102,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
   in the same way, since the place may still hold one, or half of one, of somebody else; the server does so for the dead.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
 - **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
-- The server keeps private copies of every size and index: what a client scribbles cannot make it read or write elsewhere. A file that somebody cuts short ends no process either: whoever has
-  it mapped goes on with zeros of its own (`base/cut_guard.h`), the server says so, and the iface is there again after its next start.
+- The server keeps private copies of every size and index: what a client writes cannot make it read or write elsewhere. A file that is cut short ends no process either: a
+  process that has mapped it continues with zeros of its own (`base/cut_guard.h`), the server logs it, and the iface exists again after its next start.
 
 """
 c_names = dict(re.findall(r"(RTMSIM_\w+) = (\d+)", re.search(r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1)))

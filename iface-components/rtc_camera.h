@@ -1,6 +1,6 @@
 // RTCCamera: bridges a camera iface to the OutPorts `image` (RTC::CameraImage) and `timed_image` (Img::TimedCameraImage; only when
 // connected). Rows from top to bottom, pixels from left to right, without gaps. The camera's world chooses the format: docs/cameras.md
-// has the table of names and octets. Configuration: server_id, device_id; encoding raw or jpeg, quality 1..100 of the latter.
+// has the table of names and bytes. Configuration: server_id, device_id; encoding raw or jpeg, quality 1..100 of the latter.
 #pragma once
 
 #include <rtm/ext/CameraCommonInterfaceSkel.h>

@@ -4,9 +4,9 @@
 // A component asks for it with `exec_cxt.periodic.type: SimTimeContext` (and `manager.modules.preload: SimTimeContext.so`). Options:
 //   exec_cxt.sim_time.server_id   which simulator; default: $RTMSIM_SERVER_ID, else 0
 //   exec_cxt.sim_time.phase       0 sensors, 1 clients (default), 2 actuators: phases run in order inside a tick
-//   exec_cxt.sim_time.turn        within the phase (0): higher turns are called when lower ones have finished; for components of others,
-//                                 which hold at once what is sent to them (shm/lockstep.h)
-//   exec_cxt.sim_time.participant under which name it takes part in the lock step; default: that of its owner
+//   exec_cxt.sim_time.turn        within the phase (0): higher turns are called when lower ones have finished; for third-party
+//                                 components, which see input immediately (shm/lockstep.h)
+//   exec_cxt.sim_time.participant name of the lock-step participant; default: that of its owner
 //   exec_cxt.sim_time.hash_log    folder: a hash log of what the components read and write (base/hash_log.h) goes into a new file there
 //   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
 //                                 without end, since its error would be part of the run

@@ -5,13 +5,13 @@
 // The usual way, for any component: it becomes a member of the context (add_component), which calls its callbacks in each tick. The proxy
 // itself then does nothing and stays inactive. The other way, for one whose own context must stay: configuration `ticks`, the reference of
 // that context, which the proxy ticks while it is active (ticked_context.h). What that throws is passed over and said once, and so is a
-// tick that takes longer than a second; when it is gone the proxy ends in its error state, and a log line says so.
+// tick that takes longer than a second; when the context was deleted the proxy ends in its error state, and a log line says so.
 //
-// Property sim_time_proxy.alone_limit [s]: a proxy that serves nobody any more, since the component's process has ended or the object has
-// gone, exits after so long, and the last one takes its host with it. Who started it may be gone, and so may the simulator and the naming
-// service. One that nobody has joined yet is given the time of a start. Default: it stays.
+// Property sim_time_proxy.alone_limit [s]: an unused proxy, whose component's process has exited or whose object was deleted, exits after
+// this time, and the last one ends its component host. The program that started it may have exited, and so may the simulator and the name
+// server. A proxy that no component has joined yet waits as long as a start can take. Default: it stays.
 //
-// Threads: those of every component; the watch looks at long ticks, and asks after who is served.
+// Threads: those of every component; the watch looks at long ticks, and asks whether the component still exists.
 #pragma once
 
 #include <base/guarded.h>

@@ -2,8 +2,8 @@
 // OpenRTM::LogicalTimeTriggeredEC. One thread at a time.
 //
 // tick() returns when the other side's tick() does. SynchExtTriggerEC and LogicalTimeTriggeredEC (with its default sync_tick) run their
-// components in it, so a tick of ours ends when theirs has; an ExtTrigExecutionContext runs them on a thread of its own afterwards, which
-// nobody can wait for.
+// components in it, so our tick ends after theirs. An ExtTrigExecutionContext runs them on a thread of its own afterwards, and a caller
+// cannot wait for that.
 #pragma once
 
 #include <base/result.h>

@@ -2,7 +2,7 @@
 //
 // Who may touch a slot: the writer, between lock = 0 and lock = sequence, and only if no lease holds the slot; a reader, while its hold
 // names the slot and lock was the wanted sequence after the hold was stored. Both sides store first and look then (sequentially
-// consistent), so at least one of them sees the other and steps back; nobody waits.
+// consistent), so at least one of them sees the other and steps back. Neither side waits.
 #pragma once
 
 #include <cstddef>

@@ -12,16 +12,16 @@
 // tick count as finished, or cost the server one waiting slice (10 ms).
 //
 // A tick at time t: for each phase in ascending order, and within it for each turn, the server releases all participants of that phase and
-// turn that are due (go = tick number) and wakes them with one system call, and waits until each has stored done = go. Nobody else is
-// woken: sleepers share a futex word and are told apart by its bit sets. Due times are the multiples of the period since time 0, so they do
-// not depend on when somebody joined; a tick happens at the first step at or after the due time, without drift.
+// turn that are due (go = tick number) and wakes them with one system call, and waits until each has stored done = go. No other
+// participant is woken: sleepers share a futex word and are told apart by its bit sets. Due times are the multiples of the period since
+// time 0, so they do not depend on when a participant joined; a tick happens at the first step at or after the due time, without drift.
 //
 // Observers (those that only look at samples, as recorders do) come after all phases and are not waited for at the end of the tick, but
-// before the next samples are written, anybody's next tick, and whatever else may change what they look at: settle(). So they read while
-// the next steps are computed, and see what they would have seen in their tick. The clock is that of the tick (Tick::now): the one that
-// is published, and what the server is asked for, may be of a later step. Without lock step they are as all others.
+// before the next samples are written, the next tick of any participant, and anything else that may change the samples: settle(). So they
+// read while the next steps are computed, and see what they would have seen in their tick. The clock is that of the tick (Tick::now): the
+// one that is published, and what the server is asked for, may be of a later step. Without lock step they are as all others.
 //
-//   active ──(server: tick is due)──> reads ──(client: done, left, dead; server: dropped)──> active, or gone
+//   active ──(server: tick is due)──> reads ──(client: done, left, dead; server: dropped)──> active, or removed
 //
 // Failures:
 //   observer dies, hangs, leaves       as below; settle() goes on without it

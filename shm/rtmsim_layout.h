@@ -86,7 +86,7 @@ typedef struct {
   char name[RTMSIM_NAME_SIZE - 4];
   uint32_t command_values; /* doubles behind the command of each lease */
   rtmsim_area areas[RTMSIM_AREAS];
-  uint32_t state;       /* [atomic] RTMSIM_STATE_* ; closed: nothing will ever come again, open the name anew */
+  uint32_t state;       /* [atomic] RTMSIM_STATE_* ; closed: no more samples, open the name again */
   uint32_t lease_epoch; /* [atomic] changes with every lease taken or given back */
   int64_t heartbeat_ns; /* [atomic] CLOCK_MONOTONIC of the server's last sign of life, renewed about ten times a second, or once while time
                            stands still */
@@ -108,7 +108,7 @@ enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one l
  * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
-  int64_t sim_time_ns; /* when the commander saw the clock, or 0 */
+  int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0 */
   uint32_t kind;       /* RTMSIM_COMMAND_* */
   uint32_t flags;      /* 0 */
 } rtmsim_command;
@@ -436,9 +436,9 @@ enum {
                                  links, values 0 = version of the scene, another one after models have come or gone */
   RTMSIM_REQUEST_POSES = 22,  /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the
                                  world, in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
-  RTMSIM_REQUEST_FAULT = 23, /* from now on a sensor or drive is out of order. name = iface; text = kind (see simctl fault --help); flags 1:
-                                values 0 = amount, else the usual one; values 1 = simulated seconds, 0 = until it is ended. One of its kind
-                                that is on gives way */
+  RTMSIM_REQUEST_FAULT = 23,  /* inject a fault into a sensor or drive from now on. name = iface; text = kind (see simctl fault --help);
+                                 flags 1:  values 0 = amount, else the usual one; values 1 = simulated seconds, 0 = until it is ended. One of
+                                 its kind  that is on gives way */
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
   RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
@@ -528,7 +528,7 @@ enum {
   RTMSIM_PARTICIPANT_JOINING = 1, /* set by the participant */
   RTMSIM_PARTICIPANT_ACTIVE = 2,  /* set by the server */
   RTMSIM_PARTICIPANT_LEAVING = 3, /* set by the participant */
-  RTMSIM_PARTICIPANT_DROPPED = 4  /* set by the server: dead, or out of patience */
+  RTMSIM_PARTICIPANT_DROPPED = 4  /* set by the server: exited, or its timeout expired */
 };
 
 typedef struct {

@@ -1,4 +1,4 @@
-// A client's connection to a server of Player, in PULL mode. One thread at a time; every call waits at most its time-out.
+// A client's connection to a server of Player, in PULL mode. One thread at a time; every call waits at most its timeout.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // The gateway: ports, clients and the simulator in one event loop. One thread.
 //
-// Two threads help it: alarm.h sleeps on the futexes of all subscribed ifaces and errands.h asks the simulator, so that neither samples are
-// polled nor does a simulator that hangs delay a client.
+// Two threads help it: alarm.h sleeps on the futexes of all subscribed ifaces and errands.h sends requests to the simulator. So samples are
+// not polled, and a simulator that hangs does not delay a client.
 #pragma once
 
 #include <sys/epoll.h>

@@ -1,5 +1,5 @@
-// The simulator that the gateway shows: found when it starts, lost when it ends, listed anew when something in it came or went. One thread
-// at a time.
+// The simulator that the gateway shows: found when it starts, lost when it ends, listed again when a model or an iface was added or
+// removed. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,9 +1,9 @@
 // What other processes may call of a component: the operations of RTC::ComponentAction, RTC::DataFlowComponentAction and
 // RTC::LightweightRTObject that run code of its author or change its life. The ORB calls them on its own threads. Any thread.
 //
-// Rights, for callers of other accounts and hosts (corba/orb/asker.h): with manager.remote_rights `read` none of these operations does
-// anything; the answer is RTC_ERROR. The other operations of a component, its contexts, ports and configuration are open to whoever may
-// call the process.
+// Rights, for callers of other accounts and machines (corba/orb/asker.h): with manager.remote_rights `read` none of these operations does
+// anything; the answer is RTC_ERROR. The other operations of a component, its contexts, ports and configuration are open to every caller
+// that the process accepts.
 //
 // States, for all callers from outside. The answer is PRECONDITION_NOT_MET for everything that this table does not have:
 //   initialize        created, without a manager: a manager initializes its components itself

@@ -1,18 +1,20 @@
-// The gate before the callbacks of one component: one thread at a time is inside, whoever calls. Any thread.
+// The gate before the callbacks of one component: one thread at a time is inside, for all callers. Any thread.
 //
 // States of a thread:
-//   outside -> inside     at once while nobody is inside and nobody waits, or if the thread itself is inside (a callback that calls
-//   another) outside -> waiting    otherwise; threads enter in the order in which they came waiting -> inside     when the one inside has
-//   left waiting -> outside    refused: see below
+//   outside -> inside     at once while no thread is inside or waits, or if the thread itself is inside (a callback that calls another)
+//   outside -> waiting    otherwise; threads enter in the order in which they came
+//   waiting -> inside     when the one inside has left
+//   waiting -> outside    refused: see below
 // Rights: a thread inside runs the author's code without a lock, and leaves on the same thread. `Caller::remote` are calls from other
 // processes, `Caller::local` all others.
-// Failures, each an answer to the one who wanted to enter:
+// Failures, each an answer to the thread that wanted to enter:
 //   busy      the one inside did not leave in time, or has been given up
 //   crowded   `most_waiting` remote callers wait already
-//   closed    the gate is closed to remote callers; those who wait are answered at once
-// A callback that does not return can be given up: from then on nobody waits for it. It stays inside until it returns.
+//   closed    the gate is closed to remote callers; waiting ones are answered at once
+// A callback that does not return can be given up: from then on no thread waits for it. It stays inside until it returns.
 //
-// Whoever waits inside another gate for this one may be waited for from here. Such a circle ends with the first timeout.
+// A thread that waits here can be inside another gate, and a thread inside here can wait for that gate. The first timeout ends such a
+// cycle.
 #pragma once
 
 #include <chrono>

@@ -2,8 +2,8 @@
 // thread; variables are assigned without a lock on the thread that calls bind() or update().
 //
 // In lock step a change that comes from outside while time passes takes effect at the next edge between two ticks, the same for every
-// component: whoever runs a tick at time t, in whatever phase, takes what came before t. A change by a thread that itself runs a tick, and
-// one while time stands still, counts at once.
+// component: a tick at time t, in any phase, uses what came before t. A change by a thread that itself runs a tick, and one while time
+// stands still, take effect at once.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What travels through a data port: octets in the wire's encoding, or a value itself inside a process. Immutable once written, shared.
+// One sample of a data port: bytes in the encoding of the wire, or inside a process the value itself. Immutable once written, shared.
 // Any thread.
 #pragma once
 

@@ -1,7 +1,7 @@
 // One joint of a model in ODE, whatever its kind, in SDFormat's senses and units. Private to physics/. One thread at a time.
 //
-// ODE has neither screws nor gearboxes between any axes: here two bodies are tied along one line, laid anew for each step, by the friction
-// of a contact that pushes nobody. A joint with two axes gets a body that nothing can move where the world is one side of it, since ODE
+// ODE has neither screws nor gearboxes between any axes: here two bodies are tied along one line, laid again for each step, by the friction
+// of a contact that pushes no body. A joint with two axes gets a body that nothing can move where the world is one side of it, since ODE
 // counts its angles wrongly without.
 //
 // ODE knows an angle within half a turn only. The angle of an axis with limits or a spring is followed from step to step, and ODE gets the

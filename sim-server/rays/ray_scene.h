@@ -6,7 +6,7 @@
 // the next change. Lengths in m. Ranges are exact to a few 1e-5 m within 30 m of the sensor.
 //
 // The static scene is of the best quality. Up to 32 moving bodies are met one by one, each in its own frame, and those out of the way of a
-// packet of beams are left out. More of them are instances in a scene that is built anew, fast, for each moment with scans, since Embree
+// packet of beams are left out. More of them are instances in a scene that is built again, fast, for each time with scans, since Embree
 // refuses to refit such a scene. Faces of boxes overlap by some 10 um at their edges, so that plain tracing loses no beam between them;
 // scenes with meshes are traced with Embree's robust flag, which costs a third of the speed.
 #pragma once

@@ -1,4 +1,4 @@
-// What a .glb is put together from: lists of JSON objects and the octets they speak of. Values; one thread at a time.
+// The parts of a .glb: lists of JSON objects, and the bytes that they refer to. Values; one thread at a time.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// Simulated time beside the clock on the wall: when a step is due, how fast the run really is, and how much of the time it works. It reads
-// no clock itself. The stepping thread only.
+// Compares simulated time with wall-clock time: when a step is due, the real-time factor of the run, and the fraction of time that it
+// works. It reads no clock itself. The stepping thread only.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// A running world: physics, rays and devices as one, without the loop, the clock on the wall and the requests around it. The stepping
+// A running world: physics, rays and devices as one, without the loop, the wall clock and the requests around it. The stepping
 // thread only.
 #pragma once
 

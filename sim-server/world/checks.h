@@ -1,4 +1,4 @@
-// What a document must satisfy before anything is built from it; what does not is taken out or mended, with a line each. Documents are of
+// Checks of a document before anything is built from it. Elements that fail are removed or corrected, with a line each. Documents are of
 // the current SDFormat version. One thread at a time.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Files with models, each read, mended and checked once per world, with all their includes in place. One thread at a time.
+// Model files: each is read, corrected and checked once per world, with all its includes in place. One thread at a time.
 #pragma once
 
 #include <cstddef>

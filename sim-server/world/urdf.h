@@ -1,4 +1,4 @@
-// A URDF robot before libsdformat translates it: what that library gets wrong is mended, and what it refuses without a reason gets one.
+// Prepares a URDF robot for libsdformat: corrects what that library translates wrongly, and gives a reason for what it rejects without one.
 // Pure; any thread.
 #pragma once
 

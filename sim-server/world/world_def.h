@@ -1,7 +1,7 @@
 // The constant description of a world: plain values that physics, rays, render and devices are built from. Every name is resolved, every
 // pose is relative to what its name says, every file is an absolute path that existed when the world was loaded, every number is finite and
-// within its bounds (the loader refuses or mends the rest and says so). Lengths in m, angles in rad, masses in kg, times in s, unless a
-// comment says otherwise. Values: any thread may read a shared one.
+// within its bounds (the loader rejects or corrects other values, with a line each). Lengths in m, angles in rad, masses in kg, times in s,
+// unless a comment says otherwise. Values: any thread may read a shared one.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,5 +1,4 @@
-// Files and texts of worlds as XML documents: read with limits, mended where people's files are commonly broken, every element marked with
-// its line. Any thread.
+// Files and texts of worlds as XML documents: read with limits, common mistakes corrected, every element marked with its line. Any thread.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
-# Words that docs/glossary.md rejects do not appear in pages, help texts and messages.  plain_english.py SOURCE_DIR [--shrink]
+# Words that docs/glossary.md rejects do not appear in pages, help texts, messages and header comments.  plain_english.py SOURCE_DIR [--shrink]
 # Pages: all of docs, README, CONTRIBUTING, SECURITY, without code. Sources: string literals that contain a blank (names and JSON keys are interfaces).
+# Headers: the comment that a header begins with, without names of headers.
 # plain_english.allow lists what is not rewritten yet: FILE: WORD N. A file with more is reported, and so is one with fewer, so that the list
 # only shrinks. --shrink removes what is no longer needed, and follows a file that was moved; it never allows more.
 import collections
@@ -38,13 +39,21 @@ def literals_of(text):
             yield text.count("\n", 0, match.start()) + 1, literal.replace("\\n", " ")
 
 
+def header_comment(text):
+    comment = re.match(r"(?://[^\n]*\n)*", text)[0]
+    return re.sub(r"[\w/]+\.h\b|`[^`\n]*`", "", comment.replace("//", "  "))
+
+
 def texts():
     for page in (source / "README.md", source / "CONTRIBUTING.md", source / "SECURITY.md", *sorted((source / "docs").glob("**/*.md"))):
         yield page, prose_of(page)
     for folder in folders:
         for file in sorted((source / folder).glob("**/*")):
             if file.suffix in (".h", ".cpp") and file.is_file() and "node_modules" not in file.parts:
-                yield file, literals_of(file.read_text())
+                text = file.read_text()
+                yield file, literals_of(text)
+                if file.suffix == ".h":
+                    yield file, [(1, header_comment(text))]
 
 
 def found(words):
@@ -54,7 +63,7 @@ def found(words):
         for line, text in parts:
             for match in pattern.finditer(text):
                 word = " ".join(match[1].lower().split())
-                places[str(file.relative_to(source)), word].append(line + text.count("\n", 0, match.start()) if file.suffix == ".md" else line)
+                places[str(file.relative_to(source)), word].append(line + text.count("\n", 0, match.start()) if text.count("\n") else line)
     return places
 
 
@@ -69,6 +78,7 @@ char quote = '"'; f("name", "so "  // why
 """
 assert list(literals_of(planted)) == [(2, "so "), (3, 'a "raw" text'), (3, r'one \"two\" three')], list(literals_of(planted))
 assert list(literals_of('f("so "\n  "many");')) == [(1, "so many")]
+assert header_comment("// Whoever\n// asks (orb/asker.h) `nobody`.\n#pragma once  // anew\n").split() == ["Whoever", "asks", "()", "."]
 places, allow = found(rejected_words()), allowed()
 if "--shrink" in sys.argv:
     for (file, word), number in list(allow.items()):  # a file that was moved keeps its rows

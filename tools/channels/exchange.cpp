@@ -118,7 +118,7 @@ class Outlet {
     };
     if (!has_room()) {
       changed_.notify_one();
-      if (!data.wait_for(room_, options_.patience, has_room)) return false;
+      if (!data.wait_for(room_, options_.timeout, has_room)) return false;
     }
     if (data->failure || data->is_ending) return true;  // nobody is there who could miss it; failure() says why
     const bool was_urgent = is_urgent(*data);

@@ -4,8 +4,8 @@
 // Any thread may put, open, close and attach. A sink is called on its thread alone: open() before the first sample of a channel, take() in
 // the order in which samples were put, close() behind the last sample, rest() when there is nothing to take and at least once in
 // rest_period. A sink gets samples some ten milliseconds after they were put, together. When a sink fails it is called no more, and
-// failure() says why. When a queue is full, put() waits up to `patience` of that sink; then what was put is dropped for it and counted.
-// With a patience of zero a source never waits.
+// failure() says why. When a queue is full, put() waits up to the `timeout` of that sink; then the sample is dropped for it and counted.
+// With a timeout of zero a source never waits.
 #pragma once
 
 #include <chrono>
@@ -36,7 +36,7 @@ class Sink {
 
 struct QueueOptions {
   std::size_t most_octets = 64 << 20;
-  std::chrono::milliseconds patience{0};
+  std::chrono::milliseconds timeout{0};
 };
 
 struct Block;   // samples that were put together

@@ -1,4 +1,4 @@
-// What components say of themselves, as channels:
+// Logs, states, configuration and events of components, as channels:
 //
 //   /log                           rcl_interfaces/msg/Log     lines of their logs, from level info on
 //   /rtc/COMPONENT/state           json: context, state, is_in_tick    as it is at first, then whenever it changes
@@ -6,8 +6,8 @@
 //   /rtc/COMPONENT/events          json: kind, event                   contexts, profiles, configuration sets
 //   /diagnostics                   diagnostic_msgs/msg/DiagnosticArray, when diagnose() is called
 //
-// Components of rtm-sim say when something happened, so the times are those of the ticks, however late the message comes. Components of
-// others are only asked (at first, and by diagnose()). A component costs nothing while nothing happens. Construct, use and destroy on one
+// Components of rtm-sim send the time of each event, so the times are those of the ticks, also if a message is late. Third-party components
+// are only polled (at first, and by diagnose()). A component costs nothing while nothing happens. Construct, use and destroy on one
 // thread, but for diagnose().
 #pragma once
 

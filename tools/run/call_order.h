@@ -1,9 +1,9 @@
-// Who is called after whom within a phase of a run with components of others. Any thread.
+// Orders calls to third-party components inside one phase, so that input sent in a tick is read in the next one. Any thread.
 //
-// What a component writes in a phase can be read in later phases only. Our own put aside what comes meanwhile (base/tick.h); one of others
-// holds what it gets at once, and answers at once who fetches from it. So where two of one phase are connected, the one that reads gets an
-// earlier turn (shm/lockstep.h) when it is of others, or when it fetches from one of others; and those who send to one InPort of others
-// have turns of their own, in the order of their names. All others are called at the same time.
+// What a component writes in a phase can be read in later phases only. Our components hide input until then (base/tick.h). A third-party
+// component sees its input immediately, and a fetch from it returns immediately. So where two components of one phase are connected, the
+// reader gets an earlier turn (shm/lockstep.h) if it is a third-party component, or if it fetches from one. The senders to one InPort of a
+// third-party component have turns of their own, in the order of their names. All other components are called at the same time.
 #pragma once
 
 #include <functional>

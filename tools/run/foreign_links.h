@@ -1,10 +1,10 @@
-// What components of others send each other in a run. It passes no port of ours, so each such OutPort is listened to, as a recorder does:
-// for the hash log, where its samples stand as those of an OutPort of ours, and for what depends on chance. Left out is what differs in
-// each run and is no data: the stamp of the sender's own clock (where the first member of the type is an RTC::Time, it counts as 0), and
-// the octets that align members.
+// Samples between third-party components of a run. They pass no port of ours, so this subscribes to each such OutPort, as a recorder does:
+// for the hash log, which has them like samples of our OutPorts, and to detect nondeterminism. Left out is what differs in each run and is
+// no data: the stamp of the sender's own clock (if the first member of the type is an RTC::Time, it counts as 0), and the bytes that align
+// members.
 //
 // A sample belongs to the simulated time in which it comes: its sender waits for the listener, and in lock step time waits for the sender.
-// One thread at a time; samples come on the ORB's threads, and end() returns when none is under way any more.
+// One thread at a time; samples come on the ORB's threads, and end() returns after the last one.
 #pragma once
 
 #include <chrono>

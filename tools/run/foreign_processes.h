@@ -1,9 +1,9 @@
-// The processes of others in a run: what `rtse run --start` and a run file name. They are started with the run's naming service in their
+// Third-party processes of a run: those that `rtse run --start` and a run file name. They are started with the run's name server in their
 // environment, their components take part in simulated time through proxies (time_members.h), and they are ended by process group. One
 // thread at a time.
 //
-// What a process finds in its environment:
-//   RTCTREE_NAMESERVERS, RTMSIM_NAMING   the naming service, "127.0.0.1:43210"
+// The environment of a process:
+//   RTCTREE_NAMESERVERS, RTMSIM_NAMING   the name server, "127.0.0.1:43210"
 //   ORBInitRef                           the same for omniORB: "NameService=corbaname::127.0.0.1:43210"
 //   RTC_MANAGER_CONFIG                   an rtc.conf of the run: corba.nameservers, and logs to standard output
 //   RTMSIM_SERVER_ID                     the simulator

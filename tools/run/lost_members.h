@@ -1,4 +1,4 @@
-// Whether somebody of others has gone in a run, and what there is to say of it: who, when, and how the process has ended. One thread at a
+// Finds third-party components that were lost in a run, and describes each: its name, the time, and how its process ended. One thread at a
 // time.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What a recording says of its run, as files that `rtse run` takes: the system's profile and the world, in a folder that is gone with the
-// object. One thread at a time.
+// The run of a recording as files that `rtse run` accepts: the system's profile and the world. The object owns their folder and deletes it.
+// One thread at a time.
 #pragma once
 
 #include <filesystem>

@@ -1,10 +1,10 @@
-// A run file: the processes of others that a run starts beside our own hosts, as YAML. Values; any thread.
+// A run file: the third-party processes that a run starts beside our component hosts, as YAML. Values; any thread.
 //
 //   processes:
 //     - command: python3 controller.py    # a line for sh
 //       folder: controller                # where it is started; relative to the run file; default: the folder of the run file
 //       environment: {PYTHONPATH: lib}
-//       wait: 30                          # [s] of real time, for its components to be on the naming service; without it --start-timeout
+//       wait: 30                          # [s] of real time, for its components to be on the name server; without it --start-timeout
 //       components:                       # of the system, by their instance names
 //         - Controller0
 //         - {name: Filter0, phase: 2, rate: 50, join: tick}

@@ -1,5 +1,5 @@
-// The naming service of a run: an omniNames of its own on a free port of the loopback. Whoever waits for it says so to answered(), so that
-// one that has stopped answering is named as that, and soon, instead of what cannot be found without it. One thread at a time.
+// The name server of a run: an omniNames of its own on a free port of the loopback. Code that waits for it calls answered(), so that a
+// hanging name server is reported itself, and soon, instead of an object that cannot be found without it. One thread at a time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

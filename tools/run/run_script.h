@@ -1,8 +1,8 @@
-// What somebody adds to a run of a system who has more in mind than to watch it: other values before it starts, deeds between two steps,
-// numbers at the end. One thread at a time; the calls come in the order in which they are written here.
+// Hooks of a run: values before the start, actions between two steps, numbers at the end. One thread at a time; the calls come in the order
+// in which they are written here.
 //
-// Deeds are done while simulated time stands still and every participant has ended its tick, so a run with the same deeds at the same steps
-// is the same to the bit.
+// Actions happen while simulated time stands still and every participant has ended its tick, so runs with the same actions at the same
+// steps are bit-identical.
 #pragma once
 
 #include <chrono>

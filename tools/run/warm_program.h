@@ -1,5 +1,5 @@
-// Programs that have done the first part of their start and make others by forking: for who starts many, one after the other. What they
-// make runs as if it had been started alone, to the bit. See base/warm_start.h. Any thread.
+// Prefork servers: programs that have done the first part of their start and fork for each further process, for many runs one after the
+// other. A forked process runs as if it had been started alone, bit-identical. See base/warm_start.h. Any thread.
 #pragma once
 
 #include <atomic>

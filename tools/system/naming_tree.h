@@ -1,5 +1,5 @@
-// What a naming service holds, read in parallel; a process that hangs or is gone is shown as such and delays nobody. Snapshot values; any
-// thread.
+// The entries of a name server, read in parallel. A process that hangs or has exited is shown as such and delays no other entry. Snapshot
+// values; any thread.
 #pragma once
 
 #include <chrono>

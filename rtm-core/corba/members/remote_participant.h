@@ -6,9 +6,9 @@
 // States, beside those of every member (core/lifecycle.h): it answers, or it is lost. Failures:
 //   answers with another code than RTC_OK, or throws   an error, as of a component of this process
 //   takes long                            named in the log after a second (corba/members/member_watch.h), and waited for
-//   takes longer than the patience        an error; it is lost
-//   its process has ended, or the object has gone   noticed at the call, or at once during one; named; an error; it is lost
-// Who is lost is called no more, so that nobody waits for it again and again, until it is reset.
+//   takes longer than the timeout         an error; it is lost
+//   its process has exited, or the object was deleted   noticed at the call, or at once during one; named; an error; it is lost
+// A lost member is not called, so that no tick waits for it again, until it is reset.
 #pragma once
 
 #include <atomic>

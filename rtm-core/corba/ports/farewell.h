@@ -1,9 +1,9 @@
 // Disconnect notices: notifies other ports that a connection ended, with a short timeout for hanging ones. Any thread; no lock is held
 // while it calls.
 //
-// Who disconnects waits a second for a process that hangs, whatever number of connections go there; the process is told in the background
-// when it wakes within the usual time-out. One that was dropped because it hung is told when it wakes within ten minutes, so that it can be
-// connected again.
+// A disconnect waits one second for a process that hangs, for any number of connections to it. The process is notified in the background if
+// it responds within the usual timeout. A process that was dropped because it hung is notified if it responds within ten minutes, so that
+// it can be connected again.
 #pragma once
 
 #include <optional>

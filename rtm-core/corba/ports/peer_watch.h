@@ -2,8 +2,8 @@
 // of each other process from time to time, without a lock, and sleeps while there is no connection to another process. A hanging process
 // has not exited. Any thread.
 //
-// It asks every corba.peer_check_interval seconds (2; 0: never). Connections of processes that are gone are dropped, with their listeners;
-// a process that only hangs keeps its connections until a call to it has taken its time-out. Profiles of ports are answered without asking
+// It asks every corba.peer_check_interval seconds (2; 0: never). Connections of processes that exited are removed, with their listeners;
+// a process that only hangs keeps its connections until a call to it exceeds its timeout. Profiles of ports are answered without calls to
 // the other ends.
 #pragma once
 

@@ -1,4 +1,4 @@
-// One sample in a named POSIX shared-memory segment: 8 octets of length in the connection's byte order, then the payload.
+// One sample in a named POSIX shared-memory segment: 8 bytes of length in the connection's byte order, then the payload.
 // One thread at a time. What the other process writes is not trusted: lengths are checked, and a segment that it cuts short becomes an
 // error (base/cut_guard.h).
 #pragma once

@@ -1,5 +1,5 @@
-// Joints that a controller plugin would hold or turn: they keep the position or the speed that the plugin starts with, since nobody
-// commands them here; so arms do not fall. The stepping thread only.
+// Joints that a controller plugin would hold or turn: they keep the position or the speed that the plugin starts with, since no client
+// commands them. So arms do not fall. The stepping thread only.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A sensor that is out of order on purpose. It changes what the sensor has measured before it is published; the device itself knows nothing
-// of it. The stepping thread only.
+// An injected fault of a sensor: changes a measurement before it is published. The device itself does not know of it. The stepping thread
+// only.
 #pragma once
 
 #include <chrono>

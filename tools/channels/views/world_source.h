@@ -1,6 +1,5 @@
-// What a simulator shows, as channels of ROS 2 messages that any viewer knows: the poses of models as tf, the clock, and each sensor and
-// drive. A channel is opened at the exchange when its iface is there and closed when it is gone; a sensor works, and samples come, while
-// its channel is wanted.
+// The state of a simulator as channels of ROS 2 messages that any viewer knows: the poses of models as tf, the clock, and each sensor and
+// drive. A channel is open at the exchange while its iface exists. A sensor works, and samples come, while its channel is wanted.
 //
 //   /clock                                      rosgraph_msgs/msg/Clock
 //   /tf, /tf_static                             tf2_msgs/msg/TFMessage: models in `world`, links and sensors on their models

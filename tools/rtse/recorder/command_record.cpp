@@ -46,7 +46,7 @@ using editor::Console;
 using editor::Session;
 
 // How long a port waits for the recorder. In lock step time waits with it, so that nothing is lost; in real time a sample is dropped.
-constexpr std::chrono::seconds lockstep_patience{10};
+constexpr std::chrono::seconds lockstep_timeout{10};
 constexpr std::size_t largest_world = 64 << 20;  // [octets] that are attached
 constexpr std::chrono::seconds hashes_limit{60};
 
@@ -365,7 +365,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
 
 // Who made the run says when its hash log is there.
 base::Result<void> keep_hashes(channels::Exchange& exchange, const std::string& file, Orders& orders) {
-  (void)exchange.drain(lockstep_patience);
+  (void)exchange.drain(lockstep_timeout);
   orders.tell(RecorderMessage::stopped);
   const auto deadline = std::chrono::steady_clock::now() + hashes_limit;
   std::optional<RecorderMessage> order;
@@ -431,7 +431,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
   base::Result<void> written;
   {
     channels::Exchange exchange;
-    exchange.attach(sinks->first, {.patience = clock.is_lockstep() ? lockstep_patience : std::chrono::seconds(0)});
+    exchange.attach(sinks->first, {.timeout = clock.is_lockstep() ? lockstep_timeout : std::chrono::seconds(0)});
     if (!record_into(session, console, options, clock, *ports, exchange, *stale, orders)) {
       if (is_ring) remove_pieces(ring_pieces(options.file));
       return;

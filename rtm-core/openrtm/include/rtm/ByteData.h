@@ -1,5 +1,5 @@
-// Octets of one sample as listeners see them. A value; one thread at a time. What a listener gets shows the octets where they are: they are
-// copied when somebody may change them, by getBuffer() of one that is not const or by setDataLength, and when the object itself is copied.
+// The bytes of one sample as listeners see them. A value; one thread at a time. A listener receives a view of the bytes. They are copied
+// before a caller can change them, by getBuffer() of one that is not const or by setDataLength, and when the object itself is copied.
 #pragma once
 
 #include <vector>

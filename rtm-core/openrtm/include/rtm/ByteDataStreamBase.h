@@ -1,4 +1,4 @@
-// Serializers: what turns values of one type into octets and back. A module registers its own under a name with addSerializer; connections
+// Serializers: encode values of one type as bytes, and decode them. A module registers its own under a name with addSerializer; connections
 // choose one with dataport.marshaling_type (dataport.inport.*, dataport.outport.* for one side). A serializer is used by one thread at a
 // time; a connection makes as many as it needs. Registering: any thread.
 #pragma once

@@ -1,5 +1,5 @@
 // Functions that work on components, contexts and ports by reference, of this process or another. Any thread; each call may take the ORB's
-// call time-out when the peer hangs. CORBA exceptions become BAD_PARAMETER (nil or dead reference) or RTC_ERROR.
+// call timeout when the peer hangs. CORBA exceptions become BAD_PARAMETER (nil or dead reference) or RTC_ERROR.
 #pragma once
 
 #include <rtm/NVUtil.h>

@@ -1,4 +1,4 @@
-// A naming service as component authors use it. Names as text: components separated by /, id and kind by a dot, backslash escapes both.
+// A name server as component authors use it. Names as text: components separated by /, id and kind by a dot, backslash escapes both.
 // Any thread. Errors are the exceptions of CosNaming::NamingContext and CORBA system exceptions.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The manager's names in naming services. Any thread; nothing here waits for a naming service longer than a short time-out.
+// The manager's names on name servers. Any thread; each wait for a name server has a short timeout.
 #pragma once
 
 #include <rtm/CorbaNaming.h>

@@ -1,5 +1,5 @@
-// A component made of others: its members run in its execution context, follow its state, and some of their ports become its own
-// (configuration parameter exported_ports: a comma list of <member>.<port>).
+// A component that consists of other components: these members run in its execution context, follow its state, and some of their ports
+// become its own (configuration parameter exported_ports: a comma list of <member>.<port>).
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>

@@ -1,11 +1,12 @@
-// A component: servant of OpenRTM::DataFlowComponent and base class of everything that authors write. Its operations may be called from any
-// thread. Callbacks: onInitialize, onFinalize, onStartup, onShutdown and onRateChanged run on the caller's thread, all others on the thread
-// of the execution context. What a callback throws becomes RTC_ERROR and one log line. No lock is held while a callback runs.
+// A component: servant of OpenRTM::DataFlowComponent and base class of all components that authors write. Its operations may be called from
+// any thread. Callbacks: onInitialize, onFinalize, onStartup, onShutdown and onRateChanged run on the caller's thread, all others on the
+// thread of the execution context. What a callback throws becomes RTC_ERROR and one log line. No lock is held while a callback runs.
 //
-// Callbacks of one component never run at the same time, whoever calls: its own contexts, contexts of other components or processes, the
-// wire. Who comes while one runs waits (component/outside_calls.h says how long), and a callback that calls another one of its component on
-// its own thread does so at once. Component action listeners and listeners of updated parameters belong to the callback that they stand
-// around. All other listeners, and the operations of a component's services, run on the thread of whoever asks, beside callbacks.
+// Callbacks of one component never run at the same time, for all callers: its own contexts, contexts of other components or processes, the
+// wire. A call that comes while a callback runs waits (component/outside_calls.h says how long), and a callback that calls another one of
+// its component on its own thread does so at once. Component action listeners and listeners of updated parameters belong to the callback
+// that they stand around. All other listeners, and the operations of a component's services, run on the thread of the caller, beside
+// callbacks.
 #pragma once
 
 #include <coil/Guard.h>
