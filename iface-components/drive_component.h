@@ -1,6 +1,6 @@
-// What RTCPosition2d and RTCPosition3d have in common: the InPort `velocity` drives the robot, the motors are switched by configuration,
-// and the robot stops when velocities stop coming. Configuration: server_id, device_id, motors_enabled; command_timeout [s of simulated
-// time]: the robot stops when no velocity has come for so long (0: never).
+// Common base of RTCPosition2d and RTCPosition3d: the InPort `velocity` drives the robot, the motors are switched by configuration, and the
+// robot stops when velocities stop coming. Configuration: server_id, device_id, motors_enabled; command_timeout [s of simulated time]: the
+// robot stops when no velocity has come for so long (0: never).
 //
 // Threads: in real time a velocity goes to the robot on the thread that brings it; in simulated time in onExecute, in the context's phase.
 #pragma once

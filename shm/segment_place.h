@@ -1,6 +1,6 @@
-// Where a segment of a name is: the usual path /dev/shm/<text of its name>, or, when another user has made a file of that name, the folder
-// /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name (a refuge). Any thread and any process; the file system is asked each
-// time. One question costs the same however many segments there are, as long as /dev/shm has no folders.
+// The place of a segment with a given name: the usual path /dev/shm/<text of its name>, or, when another user has made a file of that name,
+// the folder /dev/shm/rtmsim-<uid>.<random letters>/ of the user in the name (a refuge). Any thread and any process; the file system is
+// asked each time. One question costs the same however many segments there are, as long as /dev/shm has no folders.
 #pragma once
 
 #include <string>

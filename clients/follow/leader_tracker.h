@@ -1,5 +1,5 @@
-// Where the leader is, by a laser: beams that hit the same thing form a cluster, and the leader is the cluster where it was before. Pure;
-// one thread at a time.
+// Tracks the leader by a laser: beams that hit the same thing form a cluster, and the leader is the cluster where it was before. Pure; one
+// thread at a time.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What of a scanner's scans clients have asked for: a part of its angles, every n-th beam, every n-th scan. Values; one thread at a time.
+// The part of a scanner's scans that clients requested: a range of angles, every n-th beam, every n-th scan. Values; one thread at a time.
 #pragma once
 
 #include <cstdint>

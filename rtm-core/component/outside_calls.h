@@ -1,4 +1,4 @@
-// What other processes may call of a component: the operations of RTC::ComponentAction, RTC::DataFlowComponentAction and
+// Calls of other processes to a component that are accepted: the operations of RTC::ComponentAction, RTC::DataFlowComponentAction and
 // RTC::LightweightRTObject that run code of its author or change its life. The ORB calls them on its own threads. Any thread.
 //
 // Rights, for callers of other accounts and machines (corba/orb/asker.h): with manager.remote_rights `read` none of these operations does

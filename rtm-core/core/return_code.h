@@ -1,5 +1,5 @@
-// What an operation of the runtime answers: the OMG RTC return codes, with the numbers of the wire. Any thread.
-// Source: OMG Robotic Technology Component 1.1, 5.2.1.
+// Results of the runtime's operations: the OMG RTC return codes, with the numbers of the wire. Any thread. Source: OMG Robotic Technology
+// Component 1.1, 5.2.1.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
-// What drives an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on whatever thread comes;
-// a Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their threads are
-// the caller's, except a Crew's.
+// Drivers of an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on whatever thread comes; a
+// Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their threads are the
+// caller's, except a Crew's.
 #pragma once
 
 #include <semaphore.h>

@@ -1,4 +1,5 @@
-// What rtm-asset-reader does with a file. One thread at a time. May crash, hang, grow or end the process: it runs where that does no harm.
+// The jobs of rtm-asset-reader: reads one file. One thread at a time. May crash, hang, grow or end the process: it runs where that does no
+// harm.
 #pragma once
 
 #include <cstdint>

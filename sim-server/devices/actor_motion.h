@@ -1,4 +1,4 @@
-// Where an actor is and what its limbs do at a time. A value after construction; any thread.
+// The pose of an actor and of its limbs at a time. A value after construction; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

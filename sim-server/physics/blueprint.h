@@ -1,5 +1,5 @@
-// What a model becomes in ODE, worked out once and used whenever the model is built: links that are joined rigidly form one assembly,
-// which is one body. Constant after creation; any thread.
+// The plan of a model in ODE, computed once and used whenever the model is built: links that are joined rigidly form one assembly, which is
+// one body. Constant after creation; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

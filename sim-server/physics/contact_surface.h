@@ -1,5 +1,5 @@
-// How two surfaces meet: friction, slip, bounce and softness of their contacts; and how many contacts are worth solving. Private to
-// physics/. Pure functions; any thread.
+// Contact of two surfaces: friction, slip, bounce and softness, and the number of contacts to solve. Private to physics/. Pure functions;
+// any thread.
 //
 // Friction that is the same in all directions follows Coulomb: it acts against the sliding, whatever the direction, where ODE's own is a
 // square along the world's axes. Hard contacts give way by some 10 um under the model's weight, so that all wheels of a robot carry it;

@@ -1,5 +1,4 @@
-// What the state of something is, as a row of numbers, and its 64-bit hash, the same on every machine for equal bits. A value; one thread
-// at a time.
+// A state as a row of numbers, and its 64-bit hash, which is the same on every machine for equal bits. A value; one thread at a time.
 #pragma once
 
 #include <Eigen/Geometry>

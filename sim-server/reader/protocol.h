@@ -1,4 +1,4 @@
-// What sim-server and rtm-asset-reader say to each other over a socket pair (SOCK_SEQPACKET). Any thread.
+// The protocol of sim-server and rtm-asset-reader over a socket pair (SOCK_SEQPACKET). Any thread.
 //
 // A request is one packet: RequestHead, then what the kind of request needs (reader/arrays.h), perhaps with a descriptor (the bytes of a
 // picture). The answer is one packet, AnswerHead, with a sealed memfd: the result's arrays (or the text of an error), padded to 8 bytes,

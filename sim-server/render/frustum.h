@@ -1,4 +1,4 @@
-// What a view sees, as matrices and planes. Values; any thread.
+// The frustum of a view as matrices and planes. Values; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,5 @@
-// What a context holds of a scene: programs, meshes and textures, made when they are first needed. For the thread of the context.
+// The GL objects of a scene in one context: programs, meshes and textures, created when they are first needed. For the thread of the
+// context.
 #pragma once
 
 #include <map>

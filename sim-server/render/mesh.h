@@ -1,5 +1,4 @@
-// What is drawn, before it reaches GL: triangles with normals and texture coordinates, and the materials of their parts. Values; any
-// thread.
+// Geometry before it reaches GL: triangles with normals and texture coordinates, and the materials of their parts. Values; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// What a picture for people shows over the scene: scans of range finders as fans, trails, names. Values; any thread.
+// Overlays of a screenshot: scans of range finders as fans, trails, names. Values; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// What a simulation is made of and how it does, as JSON for clients. The stepping thread only.
+// Describes the content and the statistics of a simulation, as JSON for clients. The stepping thread only.
 #pragma once
 
 #include <string>

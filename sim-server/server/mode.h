@@ -1,5 +1,5 @@
-// Whether simulated time passes: it stands still (paused), it runs, or it makes the steps that a client has asked for and stands still
-// again. The stepping thread only.
+// The mode of simulated time: paused, running, or executing the steps that a client requested and then paused again. The stepping thread
+// only.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Where the time of the loop goes. The stepping thread only.
+// Measures the parts of the loop's time. The stepping thread only.
 #pragma once
 
 #include <array>

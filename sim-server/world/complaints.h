@@ -1,5 +1,5 @@
-// What the loader has to say about the files of one world, and where in them: every element of a document being loaded carries its line
-// (and its file where that changes) as attributes, so that the place survives conversions and includes. One thread at a time.
+// Warnings and errors of the loader about the files of one world, with their positions: every element of a document being loaded carries
+// its line (and its file where that changes) as attributes, so that the place survives conversions and includes. One thread at a time.
 #pragma once
 
 #include <pugixml.hpp>

@@ -1,5 +1,5 @@
-// What the ifaces of sensors and drives are called. Names of SDFormat may hold what no file name can, be longer, and need to be unique in
-// their link only; names of ifaces are unique among those of their type. Any thread.
+// Names of the ifaces of sensors and drives. Names of SDFormat may hold what no file name can, be longer, and need to be unique in their
+// link only; names of ifaces are unique among those of their type. Any thread.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where models and the files they refer to are looked for. A value; any thread.
+// Search path of models and of the files that they refer to. A value; any thread.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Where the models of a <population> stand. Any thread.
+// Poses of the models of a <population>. Any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -72,6 +72,13 @@ def allowed():
     return {(file, word): int(number) for file, word, number in rows}
 
 
+def clauses_as_headings():
+    for folder in folders:
+        for file in sorted((source / folder).glob("**/*.h")):
+            if "node_modules" not in file.parts and re.match(r"// (What|Who|Whoever|Whether|Where|How|So|Of|That|Nobody)\b", file.read_text()):
+                yield f"{file.relative_to(source)}:1: the comment begins with a clause; begin with a verb or with what the header has"
+
+
 planted = """// "a comment"
 char quote = '"'; f("name", "so "  // why
   "many"); g(R"x(a "raw" text)x"); /* "another comment" */ h("one \\"two\\" three");
@@ -93,5 +100,6 @@ problems = [f"{file}:{','.join(map(str, lines))}: \"{word}\": see docs/glossary.
             for (file, word), lines in sorted(places.items()) if len(lines) > allow.get((file, word), 0)]
 problems += [f"tests/scenario/plain_english.allow: {file}: \"{word}\" is allowed {number} times, found {len(places.get((file, word), []))}: run with --shrink"
              for (file, word), number in sorted(allow.items()) if len(places.get((file, word), [])) < number]
+problems += clauses_as_headings()
 print("\n".join(problems) if problems else f"{sum(allow.values())} rejected words are still allowed")
 sys.exit(1 if problems else 0)

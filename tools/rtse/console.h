@@ -1,4 +1,4 @@
-// What a command of rtse prints: results on standard output, as text or JSON; problems on standard error, as "rtse: ...". It knows whether
+// Output of a command of rtse: results on standard output, as text or JSON; problems on standard error, as "rtse: ...". It knows whether
 // the command failed, for the exit code. warn() may be called on any thread, everything else on one at a time.
 #pragma once
 

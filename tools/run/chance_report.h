@@ -1,4 +1,4 @@
-// What the processes of a run have told that could depend on chance. One thread at a time.
+// Collects the nondeterministic events that the processes of a run reported. One thread at a time.
 #pragma once
 
 #include <chrono>

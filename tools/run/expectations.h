@@ -1,4 +1,4 @@
-// What a run of a system must fulfil, as a YAML file says it, and the verdict on what was seen. Pure but for reading files; any thread.
+// Expectations of a run from a YAML file, and their verdicts. Pure but for reading files; any thread.
 //
 //   - path_length: {model: pioneer2dx, min: 10, max: 40}                      metres
 //   - reach: {model: pioneer2dx, region: [3, 3, 5, 5], within: 60}            corners x1 y1 x2 y2; seconds of simulated time

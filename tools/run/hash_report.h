@@ -1,4 +1,4 @@
-// What people read of two hash logs: the first difference with the values that are there. One thread at a time.
+// Reports two hash logs to people: the first difference with its values. One thread at a time.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// What a run has shown of its models: where they were, and which ones began to touch. Values; any thread.
+// Poses and contacts of the models during a run. Values; any thread.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// What was done to a component while it was recorded, and doing it again: values of parameters, activation, deactivation, reset. One thread
-// at a time.
+// Repeats the changes that were made to a component while it was recorded: parameters, activation, deactivation, reset. One thread at a
+// time.
 //
 // What took effect in tick t is asked for at the end of the tick before, and the component takes it up where its next tick begins; what
 // happened between two ticks is done while time stands still there.

@@ -1,4 +1,4 @@
-// Where a run keeps its files, and what its logs say. One thread at a time.
+// The folder of a run's files, and the content of its logs. One thread at a time.
 #pragma once
 
 #include <filesystem>

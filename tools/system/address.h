@@ -1,6 +1,6 @@
-// How people name things on the command line. Values; any thread.
-// Forms: /HOST[:PORT]/CONTEXT.KIND/.../NAME.rtc[:PORT-NAME], the same without the leading slash relative to $RTCSH_CWD, or any tail that
-// names one thing only (NAME:PORT-NAME, NAME, CONTEXT/NAME). A trailing slash is accepted.
+// Addresses of components, ports and contexts on the command line. Values; any thread. Forms:
+// /HOST[:PORT]/CONTEXT.KIND/.../NAME.rtc[:PORT-NAME], the same without the leading slash relative to $RTCSH_CWD, or any tail that names one
+// thing only (NAME:PORT-NAME, NAME, CONTEXT/NAME). A trailing slash is accepted.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// How a tool reaches a running system: the ORB, the name server, and how long calls may take. A value; one thread at a time.
+// Connection of a tool to a running system: the ORB, the name server, and how long calls may take. A value; one thread at a time.
 #pragma once
 
 #include <chrono>

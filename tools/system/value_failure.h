@@ -1,4 +1,4 @@
-// What ends the walk through a value that cannot be read or written. Thrown and caught inside one file: only an Error leaves it.
+// Ends the walk through a value that cannot be read or written. Thrown and caught inside one file: only an Error leaves it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What all payloads are written and read with. Pure; any thread.
+// Encodes and decodes payloads. Pure; any thread.
 #pragma once
 
 #include <optional>

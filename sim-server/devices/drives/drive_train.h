@@ -1,5 +1,5 @@
-// How a robot on wheels moves: what its motors do for a velocity that is asked for, and what the encoders of its wheels say. The stepping
-// thread only.
+// Drive train of a robot on wheels: sets its motors for a commanded velocity, and reads the encoders of its wheels. The stepping thread
+// only.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where on earth a point of a world is, for the gps. Pure; any thread.
+// Converts a point of a world to latitude, longitude and altitude, for the gps. Pure; any thread.
 #pragma once
 
 #include "world/world_def.h"

@@ -1,6 +1,5 @@
-// What all devices that publish samples have in common, and none of them writes itself: when a sample is due, the iface, the noise, what
-// happens when somebody looks while time stands still, at a reset, and in the state hash. A device of its own adds how it measures. See
-// device.h for the thread rule.
+// Common base of devices that publish samples. It decides when a sample is due, owns the iface and the noise, and handles reads while time
+// stands still, resets and the state hash. A device of its own adds how it measures. See device.h for the thread rule.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
-// What the models of a simulator look like, as markers that viewers draw: a marker for each visible shape, in the frame of its link, as
-// triangles in one colour. Made from the simulator's export (docs/simulator.md), so that every kind of shape is there; what bends (actors)
-// and pictures on surfaces are left out. Pure, but for shapes_of(), which asks the simulator, for at most a minute. Any thread.
+// The shapes of a simulator's models as markers that viewers draw: a marker for each visible shape, in the frame of its link, as triangles
+// in one colour. Made from the simulator's export (docs/simulator.md), so that every kind of shape is there; what bends (actors) and
+// pictures on surfaces are left out. Pure, but for shapes_of(), which asks the simulator, for at most a minute. Any thread.
 #pragma once
 
 #include <cstdint>

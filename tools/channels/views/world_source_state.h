@@ -1,4 +1,4 @@
-// What a WorldSource has: of its thread alone, but for `shared`.
+// State of a WorldSource. It belongs to its thread, except `shared`.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What log plug-ins derive from to get records one by one: registered like any stream buffer, but instead of lines they get the parts.
+// Base class of log plug-ins that receive records one by one: registered like any stream buffer, but instead of lines they get the parts.
 #pragma once
 
 #include <coil/config_coil.h>

@@ -1,4 +1,4 @@
-// What coil::PeriodicTask offers, and the functions it can run.
+// The interface of coil::PeriodicTask, and the functions that it can run.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// How a call of a buffer ended. Values.
+// Result of a call of a buffer. Values.
 #pragma once
 
 namespace RTC {

@@ -1,4 +1,4 @@
-// Who calls a service of a component (docs/security.md). No part of the API of OpenRTM. Any thread.
+// The caller of a service of a component (docs/security.md). No part of the API of OpenRTM. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,5 +1,5 @@
-// What waits in a connection to be read or sent, as ConnectorBase::getBuffer shows it. The samples themselves are read from the port.
-// Any thread; the counts may have changed when the caller looks at them.
+// The samples that wait in a connection to be read or sent, as ConnectorBase::getBuffer shows it. The samples themselves are read from the
+// port. Any thread; the counts may have changed when the caller looks at them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What users see of a connection of a data port. Objects belong to their port and live until it is disconnected. Any thread.
+// A connection of a data port as component authors see it. Objects belong to their port and live until it is disconnected. Any thread.
 #pragma once
 
 #include <coil/Properties.h>

@@ -1,4 +1,4 @@
-// What InPorts and OutPorts have in common: their connections as component authors see them. Any thread.
+// Common base of InPorts and OutPorts: their connections as component authors see them. Any thread.
 #pragma once
 
 #include <coil/Guard.h>

@@ -1,4 +1,4 @@
-// What ports, listeners and time stamps must know about a data type, as a table of functions: all else about ports is compiled once. For
+// Operations of a data type for ports, listeners and time stamps, as a table of functions: all other code of ports is compiled once. For
 // the templates of these headers. Any thread.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Where execution contexts are made by name. Plug-ins add their type with ExecutionContextFactory::instance().addFactory or, in 1.x
-// spelling, Manager::registerECFactory. Any thread.
+// Creates execution contexts by name. Plug-ins add their type with ExecutionContextFactory::instance().addFactory or, in 1.x spelling,
+// Manager::registerECFactory. Any thread.
 #pragma once
 
 #include <coil/Factory.h>

@@ -1,6 +1,6 @@
-// What an execution context is made from: membership, life cycle, rate, profile, and the three phases of a cycle. It has no thread: a
-// derived class calls invokeWorkerPreDo, Do and PostDo (or invokeWorker) from its own, one at a time. Everything else may be called from
-// any thread. A derived class is also a servant of RTC::ExecutionContextService and answers its operations with the functions here.
+// Base class of execution contexts: membership, life cycle, rate, profile, and the three phases of a cycle. It has no thread: a derived
+// class calls invokeWorkerPreDo, Do and PostDo (or invokeWorker) from its own, one at a time. Everything else may be called from any
+// thread. A derived class is also a servant of RTC::ExecutionContextService and answers its operations with the functions here.
 #pragma once
 
 #include <coil/Properties.h>

@@ -1,4 +1,4 @@
-// What contexts of authors know as m_worker: the members of their context one by one, and the cycle. Any thread, except the invoke
+// The m_worker of contexts that authors write: the members of their context one by one, and the cycle. Any thread, except the invoke
 // functions, which are the context's own thread's.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What the ends of an author's transport that are reached by their peer have in common: their names and what they add to the profile of a
-// connection. One thread.
+// Common base of the ends of an author's transport that their peer calls: their names and what they add to the profile of a connection. One
+// thread.
 #pragma once
 
 #include <rtm/SystemLogger.h>

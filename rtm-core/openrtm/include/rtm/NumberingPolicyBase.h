@@ -1,5 +1,5 @@
-// How components of one type are numbered: ConsoleIn0, ConsoleIn1, ... Policies are picked by manager.components.naming_policy; own ones
-// are registered with NumberingPolicyFactory. The manager calls a policy from one thread at a time.
+// Numbers components of one type: ConsoleIn0, ConsoleIn1, ... Policies are picked by manager.components.naming_policy; own ones are
+// registered with NumberingPolicyFactory. The manager calls a policy from one thread at a time.
 #pragma once
 
 #include <coil/Factory.h>

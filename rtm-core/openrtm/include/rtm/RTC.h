@@ -1,4 +1,4 @@
-// What every header of the component API starts from: the interfaces of the RTC standard and the names authors use for them. Any thread.
+// First header of the component API: the interfaces of the RTC standard and the names authors use for them. Any thread.
 #pragma once
 
 #include <coil/config_coil.h>

@@ -1,4 +1,4 @@
-// What kind of component an object is. Each function asks the object; any thread. Throws the system exception when it does not answer.
+// Queries the kind of a component. Each function asks the object; any thread. Throws the system exception when it does not answer.
 #pragma once
 
 #include <rtm/idl/RTCSkel.h>
