@@ -17,7 +17,7 @@ set_tests_properties(docs.commands PROPERTIES LABELS docs)
 set(pages README.md docs/campaigns.md docs/hash-logs.md docs/pictures.md docs/player.md docs/recordings.md docs/security.md docs/simulator.md
   docs/testing-a-robot-system.md docs/third-party-components.md docs/tutorial-first-system.md docs/worlds.md)
 if(RTMSIM_STUDIO_PAGE)
-  list(APPEND pages docs/studio.md)
+  list(APPEND pages docs/run-page.md docs/studio.md)
 endif()
 foreach(page IN LISTS pages)
   cmake_path(GET page STEM name)

@@ -40,6 +40,9 @@ struct RunOptions {
   std::string picture;                  // PNG to write
   std::string record;                   // MCAP to write
   double record_last_s = 0;             // only the last seconds of it, and only if the run fails; 0: all
+  std::string page;                     // HTML to write
+  double page_camera_rate = 1;          // images of each camera in the page, per simulated second
+  double page_limit_mib = 64;           // size of the page
   std::string hash_log;                 // to write
   double hash_period_s = 0;             // of the world's part; 0: when components are called
   bool twice = false;                   // run twice and compare
@@ -137,6 +140,19 @@ inline constexpr auto run_option_rows = [] {
        .high = 1e6,
        .unit = Unit::simulated_seconds,
        .needs = "record"},
+      {.name = "page", .member = &O::page, .help = "Write the run as one HTML page for any browser", .is_path = true},
+      {.name = "page-camera-rate",
+       .member = &O::page_camera_rate,
+       .help = "Images of each camera in the page per simulated second; 0: none",
+       .low = 0,
+       .high = 1000,
+       .needs = "page"},
+      {.name = "page-limit",
+       .member = &O::page_limit_mib,
+       .help = "Maximum size of the page [MiB]",
+       .low = 1,
+       .high = 4096,
+       .needs = "page"},
       {.name = "hash-log",
        .member = &O::hash_log,
        .help = "Write hashes of the world, the components and the samples of each port, for rtse diff",

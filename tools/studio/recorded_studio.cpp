@@ -8,6 +8,7 @@
 #include "base/id.h"
 #include "base/text.h"
 #include "studio/foxglove.h"
+#include "studio/recorded_details.h"
 #include "studio/scene.h"
 
 namespace studio {
@@ -18,56 +19,6 @@ using base::Result;
 
 constexpr std::size_t maker_threads = 2;
 constexpr std::size_t most_points = 20000;  // of a line of a plot
-constexpr double step_s = 0.02;             // in which poses are recorded
-
-const Json& component_at(const RecordingFacts& facts, const std::string& path) {
-  static const Json nothing;
-  const auto found = std::ranges::find_if(facts.components, [&](const Json& one) { return one.value("path", "") == path; });
-  return found == facts.components.end() ? nothing : *found;
-}
-
-std::string value_in(const editor::SavedComponent& component, const char* set_id, const std::string& name) {
-  for (const auto& set : component.configuration_sets) {
-    if (set.id != set_id) continue;
-    for (const auto& [key, value] : set.values) {
-      if (key == name) return value;
-    }
-  }
-  return {};
-}
-
-// The reply to "component": what the profile says, with the parameters as they were at the moment.
-Result<Json> details(const RecordingFacts& facts, const std::string& path, Playhead& playhead) {
-  const Json& component = component_at(facts, path);
-  if (component.is_null()) return Error{"component " + base::in_quotes(path) + ": is not in the recording"};
-  const auto now = playhead.parameters(component.value("instance", ""));
-  if (!now) return now.error();
-  Json json = component;
-  json["properties"] = Json::object();
-  json["sets"] = Json::array();
-  const auto saved = facts.saved.find(path);
-  if (saved == facts.saved.end()) {
-    Json values = Json::array();
-    for (const auto& [name, value] : *now)
-      values.push_back({{"name", name}, {"value", value}, {"type", ""}, {"widget", ""}, {"constraint", ""}});
-    if (!values.empty()) json["sets"].push_back({{"id", "default"}, {"active", true}, {"values", std::move(values)}});
-    return json;
-  }
-  for (const auto& set : saved->second.configuration_sets) {
-    if (set.is_hidden()) continue;
-    const bool is_active = set.id == saved->second.active_set;
-    Json values = Json::array();
-    for (const auto& [name, value] : set.values) {
-      values.push_back({{"name", name},
-                        {"value", is_active && now->contains(name) ? now->at(name) : value},
-                        {"type", value_in(saved->second, "__type__", name)},
-                        {"widget", value_in(saved->second, "__widget__", name)},
-                        {"constraint", value_in(saved->second, "__constraints__", name)}});
-    }
-    json["sets"].push_back({{"id", set.id}, {"active", is_active}, {"values", std::move(values)}});
-  }
-  return json;
-}
 
 }  // namespace
 
@@ -128,22 +79,7 @@ void RecordedStudio::has_scene(const Result<Scene>& scene) {
   }
 }
 
-std::string RecordedStudio::world_event() const {
-  Json event{{"op", "world"},
-             {"present", scene_ != nullptr},
-             {"problem", scene_                   ? ""
-                         : scene_problem_.empty() ? "the world is being made from the recording"
-                                                  : scene_problem_},
-             {"is_coming", !scene_ && scene_problem_.empty()},
-             {"server_id", 0},
-             {"name", facts_->world.empty() ? std::filesystem::path(facts_->file).stem().string() : facts_->world},
-             {"file", facts_->file},
-             {"version", scene_ ? scene_->version : 0},
-             {"links", scene_ ? scene_->links.size() : 0},
-             {"models", scene_ ? scene_->models : Json::array()},
-             {"ifaces", facts_->ifaces}};
-  return to_text(event);
-}
+std::string RecordedStudio::world_event() const { return to_text(recorded_world(*facts_, scene_.get(), scene_problem_)); }
 
 bool RecordedStudio::fetch(const std::string& path, const std::string& query, const Answer& answer) {
   if (path != "/world.glb") return false;
@@ -174,26 +110,8 @@ void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
 
 void RecordedStudio::greet(Guest& guest) {
   const auto say = [&](const Json& event) { guest.viewer->send(text_frame(to_text(event))); };
-  say({{"op", "hello"},
-       {"version", RTMSIM_VERSION},
-       {"read_only", true},
-       {"name_server", ""},
-       {"server_id", 0},
-       {"recording",
-        {{"file", std::filesystem::path(facts_->file).filename().string()},
-         {"from", facts_->seconds(facts_->from)},
-         {"to", facts_->seconds(facts_->to)},
-         {"step", step_s},
-         {"damage", facts_->damage},
-         {"states", facts_->states},
-         {"lines", facts_->lines},
-         {"lines_left_out", facts_->lines_left_out}}}});
-  say({{"op", "system"},
-       {"revision", 1},
-       {"problem", ""},
-       {"components", facts_->components},
-       {"connections", facts_->connections},
-       {"managers", Json::array()}});
+  say(recorded_hello(*facts_));
+  say(recorded_system(*facts_));
   say({{"op", "signals"}, {"signals", facts_->signals}});
   guest.viewer->send_newest("world", text_frame(world_event()));
 }
@@ -237,7 +155,7 @@ Result<RecordedStudio::Work> RecordedStudio::work_for(const Request& request) co
   if (request.name == "component") {
     const auto path = text_of(args, "path");
     if (!path) return path.error();
-    return Work([facts = facts_, path = *path](Playhead& playhead, Playhead::News&) { return details(*facts, path, playhead); });
+    return Work([facts = facts_, path = *path](Playhead& playhead, Playhead::News&) { return recorded_details(*facts, path, playhead); });
   }
   if (request.name != "watch" && request.name != "watch_image" && request.name != "unwatch")
     return Error{"a recording shows what was: " + base::in_quotes(request.name) + " cannot be done to it"};

@@ -19,6 +19,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "rtse/commands/run.h"
+#include "rtse/commands/run_page.h"
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"
@@ -115,7 +116,7 @@ Result<shm::FileHandle> memory_file(const std::string& text) {
 RunOptions of_seed(RunOptions options, std::uint64_t seed) {
   options.seed = seed;
   options.junit.clear();
-  for (auto* file : {&options.picture, &options.record, &options.hash_log}) {
+  for (auto* file : {&options.picture, &options.record, &options.page, &options.hash_log}) {
     if (!file->empty()) *file = for_seed(*file, seed);
   }
   if (!options.keep.empty()) options.keep = (std::filesystem::path(options.keep) / ("seed-" + std::to_string(seed))).string();
@@ -176,7 +177,7 @@ Result<void> check_files(const RunOptions& options) {
   std::vector<std::filesystem::path> taken;
   for (const auto& file : {options.system, options.world, options.expectations})
     taken.push_back(std::filesystem::weakly_canonical(file, error));
-  for (const auto& file : {options.junit, options.picture, options.record, options.hash_log}) {
+  for (const auto& file : {options.junit, options.picture, options.record, options.page, options.hash_log}) {
     if (file.empty()) continue;
     const auto path = std::filesystem::weakly_canonical(file, error);
     if (std::ranges::find(taken, path) != taken.end()) return Error{"file " + base::in_quotes(file) + ": is used for something else too"};
@@ -272,8 +273,10 @@ void run(const Session& session, Console& console, const RunOptions& options, co
     results = run_seeds(session, console, options, *seeds, jobs);
   } else {
     RunProgress progress(console);
-    results.push_back(options.twice ? run_twice(session.orb(), options, progress) : run_system(session.orb(), options, progress));
+    const auto made = recorded_for_page(options);
+    results.push_back(made.twice ? run_twice(session.orb(), made, progress) : run_system(session.orb(), made, progress));
     report(console, results.back(), false);
+    write_page(console, options, made, results.back());
     if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
   if (options.junit.empty()) return;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/descriptors.h"
 #include "base/text.h"
@@ -27,6 +28,8 @@ namespace {
 
 using editor::Console;
 using editor::Session;
+
+constexpr std::chrono::minutes longest_page{30};
 
 // ---- info, ls ----
 
@@ -206,6 +209,15 @@ void export_samples(Console& console, const ExportOptions& options) {
   if (!console.json()) std::cout << exported->files << (options.png ? " pictures in " : " tables in ") << options.folder << '\n';
 }
 
+// The page is written by a program of its own, which has the viewer.
+void export_page(Console& console, const Selection& selection, const std::string& page) {
+  auto child = editor::ChildProcess::start(
+      {.words = {editor::own_program("rtse-page"), selection.file, "--output", page}, .output = editor::own_output});
+  if (!child) return console.fail(child.error());
+  if (child->wait_or_interrupt(longest_page) == editor::Ending::ended && child->exit_code() == 0) return;
+  console.fail({"page " + base::in_quotes(page) + ": was not written: rtse-page " + child->how_it_ended()});
+}
+
 // ---- compare ----
 
 Json to_json(const Comparison& comparison) {
@@ -316,12 +328,17 @@ void add_recording(base::Command& app, editor::Chosen& chosen) {
   cat_command->add_option("-n,--count", selection->count, "Stop after N samples")->check(base::number_between(0, 1e9));
   choose(cat_command, [selection](const Session&, Console& console) { cat(console, *selection); });
 
-  auto* export_command = recording->add_subcommand("export", "Write a CSV table per channel, or the camera images");
+  auto* export_command = recording->add_subcommand("export", "Write a CSV table per channel, the camera images, or one HTML page");
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
-  export_command->add_option("-o,--output", exported->folder, "Output folder")->required();
+  auto page = std::make_shared<std::string>();
+  export_command->add_option("-o,--output", exported->folder, "Output folder");
   export_command->add_flag("--png", exported->png, "Write the camera images as PNG files instead of tables");
-  choose(export_command, [exported](const Session&, Console& console) { export_samples(console, *exported); });
+  export_command->add_option("--html", *page, "Write the whole recording as this HTML page for any browser");
+  choose(export_command, [exported, page](const Session&, Console& console) {
+    if (page->empty() == exported->folder.empty()) return console.fail({"export: expected either --output FOLDER or --html FILE"});
+    page->empty() ? export_samples(console, *exported) : export_page(console, exported->selection, *page);
+  });
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();

@@ -3,6 +3,7 @@ import { createHash } from 'node:crypto';
 import { mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { deflateSync } from 'node:zlib';
 import { build } from 'esbuild';
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -32,3 +33,16 @@ for (const file of result.outputFiles) {
 }
 const page = await readFile(join(here, 'src/index.html'), 'utf8');
 await writeFile(join(out, 'index.html'), page.replace('studio.js', names.js).replace('studio.css', names.css));
+
+// The same page as one file, for a run whose data are written into it: nothing is loaded, and nothing else may run.
+const source = (kind) => result.outputFiles.find((file) => file.path.endsWith(`.${kind}`)).contents;
+const style = new TextDecoder().decode(source('css')).replaceAll('</style', '<\\/style');
+const viewer = deflateSync(source('js'), { level: 9 }).toString('base64');
+const loader = (await readFile(join(here, 'src/run_loader.js'), 'utf8')).trim();
+const hash_of = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+const policy = `default-src 'none'; script-src blob: ${hash_of(loader)}; style-src ${hash_of(style)}; img-src blob: data:; connect-src blob: data:; worker-src blob:; base-uri 'none'; form-action 'none'`;
+const head = page
+  .replace('<meta charset="utf-8">', () => `<meta charset="utf-8">\n<meta http-equiv="Content-Security-Policy" content="${policy}">`)
+  .replace('<link rel="stylesheet" href="assets/studio.css">', () => `<style>${style}</style>`)
+  .replace('<script type="module" src="assets/studio.js"></script>', '');
+await writeFile(join(out, 'run.html'), head.replace('</body>', () => `<!--run-->\n<script type="text/plain" id="run-viewer">${viewer}</script>\n<script>${loader}</script>\n</body>`));

@@ -8,10 +8,12 @@ import { History } from './history';
 import { disconnect, Inspector } from './inspector';
 import { is_pasteable, shell_line, shell_word } from './shell';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
-import { act, changed, component, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
+import { act, changed, component, link_problem, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
 import { Playback, recording } from './playback';
 import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
+import { has_run } from './run_data';
+import { run_summary } from './run_summary';
 import { spawn_dialog } from './spawn_dialog';
 import { with_token } from './token';
 import { Tree } from './tree';
@@ -271,12 +273,13 @@ function show_head(): void {
   const { status } = wire;
   const whole = recording();
   world_name.textContent = whole ? `${whole.file}, ${(whole.to - whole.from).toFixed(1)} s recorded` : store.world?.present ? store.world.name : '';
-  const text = status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  const text = wire.damage ? link_problem() : status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
   link_state.textContent = text;
   link_state.title = whole?.damage ?? '';
   link_state.classList.toggle('bad', text !== '');
   status_bar.querySelector('.read-only')!.textContent = whole ? 'a recording: it shows what was' : read_only() ? 'read-only: this page may look, not act' : '';
   page.classList.toggle('read-only', read_only());
+  page.classList.toggle('of-run', has_run());
   const counts = system_panel.querySelector('.counts')!;
   const errors = store.system.components.filter((c) => c.state === 'Error').length;
   counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} component${store.system.components.length === 1 ? '' : 's'}` : '';
@@ -284,6 +287,7 @@ function show_head(): void {
   for (const id of ['save', 'open', 'activate-all', 'deactivate-all']) (document.getElementById(id) as HTMLButtonElement | null)?.toggleAttribute('disabled', status !== 'open' || (read_only() && (id !== 'save' || whole !== undefined)));
   document.getElementById('forget-dead')!.hidden = status !== 'open' || read_only() || !store.system.components.some((c) => c.problem) && !store.system.managers.some((m) => m.problem);
   for (const tool of [tools.move, tools.push, tools.spawn]) tool.disabled = status !== 'open' || read_only() || !store.world?.present;
+  for (const tool of [tools.move, tools.push, tools.spawn, tools.picture, ...['save', 'open', 'open-recording', 'copy-link', 'activate-all', 'deactivate-all'].map((id) => document.getElementById(id)!)]) tool.hidden = has_run();
   tools.picture.disabled = status !== 'open' || !store.world?.present || whole !== undefined;
 }
 
@@ -323,7 +327,7 @@ document.addEventListener('keydown', (event) => {
   const on_chosen = (name: string, word: string) => () => { if (chosen && !read_only()) state_act(chosen, word, name); };
   const table: { [key: string]: () => void } = {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
-    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => recordings_dialog(),
+    o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => { if (!has_run()) recordings_dialog(); },
     a: on_chosen('activate', 'Activate'), d: on_chosen('deactivate', 'Deactivate'), e: on_chosen('reset', 'Reset'),
     c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
   };
@@ -358,7 +362,7 @@ on('selection', () => {
 });
 
 apply_theme();
-document.body.append(page, profile_input);
+document.body.append(run_summary(playback, copy), page, profile_input);
 lay_out();
 show_only('world');
 changed('acts');

@@ -56,6 +56,7 @@ export function select(selection: Selection | null): void {
 export function link_problem(): string {
   if (wire.status === 'no token') return 'Open the URL that rtm-studio printed: it has the token without which nothing is shown.';
   if (wire.status === 'forbidden') return 'rtm-studio was started anew and has another token. Open the URL that it printed.';
+  if (wire.damage) return `The data of this page are damaged: ${wire.damage}.`;
   return wire.status === 'lost' ? 'rtm-studio is gone. This page waits and comes back with it.' : wire.status === 'connecting' ? 'Connecting …' : '';
 }
 

@@ -1,6 +1,8 @@
 // The right to look and act: the token of the URL that rtm-studio printed. It comes behind the '#', so no server, proxy or log sees it, leaves
 // the address bar at once, and is kept by this tab alone: a cookie would be sent to every port of the host. Another tab of this browser that
 // has no token asks the tabs of the same origin.
+import { fetch_run, has_run } from './run_data';
+
 const kept = 'rtm-studio-token';
 const in_address = /(?:^#|&)token=([0-9a-f]{32})(?=&|$)/;
 const answer_limit = 500; // [ms] for other tabs
@@ -57,8 +59,9 @@ export const token: Promise<string> = mine ? Promise.resolve(mine) : asked().the
 // For a link that others can use.
 export const with_token = (link: string): string => (mine ? `${link.includes('#') ? `${link}&` : `${link}#`}token=${mine}` : link).replace('#&', '#');
 
-// What only those get who have the token.
+// Of the server, with the token; or of the run in this page.
 export async function fetch_data(path: string): Promise<Response> {
+  if (has_run()) return fetch_run(path);
   const right = await token;
   if (!right) throw new Error('there is no token');
   return fetch(path, { headers: { Authorization: `Bearer ${right}` }, credentials: 'omit', redirect: 'error' });

@@ -1,4 +1,5 @@
 // The socket to rtm-studio: requests and replies, events, poses and images. It waits for a server that is gone and comes back by itself.
+import { has_run, RunData } from './run_data';
 import { fetch_data, token } from './token';
 
 export interface Port { name: string; kind: 'in' | 'out' | 'service'; data_type: string; interfaces?: { instance: string; type: string; provided: boolean }[]; properties?: Record<string, string>; connections?: string[] }
@@ -28,7 +29,9 @@ export interface LogLine { level: string; source: string; time?: number; text: s
 export interface Recording {
   file: string; from: number; to: number; step: number; damage: string; states: Record<string, [number, string][]>; lines: [number, string, string, string][]; lines_left_out: number;
 }
-export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording }
+// Of a page with a run in it; `at` [s] and `select` (a component or a model): where it opens.
+export interface RunResult { passed?: boolean; why?: string[]; seed?: number; hash?: string; command?: string; at?: number; select?: string; left_out?: string[] }
+export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording; page?: RunResult }
 // Of a recorded moment: models that the scene of the beginning does not have, with the triangles of their links, and those that are there no more.
 export interface Late { version: number; models: { name: string; links: { name: string; parts: { color: number[]; points: number[] }[] }[] }[]; gone: string[] }
 export interface Values { rate?: number; latency?: number; watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }
@@ -41,7 +44,7 @@ export class Refused extends Error {
 }
 
 interface Events {
-  status: 'connecting' | 'open' | 'lost' | 'forbidden' | 'no token';
+  status: 'connecting' | 'open' | 'lost' | 'forbidden' | 'no token' | 'damaged';
   hello: Hello;
   system: System;
   states: { states: Record<string, State>; rates?: Record<string, [number | null, boolean]> };
@@ -56,7 +59,7 @@ interface Events {
 }
 
 export class Wire {
-  private socket: WebSocket | null = null;
+  private socket: Pick<WebSocket, 'send' | 'readyState'> | null = null;
   private next_id = 1;
   private open: Map<number, { resolve: (reply: Reply) => void; reject: (error: Error) => void; text: string }> = new Map();
   private queued: string[] = [];
@@ -64,6 +67,7 @@ export class Wire {
   private tries = 0;
   private is_greeted = false; // on this socket
   status: Events['status'] = 'connecting';
+  damage = ''; // of the data in this page
 
   on<K extends keyof Events>(op: K, work: (event: Events[K]) => void): void {
     (this.listeners[op] ??= []).push(work);
@@ -80,6 +84,7 @@ export class Wire {
 
   // A browser lets a page send nothing but subprotocols with a WebSocket: one of them is the token.
   async connect(): Promise<void> {
+    if (has_run()) return this.open_run();
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     const right = await token;
     if (!right) return this.set('no token');
@@ -93,6 +98,21 @@ export class Wire {
     };
     socket.onmessage = (message) => this.take(message.data);
     socket.onclose = () => this.lost();
+  }
+
+  private async open_run(): Promise<void> {
+    try {
+      const run = await RunData.open((data) => this.take(data), (why) => {
+        this.damage = why;
+        this.tell('status', this.status);
+      });
+      this.socket = run;
+      this.set('open');
+      run.begin();
+    } catch (error) {
+      this.damage = (error as Error).message;
+      this.set('damaged');
+    }
   }
 
   private lost(): void {

@@ -1,0 +1,159 @@
+#include "page/page_samples.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/base64.h"
+#include "base/text.h"
+#include "studio/shown_picture.h"
+
+namespace page {
+namespace {
+
+using base::Error;
+using base::Result;
+using std::chrono::nanoseconds;
+using namespace std::chrono_literals;
+
+constexpr nanoseconds sample_interval = 20ms;  // of a signal, at least
+constexpr nanoseconds bulk_interval = 100ms;   // of one with many numbers
+constexpr std::size_t bulk = 64;               // numbers of a sample; arrays of as many are rounded
+constexpr std::size_t most_numbers = 20000;    // of a sample
+constexpr double resolution = 1000;            // of rounded numbers: 1/1000 of their unit
+constexpr std::size_t most_sonars = 64;        // of a ring
+
+// Rounds arrays of many numbers; returns how many numbers the value has.
+std::size_t rounded(Json& value, bool& is_rounded) {
+  if (value.is_number()) return 1;
+  if (!value.is_structured()) return 0;
+  std::size_t count = 0;
+  const bool is_bulk = value.is_array() && value.size() >= bulk;
+  for (auto& one : value) {
+    count += rounded(one, is_rounded);
+    if (!is_bulk || !one.is_number_float() || !std::isfinite(one.get<double>())) continue;
+    one = std::round(one.get<double>() * resolution) / resolution;
+    is_rounded = true;
+  }
+  return count;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PageSamples>> PageSamples::open(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate) {
+  auto reader = mcap::Reader::open(facts->file);
+  if (!reader) return reader.error();
+  std::unique_ptr<PageSamples> samples(new PageSamples(std::move(facts), camera_rate, std::move(*reader)));
+  samples->find_channels();
+  return samples;
+}
+
+PageSamples::PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader)
+    : facts_(std::move(facts)), camera_rate_(camera_rate), reader_(std::move(reader)) {}
+
+void PageSamples::find_channels() {
+  std::map<std::string, Channel> topics;
+  for (const auto& [id, channel] : reader_.channels()) topics[channel.topic] = id;
+  mcap::Query query;
+  const auto add = [&](Channel channel, Signal signal) {
+    signals_[channel] = std::move(signal);
+    query.channels.push_back(channel);
+  };
+  for (const auto& signal : facts_->signals) {
+    const auto topic = signal.value("topic", "");
+    if (signal.value("kind", "") == "image") {
+      if (const auto found = topics.find(topic + "/image"); found != topics.end() && camera_rate_ > 0)
+        add(found->second, {.topic = topic, .is_image = true});
+    } else if (const auto found = topics.find(topic); found != topics.end()) {
+      add(found->second, {.topic = topic});
+    } else {
+      std::size_t count = 0;
+      while (count < most_sonars && topics.contains(topic + "/" + std::to_string(count))) ++count;
+      for (std::size_t i = 0; i < count; ++i)
+        add(topics.at(topic + "/" + std::to_string(i)), {.topic = topic, .of_ring = count, .number = i});
+      if (count > 0) rings_[topic] = Json{{"ranges", std::vector<double>(count, 0.0)}};
+    }
+  }
+  is_at_end_ = query.channels.empty();  // a query without channels would be one for all
+  reader_.seek(query);
+}
+
+Result<Json> PageSamples::part_until(nanoseconds to) {
+  Json part{{"samples", Json::array()}, {"images", Json::object()}};
+  for (const auto& [topic, newest] : newest_) part["samples"].push_back(Json::array({topic, newest.time, newest.value}));
+  for (const auto& [topic, image] : images_) part["images"][topic] = Json::array({Json::array({image.first, image.second})});
+  if (ahead_ && studio::to_nanoseconds(ahead_->first.log_time) < to) {
+    auto [message, data] = std::move(*ahead_);
+    ahead_.reset();
+    message.data = data;
+    if (const auto taken = take(message, part); !taken) return taken.error();
+  }
+  while (!ahead_ && !is_at_end_) {
+    const auto message = reader_.next();
+    if (!message) return message.error();
+    if (!message->has_value()) {
+      is_at_end_ = true;
+    } else if (studio::to_nanoseconds((*message)->log_time) >= to) {
+      ahead_ = std::make_unique<std::pair<mcap::Message, std::string>>(**message, std::string((*message)->data));
+    } else if (const auto taken = take(**message, part); !taken) {
+      return taken.error();
+    }
+  }
+  return part;
+}
+
+Result<void> PageSamples::take(const mcap::Message& message, Json& part) {
+  Signal& signal = signals_.at(message.channel);
+  const auto time = studio::to_nanoseconds(message.log_time);
+  const bool ends_ring = signal.number + 1 >= signal.of_ring;  // true without a ring
+  if (time < signal.next) {
+    if (ends_ring) ++thinned_[signal.topic];
+    return {};
+  }
+  if (signal.is_image) return take_image(message, signal, part);
+  auto value = values_.of(message);
+  if (!value) return value.error();
+  if (signal.of_ring > 0) {
+    auto& ring = rings_.at(signal.topic);
+    ring["ranges"][signal.number] = value->value("range", 0.0);
+    if (ends_ring) keep(signal.topic, facts_->seconds(time), ring, part);
+    return {};
+  }
+  bool is_rounded = false;
+  const std::size_t numbers = rounded(*value, is_rounded);
+  if (is_rounded) rounded_.insert(signal.topic);
+  signal.next = time + (numbers >= bulk ? bulk_interval : sample_interval) - 1ms;  // what comes at this rate is kept
+  if (numbers > most_numbers) {
+    ++too_large_[signal.topic];
+  } else {
+    keep(signal.topic, facts_->seconds(time), std::move(*value), part);
+  }
+  return {};
+}
+
+Result<void> PageSamples::take_image(const mcap::Message& message, Signal& signal, Json& part) {
+  const auto schema = reader_.schemas().find(reader_.channels().at(message.channel).schema);
+  const auto jpeg = studio::jpeg_in_message(schema == reader_.schemas().end() ? "" : schema->second.name, message.data);
+  if (!jpeg) return Error{signal.topic + ": " + jpeg.error().message};
+  const auto time = studio::to_nanoseconds(message.log_time);
+  signal.next = time + nanoseconds(static_cast<std::int64_t>(1e9 / camera_rate_)) - 1ms;
+  const auto& image = images_[signal.topic] = {facts_->seconds(time), base::to_base64(*jpeg)};
+  part["images"][signal.topic].push_back(Json::array({image.first, image.second}));
+  return {};
+}
+
+void PageSamples::keep(const std::string& topic, double time, Json value, Json& part) {
+  part["samples"].push_back(Json::array({topic, time, value}));
+  newest_[topic] = {time, std::move(value)};
+}
+
+std::vector<std::string> PageSamples::left_out() const {
+  std::vector<std::string> lines;
+  for (const auto& [topic, count] : thinned_)
+    lines.push_back(topic + ": " + std::to_string(count) + " samples between those that are shown");
+  for (const auto& [topic, count] : too_large_)
+    lines.push_back(topic + ": " + std::to_string(count) + " samples with more than " + std::to_string(most_numbers) + " numbers");
+  for (const auto& topic : rounded_) lines.push_back(topic + ": arrays are rounded to 0.001");
+  return lines;
+}
+
+}  // namespace page

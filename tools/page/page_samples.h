@@ -1,0 +1,66 @@
+// Collects the samples and images of a recording in parts of equal duration, as JSON for a page. Each part begins with the newest earlier
+// sample of each signal, so that a viewer needs one part for one time. One thread at a time.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "recording/mcap/mcap.h"
+#include "recording/sample_text.h"
+#include "studio/recording_facts.h"
+
+namespace page {
+
+using studio::Json;
+
+class PageSamples {
+ public:
+  // `camera_rate`: images of each camera per simulated second.
+  static base::Result<std::unique_ptr<PageSamples>> open(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate);
+
+  // {"samples":[[TOPIC, s, sample]], "images":{TOPIC:[[s, JPEG in base64]]}} up to and without `to`, in the order of time, so that a scan
+  // and the sample of the port that carries it compress together. Call with growing times.
+  base::Result<Json> part_until(std::chrono::nanoseconds to);
+  // A line for each signal with omitted or rounded samples.
+  std::vector<std::string> left_out() const;
+
+ private:
+  using Channel = std::uint16_t;
+  struct Signal {
+    std::string topic;
+    bool is_image = false;
+    std::size_t of_ring = 0;  // 0: one channel; else the number of sonars of a ring
+    std::size_t number = 0;   // in the ring
+    std::chrono::nanoseconds next{0};
+  };
+  struct Newest {
+    double time = 0;
+    Json value;
+  };
+
+  PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader);
+  void find_channels();
+  base::Result<void> take(const mcap::Message& message, Json& part);
+  base::Result<void> take_image(const mcap::Message& message, Signal& signal, Json& part);
+  void keep(const std::string& topic, double time, Json value, Json& part);
+
+  const std::shared_ptr<const studio::RecordingFacts> facts_;
+  const double camera_rate_;
+  mcap::Reader reader_;
+  recorder::SampleValues values_{reader_};
+  std::map<Channel, Signal> signals_;
+  std::map<std::string, Newest> newest_;                          // by topic
+  std::map<std::string, Json> rings_;                             // the ranges of a ring of sonars
+  std::map<std::string, std::pair<double, std::string>> images_;  // the newest
+  std::map<std::string, std::uint64_t> thinned_, too_large_;      // samples
+  std::set<std::string> rounded_;
+  std::unique_ptr<std::pair<mcap::Message, std::string>> ahead_;  // read, and of the next part
+  bool is_at_end_ = false;
+};
+
+}  // namespace page

@@ -1,0 +1,32 @@
+// Writes a recording as one HTML file that shows the run in a browser without a server and without a network: the page of rtm-studio, with
+// the data of the run in it (docs/run-page.md). The file is complete or it is not there, and an older one of its name stays until then.
+// Memory: one part of the recording at a time. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "studio/client_message.h"
+
+namespace page {
+
+struct PageOptions {
+  std::string recording;                          // MCAP
+  std::string file;                               // the page
+  std::string viewer;                             // run.html of the built page of rtm-studio
+  double camera_rate = 1;                         // images of each camera per simulated second; 0: none
+  std::uint64_t limit = 64ULL << 20U;             // of the page [bytes]
+  studio::Json summary = studio::Json::object();  // of the run: passed, why, seed, hash, command, at, select; all optional
+};
+
+struct PageReport {
+  std::uint64_t bytes = 0;
+  std::vector<std::string> left_out;  // a line for each kind of data that the page does not have, or has less often
+};
+
+// An error names the file that cannot be read or written.
+base::Result<PageReport> write_run_page(const PageOptions& options);
+
+}  // namespace page
