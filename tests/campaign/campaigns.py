@@ -222,7 +222,7 @@ def refused():
          'measure: component LaserObstacleAvoid0 has no port "speed" in the profile; ports: range, velocity'),
         ("measure: [{value: {port: LaserObstacleAvoid0, member: data.vx, take: min}}]", 'port "LaserObstacleAvoid0": expected COMPONENT:PORT'),
         ("never: [{port: 'LaserObstacleAvoid0:speed', member: data.vx, min: 1}]", 'never: component LaserObstacleAvoid0 has no port "speed"'),
-        ("never: [{port: 'LaserObstacleAvoid0:velocity', member: 'data[', min: 1}]", 'never: member "data[": expected'),
+        ("never: [{port: 'LaserObstacleAvoid0:velocity', member: 'data[', min: 1}]", 'member "data[": expected'),
         ("expect: [{fly: {model: pioneer2dx}}]", 'expect: unknown expectation "fly"'),
         ("expect: [{path_length: {model: nobody, min: 1}}]", 'the world has no moving model "nobody"; moving models: pioneer2dx'),
         ("expect: [{path_length: {model: box_1, min: 1}}]", 'the world has no moving model "box_1"; moving models: pioneer2dx'),

@@ -205,7 +205,7 @@ TEST_F(Worlds, scatter_models_without_touching) {
       }
     }
   }
-  plan.scatters[0].region[2] = plan.scatters[0].region[3] = -2.9;
+  plan.scatters[0].region.x2 = plan.scatters[0].region.y2 = -2.9;
   EXPECT_FALSE(RowMaker::make(plan, world())->row(1));
 }
 

@@ -120,8 +120,8 @@ Result<void> RowMaker::scatter(Row& row, std::size_t sample) const {
       bool is_placed = false;
       for (int i = 0; i < tries && !is_placed; ++i) {
         auto pose = poses[name];
-        pose.translation().x() = scatter.region[0] + random.uniform() * (scatter.region[2] - scatter.region[0]);
-        pose.translation().y() = scatter.region[1] + random.uniform() * (scatter.region[3] - scatter.region[1]);
+        pose.translation().x() = scatter.region.x1 + random.uniform() * (scatter.region.x2 - scatter.region.x1);
+        pose.translation().y() = scatter.region.y1 + random.uniform() * (scatter.region.y2 - scatter.region.y1);
         const double yaw = scatter.turns ? random.uniform() * 2 * std::numbers::pi - std::numbers::pi : 0;
         if (scatter.turns) pose.linear() = to_pose({0, 0, 0, 0, 0, yaw}).linear();
         const auto mine = footprint(models_.at(name).outline, pose);

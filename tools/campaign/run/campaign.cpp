@@ -266,11 +266,7 @@ Result<void> Campaign::hash_everything() {
   hash.add(base::format_number(plan_->run.duration_s) + (plan_->run.one_process_each ? " each" : "") +
            (plan_->checks_invariants ? " invariants" : ""));
   for (const auto& property : plan_->run.properties) hash.add(property);
-  for (const auto& measure : plan_->measures) {
-    hash.add(measure.name + "|" + measure.model + "|" + measure.port + "|" + measure.member + "|" + base::join(measure.to, ",") + "|" +
-             std::to_string(static_cast<int>(measure.kind)) + "|" + std::to_string(static_cast<int>(measure.take)));
-    for (const double corner : measure.region) hash.add(base::format_number(corner));
-  }
+  for (const auto& measure : plan_->measures) hash.add(measure.text);
   for (const auto& event : plan_->events) hash.add(event.text);
   for (const auto& fault : plan_->faults) hash.add(fault.text());
   for (const auto& condition : plan_->never) hash.add("never " + condition.text);

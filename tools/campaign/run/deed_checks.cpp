@@ -95,14 +95,16 @@ class DeedChecks {
   }
 
   void check_condition(const std::string& where, const Condition& condition) {
-    check_component(where, condition.component);
-    check_component(where, condition.port.substr(0, condition.port.find(':')));
-    if (!condition.port.empty()) {
-      if (const auto problem = port_problem(system_, condition.port); !problem.empty()) fail(where, problem);
-      if (const auto problem = value_problem(system_, condition.port, condition.member); !problem.empty()) fail(where, problem);
+    using Kind = recorder::Expression::Value::Kind;
+    for (const auto& value : condition.expression.values()) {
+      if (value.kind == Kind::state) check_component(where, value.name);
+      if (value.kind == Kind::pose || value.kind == Kind::touches) check_model(where, value.name);
+      if (value.kind == Kind::touches) check_model(where, value.member);
+      if (value.kind != Kind::port) continue;
+      check_component(where, value.name.substr(0, value.name.find(':')));
+      if (const auto problem = port_problem(system_, value.name); !problem.empty()) fail(where, problem);
+      if (const auto problem = value_problem(system_, value.name, value.member); !problem.empty()) fail(where, problem);
     }
-    check_model(where, condition.model);
-    check_model(where, condition.touched);
   }
 
   void check_event(const std::string& where, const Event& event) {
