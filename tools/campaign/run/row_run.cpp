@@ -58,7 +58,7 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
     outcome.problem = written.error().message;
     return outcome;
   }
-  RowScript script(campaign, row, *world,
+  RowScript script(campaign, row,
                    {.folder = fs::absolute(options.folder).string(),
                     .deeds = options.deeds.value_or(
                         Deeds{campaign.plan().events, campaign.plan().faults, campaign.plan().never, campaign.plan().eventually}),
