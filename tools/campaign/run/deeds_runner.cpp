@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/fault_text.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "run/condition_words.h"
@@ -17,11 +18,8 @@ using Kind = Fault::Kind;
 
 constexpr double look_period_s = 0.1;
 
-// "kind:from:for:amount:seed", as core/fault.h reads it.
-std::string fault_text(const Fault& fault, std::uint64_t seed) {
-  const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
-  return std::string(to_text(fault.kind)) + ":" + base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
-         ":" + base::format_number(fault.amount) + ":" + std::to_string(own_seed);
+std::string text_of(const Fault& fault, std::string_view kind, const std::string& last) {
+  return base::fault_text(kind, fault.at_s, fault.for_s.value_or(0), fault.amount, last);
 }
 
 bool is_by_property(Kind kind) { return kind == Kind::error || kind == Kind::exception || kind == Kind::slow || kind == Kind::hang; }
@@ -31,7 +29,8 @@ std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Ob
   for (const auto& fault : faults) {
     if (fault.object != object || (object == Object::component && !is_by_property(fault.kind))) continue;
     auto& text = texts[fault.target];
-    text += (text.empty() ? "" : " ") + fault_text(fault, seed);
+    const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
+    text += (text.empty() ? "" : " ") + text_of(fault, to_text(fault.kind), std::to_string(own_seed));
   }
   return texts;
 }
@@ -67,9 +66,7 @@ std::vector<std::string> DeedsRunner::simulator_options() const {
   for (const auto& fault : deeds_.faults) {
     if (fault.object != Object::sensor && fault.object != Object::actuator) continue;
     const bool is_halted = fault.object == Object::actuator && fault.kind == Kind::stuck;
-    options.insert(options.end(), {"--fault", (is_halted ? "halted" : std::string(to_text(fault.kind))) + ":" +
-                                                  base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
-                                                  ":" + base::format_number(fault.amount) + ":" + fault.target});
+    options.insert(options.end(), {"--fault", text_of(fault, is_halted ? "halted" : to_text(fault.kind), fault.target)});
   }
   return options;
 }
