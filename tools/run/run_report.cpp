@@ -1,6 +1,7 @@
-// What a run has shown, and the same as JUnit XML.
+// What a run has shown, as JSON and as JUnit XML.
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "run/junit.h"
@@ -8,8 +9,38 @@
 
 namespace editor {
 
-bool RunResult::is_passed() const {
-  return problem.empty() && std::all_of(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) { return verdict.problem.empty(); });
+std::string RunResult::first_problem() const {
+  if (!problem.empty()) return problem;
+  const auto unmet = std::ranges::find_if(verdicts, [](const Verdict& verdict) { return !verdict.problem.empty(); });
+  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
+}
+
+nlohmann::ordered_json to_json(const RunResult& result) {
+  nlohmann::ordered_json json{
+      {"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
+      {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
+      {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
+      {"wall", result.wall_s},       {"runs", result.runs},          {"expectations", nlohmann::ordered_json::array()}};
+  for (const auto& verdict : result.verdicts)
+    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
+  return json;
+}
+
+RunResult run_result_of(const nlohmann::ordered_json& json) {
+  RunResult result;
+  result.seed = json.value("seed", std::uint64_t{0});
+  result.problem = json.value("problem", "");
+  result.logs = json.value("logs", "");
+  result.notes = json.value("notes", std::vector<std::string>());
+  result.state_hash = json.value("state_hash", "");
+  result.run_hash = json.value("run_hash", "");
+  result.path_m = json.value("path", 0.0);
+  result.runs = json.value("runs", 1);
+  result.simulated_s = json.value("simulated", 0.0);
+  result.wall_s = json.value("wall", 0.0);
+  for (const auto& entry : json.value("expectations", nlohmann::ordered_json::array()))
+    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", "")});
+  return result;
 }
 
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results) {
