@@ -1,5 +1,6 @@
 # Campaigns: plans, rows, results, and whole sweeps.
 rtmsim_test(campaign_test campaign/conditions_test.cpp campaign/fault_test.cpp campaign/plan_test.cpp campaign/rows_test.cpp campaign/store_test.cpp LIBRARIES campaign rt_core)
+add_dependencies(campaign_test sim-server)  # which it asks for the models of a world
 function(campaign_cases script)
   foreach(case ${ARGN})
     add_test(NAME campaigns.${case}
@@ -7,7 +8,7 @@ function(campaign_cases script)
     set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300 SKIP_RETURN_CODE 77)
   endforeach()
 endfunction()
-campaign_cases(campaigns.py sweep reports killed warm_killed without_simctl disk_full interrupted refused events faults hunts)
+campaign_cases(campaigns.py sweep reports killed warm_killed without_simctl disk_full interrupted refused events faults models_as_simulated hunts)
 campaign_cases(trouble.py kills shared machine finds)
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
 foreach(case rows broken killed other_rows)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes farm.sdf: a pasture with a cow that walks her round, a calf on the way beside it, a field with crop rows, a barn, trees, and a helicopter above with a camera that looks down."""
 import math
-import pathlib
+
+import sdf_text
 
 cow_speed, helicopter_height, share = 0.8, 7, 0.6
 centre = (-1, 0)
@@ -10,7 +11,7 @@ corner = 1.5
 
 
 def include(model, name, x, y, z=0.0, yaw=0.0, more=""):
-    return f"    <include><uri>model://{model}</uri><name>{name}</name><pose>{x:g} {y:g} {z:g} 0 0 {yaw:.4g}</pose>{more}</include>"
+    return sdf_text.include(model, name, f"{x:g} {y:g} {z:g} 0 0 {yaw:.4g}", more)
 
 
 def way(points, speed, radius):
@@ -58,24 +59,5 @@ lines.append(f"""    <actor name="calf">
       </script>
     </actor>""")
 
-newline = "\n"
-pathlib.Path(__file__).resolve().with_name("farm.sdf").write_text(f"""<?xml version="1.0"?>
-<!-- Written by worlds/make_farm.py. -->
-<sdf version="1.9">
-  <world name="farm">
-    <physics name="default" type="ode">
-      <max_step_size>0.001</max_step_size>
-      <real_time_factor>1</real_time_factor>
-    </physics>
-    <scene>
-      <ambient>0.55 0.55 0.58 1</ambient>
-      <background>0.62 0.78 0.94 1</background>
-      <sky/>
-      <shadows>true</shadows>
-    </scene>
-    <include><uri>model://sun</uri></include>
-    <include><uri>model://field</uri></include>
-{newline.join(lines)}
-  </world>
-</sdf>
-""")
+(sdf_text.here / "farm.sdf").write_text(
+    sdf_text.world("make_farm.py", "farm", lines, look=sdf_text.scene("0.55 0.55 0.58", "0.62 0.78 0.94", "      <sky/>\n"), ground="field"))

@@ -4,13 +4,14 @@
 Lengths in m, masses in kg, angles in rad. x is forward, z up. Everything random comes from a fixed seed, so that a second run writes the same bytes.
 """
 import math
-import pathlib
 import random
 import struct
 import zlib
 
+from sdf_text import box, box_moments, cylinder, here, part, sphere, write_model
+
 newline = "\n"
-models = pathlib.Path(__file__).resolve().parent / "models"
+models = here / "models"
 
 
 # --- textures -----------------------------------------------------------------
@@ -320,32 +321,10 @@ def mesh(name):
     return f"<geometry><mesh><uri>model://{model}/meshes/{name.split('/')[1]}.obj</uri></mesh></geometry>"
 
 
-def box_shape(*size):
-    return f"<geometry><box><size>{' '.join(f'{s:g}' for s in size)}</size></box></geometry>"
-
-
-def cylinder_shape(radius, length):
-    return f"<geometry><cylinder><radius>{radius:g}</radius><length>{length:g}</length></cylinder></geometry>"
-
-
-def sphere_shape(radius):
-    return f"<geometry><sphere><radius>{radius:g}</radius></sphere></geometry>"
-
-
-def part(kind, name, shape, pose="", extra=""):
-    place = f"<pose>{pose}</pose>" if pose else ""
-    return f'<{kind} name="{name}">{place}{shape}{extra}</{kind}>'
-
-
-def write_model(name, title, description, parts, static=True, inertial="", after=""):
-    folder = models / name
-    folder.mkdir(parents=True, exist_ok=True)
+def write(name, title, description, parts, static=True, inertial="", after=""):
     body = "\n".join(f"      {line}" for line in ([inertial] if inertial else []) + parts)
     state = "    <static>true</static>\n" if static else ""
-    (folder / "model.sdf").write_text(
-        f'<?xml version="1.0"?>\n<!-- Written by worlds/make_farm_models.py. -->\n<sdf version="1.9">\n  <model name="{name}">\n{state}    <link name="link">\n{body}\n    </link>\n{after}  </model>\n</sdf>\n')
-    (folder / "model.config").write_text(
-        f'<?xml version="1.0"?>\n<model>\n  <name>{title}</name>\n  <version>1.0</version>\n  <sdf version="1.9">model.sdf</sdf>\n  <description>{description}</description>\n</model>\n')
+    write_model("make_farm_models.py", name, title, description, f'  <model name="{name}">\n{state}    <link name="link">\n{body}\n    </link>\n{after}  </model>')
 
 
 # --- the models ---------------------------------------------------------------
@@ -414,11 +393,11 @@ def cow():
     write_collada(folder / "walking_cow.dae", m, materials, cow_joints(), cow_weights, 1.25, 20)
     write_png(folder / "hide.png", 256, hide_texture())
     mass, (x, y, z) = 600, (1.9, 0.7, 0.8)
-    moments = mass / 12 * (y * y + z * z), mass / 12 * (x * x + z * z), mass / 12 * (x * x + y * y)
+    moments = box_moments(mass, x, y, z)
     inertial = "<inertial><pose>0 0 1 0 0 0</pose><mass>{}</mass><inertia><ixx>{:.4g}</ixx><iyy>{:.4g}</iyy><izz>{:.4g}</izz></inertia></inertial>".format(mass, *moments)
-    legs = [part("collision", f"leg_{n}", cylinder_shape(0.075, 0.7), f"{x} {y} 0.35 0 0 0") for n, (x, y) in enumerate(((0.5, 0.2), (0.5, -0.2), (-0.71, 0.2), (-0.71, -0.2)))]
-    write_model("cow", "Cow", "2.4 x 0.8 x 1.5 m, 600 kg, own mesh. A trajectory plugin of the world makes it walk.",
-                [part("visual", "cow", mesh("cow/cow")), part("collision", "body", box_shape(1.7, 0.66, 0.66), "-0.13 0 1.04 0 0 0"), part("collision", "head", box_shape(0.55, 0.26, 0.36), "1.15 0 1.32 0 0.5 0"), *legs],
+    legs = [part("collision", f"leg_{n}", cylinder(0.075, 0.7), f"{x} {y} 0.35 0 0 0") for n, (x, y) in enumerate(((0.5, 0.2), (0.5, -0.2), (-0.71, 0.2), (-0.71, -0.2)))]
+    write("cow", "Cow", "2.4 x 0.8 x 1.5 m, 600 kg, own mesh. A trajectory plugin of the world makes it walk.",
+                [part("visual", "cow", mesh("cow/cow")), part("collision", "body", box(1.7, 0.66, 0.66), "-0.13 0 1.04 0 0 0"), part("collision", "head", box(0.55, 0.26, 0.36), "1.15 0 1.32 0 0.5 0"), *legs],
                 static=False, inertial=inertial)
 
 
@@ -452,10 +431,10 @@ def helicopter():
     flight = ('    <!-- Flies by velocity commands (vx, vy, vz, yaw rate) of its iface <name>::position3d and holds its height without one. -->\n'
               '    <plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system">\n      <max_speed>5</max_speed>\n      <max_acceleration>2</max_acceleration>\n'
               "      <max_yaw_rate>1.5</max_yaw_rate>\n      <max_yaw_acceleration>2</max_yaw_acceleration>\n    </plugin>\n")
-    write_model("helicopter", "Helicopter", "1.6 m, rotor of 1.8 m, flies by velocity commands; camera of 320 x 240, 60 degrees, 30 Hz looking down.",
-                ["<gravity>false</gravity>", part("visual", "body", mesh("helicopter/helicopter")), part("visual", "rotor", cylinder_shape(0.9, 0.004), "-0.02 0 0.43 0 0 0", disc),
-                 part("visual", "tail_rotor", cylinder_shape(0.15, 0.004), "-1 0.03 0.28 1.5708 0 0", disc), part("collision", "cabin", box_shape(1.05, 0.5, 0.5), "0.1 0 0 0 0 0"),
-                 part("collision", "tail", box_shape(0.65, 0.1, 0.1), "-0.7 0 0.12 0 0 0"), part("collision", "skids", box_shape(0.9, 0.52, 0.04), "0.05 0 -0.44 0 0 0"), camera],
+    write("helicopter", "Helicopter", "1.6 m, rotor of 1.8 m, flies by velocity commands; camera of 320 x 240, 60 degrees, 30 Hz looking down.",
+                ["<gravity>false</gravity>", part("visual", "body", mesh("helicopter/helicopter")), part("visual", "rotor", cylinder(0.9, 0.004), "-0.02 0 0.43 0 0 0", disc),
+                 part("visual", "tail_rotor", cylinder(0.15, 0.004), "-1 0.03 0.28 1.5708 0 0", disc), part("collision", "cabin", box(1.05, 0.5, 0.5), "0.1 0 0 0 0 0"),
+                 part("collision", "tail", box(0.65, 0.1, 0.1), "-0.7 0 0.12 0 0 0"), part("collision", "skids", box(0.9, 0.52, 0.04), "0.05 0 -0.44 0 0 0"), camera],
                 static=False, inertial="<inertial><mass>20</mass><inertia><ixx>1.2</ixx><iyy>3.2</iyy><izz>3.2</izz></inertia></inertial>", after=flight)
 
 
@@ -478,7 +457,7 @@ def barn():
     m.write(folder, "barn", {"planks": ((1, 1, 1), "planks.png"), "roof": ((1, 1, 1), "roof.png"), "trim": ((0.92, 0.90, 0.85), None)})
     write_png(folder / "planks.png", 128, planks_texture("barn", (0.58, 0.12, 0.09), (0.22, 0.04, 0.03), 8))
     write_png(folder / "roof.png", 128, roof_texture)
-    write_model("barn", "Barn", "8 x 6 x 5 m with doors to the east.", [part("visual", "barn", mesh("barn/barn")), part("collision", "walls", box_shape(8, 6, 3), "0 0 1.5 0 0 0"), part("collision", "roof", mesh("barn/barn"))])
+    write("barn", "Barn", "8 x 6 x 5 m with doors to the east.", [part("visual", "barn", mesh("barn/barn")), part("collision", "walls", box(8, 6, 3), "0 0 1.5 0 0 0"), part("collision", "roof", mesh("barn/barn"))])
 
 
 def fence():
@@ -491,7 +470,7 @@ def fence():
     folder = models / "fence" / "meshes"
     m.write(folder, "fence", {"wood": ((1, 1, 1), "wood.png")})
     write_png(folder / "wood.png", 64, planks_texture("fence", (0.55, 0.42, 0.28), (0.30, 0.22, 0.14), 3))
-    write_model("fence", "Fence", "Three rails, 4 m long, 1.2 m high.", [part("visual", "fence", mesh("fence/fence")), part("collision", "fence", box_shape(4.1, 0.16, 1.2), "0 0.02 0.6 0 0 0")])
+    write("fence", "Fence", "Three rails, 4 m long, 1.2 m high.", [part("visual", "fence", mesh("fence/fence")), part("collision", "fence", box(4.1, 0.16, 1.2), "0 0.02 0.6 0 0 0")])
 
 
 def tree():
@@ -503,7 +482,7 @@ def tree():
     folder = models / "tree" / "meshes"
     m.write(folder, "tree", {"bark": ((0.36, 0.26, 0.18), None), "leaves": ((1, 1, 1), "leaves.png")})
     write_png(folder / "leaves.png", 128, ground_texture("leaves", (0.05, 0.17, 0.04), (0.26, 0.46, 0.12), 12))
-    write_model("tree", "Tree", "A broad-leaved tree, 5 m high.", [part("visual", "tree", mesh("tree/tree")), part("collision", "trunk", cylinder_shape(0.18, 2.4), "0 0 1.2 0 0 0"), part("collision", "crown", sphere_shape(1.5), "0 0 3.3 0 0 0")])
+    write("tree", "Tree", "A broad-leaved tree, 5 m high.", [part("visual", "tree", mesh("tree/tree")), part("collision", "trunk", cylinder(0.18, 2.4), "0 0 1.2 0 0 0"), part("collision", "crown", sphere(1.5), "0 0 3.3 0 0 0")])
 
 
 def crop_row():
@@ -521,7 +500,7 @@ def crop_row():
                 m.quad("leaf", *corners)
     folder = models / "crop_row" / "meshes"
     m.write(folder, "crop_row", {"soil": ((0.26, 0.17, 0.10), None), "leaf": ((0.25, 0.52, 0.12), None)})
-    write_model("crop_row", "Crop row", "A row of plants, 8 m long.", [part("visual", "row", mesh("crop_row/crop_row"))])
+    write("crop_row", "Crop row", "A row of plants, 8 m long.", [part("visual", "row", mesh("crop_row/crop_row"))])
 
 
 def field():
@@ -533,7 +512,7 @@ def field():
     m.write(folder, "field", {"grass": ((1, 1, 1), "grass.png"), "soil": ((1, 1, 1), "soil.png")})
     write_png(folder / "grass.png", 256, ground_texture("grass", (0.13, 0.27, 0.06), (0.36, 0.50, 0.16)))
     write_png(folder / "soil.png", 128, ground_texture("soil", (0.22, 0.14, 0.08), (0.42, 0.29, 0.18), 8))
-    write_model("field", "Field", "Grass, 400 x 400 m, with a ploughed piece.", [part("visual", "field", mesh("field/field")), part("collision", "ground", "<geometry><plane><normal>0 0 1</normal><size>400 400</size></plane></geometry>")])
+    write("field", "Field", "Grass, 400 x 400 m, with a ploughed piece.", [part("visual", "field", mesh("field/field")), part("collision", "ground", "<geometry><plane><normal>0 0 1</normal><size>400 400</size></plane></geometry>")])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes maze.sdf from the plan below: one closed corridor, 2 m wide, with turns to both sides, and two Pioneers with SICK lasers one behind the other."""
-import pathlib
+import sdf_text
 
 cell, height, thickness = 2.0, 0.6, 0.1
 plan = """
@@ -52,40 +52,26 @@ for column in range(columns + 1):  # along y: between column - 1 and column
 
 
 def wall(index, x, y, sx, sy):
-    pose = f"<pose>{x:g} {y:g} {height / 2:g} 0 0 0</pose>"
-    shape = f"<geometry><box><size>{sx:g} {sy:g} {height:g}</size></box></geometry>"
-    colour = "<material><ambient>0.75 0.7 0.6 1</ambient><diffuse>0.75 0.7 0.6 1</diffuse></material>"
-    return f'        <collision name="wall_{index}">{pose}{shape}</collision>\n        <visual name="wall_{index}">{pose}{shape}{colour}</visual>'
+    pose = f"{sdf_text.numbers((x, y, height / 2))} 0 0 0"
+    return "\n".join(f'        {sdf_text.part(kind, f"wall_{index}", sdf_text.box(sx, sy, height), pose, extra)}'
+                     for kind, extra in (("collision", ""), ("visual", sdf_text.paint("0.75 0.7 0.6"))))
+
+
+def robot(name, x, y):
+    return f"""    <include>
+      <uri>model://pioneer2dx_sick</uri>
+      <name>{name}</name>
+      <pose>{sdf_text.numbers((x, y))} 0 0 0 0</pose>
+    </include>"""
 
 
 content = "\n".join(wall(i, *w) for i, w in enumerate(walls))
 leader, follower = place(1, 3), place(1, 2)
-pathlib.Path(__file__).resolve().with_name("maze.sdf").write_text(f"""<?xml version="1.0"?>
-<!-- Written by worlds/make_maze.py. -->
-<sdf version="1.9">
-  <world name="maze">
-    <physics name="default" type="ode">
-      <max_step_size>0.001</max_step_size>
-      <real_time_factor>1</real_time_factor>
-    </physics>
-    <include><uri>model://sun</uri></include>
-    <include><uri>model://ground_plane</uri></include>
-    <model name="maze">
+maze = f"""    <model name="maze">
       <static>true</static>
       <link name="walls">
 {content}
       </link>
-    </model>
-    <include>
-      <uri>model://pioneer2dx_sick</uri>
-      <name>leader</name>
-      <pose>{leader[0]:g} {leader[1]:g} 0 0 0 0</pose>
-    </include>
-    <include>
-      <uri>model://pioneer2dx_sick</uri>
-      <name>follower</name>
-      <pose>{follower[0] + 0.4:g} {follower[1]:g} 0 0 0 0</pose>
-    </include>
-  </world>
-</sdf>
-""")
+    </model>"""
+(sdf_text.here / "maze.sdf").write_text(
+    sdf_text.world("make_maze.py", "maze", [maze, robot("leader", *leader), robot("follower", follower[0] + 0.4, follower[1])]))

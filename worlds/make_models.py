@@ -5,9 +5,8 @@ Lengths in m, masses in kg, angles in rad unless a name says degrees. The laser 
 its iface is called <robot>::laser.
 """
 import math
-import pathlib
 
-models = pathlib.Path(__file__).resolve().parent / "models"
+from sdf_text import box, box_moments, cylinder, cylinder_moments, number, part, sphere, sphere_moments, write_model
 
 # Pioneer 2-DX: 0.44 x 0.33 x 0.22 m, 9 kg in all. The origin is on the floor between the driven wheels, so that it is what odometry is about.
 chassis_mass, wheel_mass, caster_mass = 6.6, 0.9, 0.6
@@ -21,25 +20,6 @@ rear = [(-157, -136, -90), (-203, -119, -130), (-237, -78, -150), (-255, -27, -1
 sonar_z = 0.1975  # in the gap between body and top
 
 
-def number(value):
-    text = f"{value:.6g}"
-    return "0" if text == "-0" else text
-
-
-def box_inertia(mass, size):
-    x, y, z = size
-    return mass / 12 * (y * y + z * z), mass / 12 * (x * x + z * z), mass / 12 * (x * x + y * y)
-
-
-def cylinder_inertia(mass, radius, length):  # along z
-    across = mass * (3 * radius * radius + length * length) / 12
-    return across, across, mass * radius * radius / 2
-
-
-def sphere_inertia(mass, radius):
-    return (0.4 * mass * radius * radius,) * 3
-
-
 def inertial(mass, moments, pose=None):
     place = f"<pose>{pose}</pose>" if pose else ""
     xx, yy, zz = (number(m) for m in moments)
@@ -50,26 +30,12 @@ def material(r, g, b, shine=0.1):
     return f"<material><ambient>{r} {g} {b} 1</ambient><diffuse>{r} {g} {b} 1</diffuse><specular>{shine} {shine} {shine} 1</specular></material>"
 
 
-def box(size):
-    return f"<geometry><box><size>{' '.join(number(s) for s in size)}</size></box></geometry>"
-
-
-def cylinder(radius, length):
-    return f"<geometry><cylinder><radius>{number(radius)}</radius><length>{number(length)}</length></cylinder></geometry>"
-
-
-def sphere(radius):
-    return f"<geometry><sphere><radius>{number(radius)}</radius></sphere></geometry>"
-
-
 def visual(name, geometry, colour, pose=None):
-    place = f"<pose>{pose}</pose>" if pose else ""
-    return f'<visual name="{name}">{place}{geometry}{material(*colour)}</visual>'
+    return part("visual", name, geometry, pose, material(*colour))
 
 
 def collision(name, geometry, pose=None, surface=""):
-    place = f"<pose>{pose}</pose>" if pose else ""
-    return f'<collision name="{name}">{place}{geometry}{surface}</collision>'
+    return part("collision", name, geometry, pose, surface)
 
 
 def friction(mu):
@@ -77,13 +43,7 @@ def friction(mu):
 
 
 def write(name, title, description, content):
-    folder = models / name
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "model.config").write_text(
-        f'<?xml version="1.0"?>\n<model>\n  <name>{title}</name>\n  <version>1.0</version>\n  <sdf version="1.9">model.sdf</sdf>\n'
-        f"  <description>{description}</description>\n</model>\n")
-    lines = "\n".join(line for line in content.strip("\n").splitlines())
-    (folder / "model.sdf").write_text(f'<?xml version="1.0"?>\n<!-- Written by worlds/make_models.py. -->\n<sdf version="1.9">\n{lines}\n</sdf>\n')
+    write_model("make_models.py", name, title, description, content.strip("\n"))
 
 
 def sonar_ring():
@@ -103,7 +63,7 @@ def wheel(side, y):
     return f"""
     <link name="{side}_wheel">
       <pose>0 {number(y)} {wheel_radius} 0 0 0</pose>
-      {inertial(wheel_mass, cylinder_inertia(wheel_mass, wheel_radius, wheel_width), spin)}
+      {inertial(wheel_mass, cylinder_moments(wheel_mass, wheel_radius, wheel_width), spin)}
       <!-- A sphere touches the floor in one point and rolls round corners without scrubbing. -->
       {collision("collision", sphere(wheel_radius), None, friction(1))}
       {visual("tyre", cylinder(wheel_radius, wheel_width), (0.08, 0.08, 0.08), spin)}
@@ -121,14 +81,14 @@ def pioneer():
     return f"""
   <model name="pioneer2dx">
     <link name="chassis">
-      {inertial(chassis_mass, box_inertia(chassis_mass, (body[0], top[1], 0.2)), whole)}
-      {collision("body", box(body), whole)}
-      {collision("top", box(top), plate)}
-      {visual("body", box(body), (0.72, 0.08, 0.07), whole)}
-      {visual("top", box(top), (0.1, 0.1, 0.11), plate)}
-      {visual("front_sonars", box((0.05, 0.24, 0.025)), (0.12, 0.12, 0.13), f"0.125 0 {sonar_z} 0 0 0")}
-      {visual("rear_sonars", box((0.05, 0.24, 0.025)), (0.12, 0.12, 0.13), f"-0.215 0 {sonar_z} 0 0 0")}
-      {visual("nose", box((0.02, 0.12, 0.03)), (0.9, 0.85, 0.2), f"0.18 0 {body_z} 0 0 0")}
+      {inertial(chassis_mass, box_moments(chassis_mass, body[0], top[1], 0.2), whole)}
+      {collision("body", box(*body), whole)}
+      {collision("top", box(*top), plate)}
+      {visual("body", box(*body), (0.72, 0.08, 0.07), whole)}
+      {visual("top", box(*top), (0.1, 0.1, 0.11), plate)}
+      {visual("front_sonars", box(0.05, 0.24, 0.025), (0.12, 0.12, 0.13), f"0.125 0 {sonar_z} 0 0 0")}
+      {visual("rear_sonars", box(0.05, 0.24, 0.025), (0.12, 0.12, 0.13), f"-0.215 0 {sonar_z} 0 0 0")}
+      {visual("nose", box(0.02, 0.12, 0.03), (0.9, 0.85, 0.2), f"0.18 0 {body_z} 0 0 0")}
 {sonar_ring()}
     </link>
 {wheel("left", separation / 2)}
@@ -136,7 +96,7 @@ def pioneer():
     <!-- The caster carries weight and nothing else. -->
     <link name="caster">
       <pose>{caster_x} 0 {caster_radius} 0 0 0</pose>
-      {inertial(caster_mass, sphere_inertia(caster_mass, caster_radius))}
+      {inertial(caster_mass, sphere_moments(caster_mass, caster_radius))}
       {collision("collision", sphere(caster_radius), None, friction(0))}
       {visual("visual", sphere(caster_radius), (0.15, 0.15, 0.15))}
     </link>
@@ -190,10 +150,10 @@ def laser(name, size, mass, foot, colour, head, sensor):
     return f"""
   <model name="{name}">
     <link name="laser_link">
-      {inertial(mass, box_inertia(mass, size), f"0 0 {number(size[2] / 2)} 0 0 0")}
+      {inertial(mass, box_moments(mass, *size), f"0 0 {number(size[2] / 2)} 0 0 0")}
       <!-- Lower than the beams, which would else end in it. -->
-      {collision("laser_body", box((size[0], size[1], foot)), f"0 0 {number(foot_z)} 0 0 0")}
-      {visual("foot", box((size[0], size[1], foot)), colour, f"0 0 {number(foot_z)} 0 0 0")}
+      {collision("laser_body", box(size[0], size[1], foot), f"0 0 {number(foot_z)} 0 0 0")}
+      {visual("foot", box(size[0], size[1], foot), colour, f"0 0 {number(foot_z)} 0 0 0")}
       {visual("head", cylinder(head_radius, head_height), (0.08, 0.08, 0.09), f"0 0 {number(foot + head_height / 2)} 0 0 0")}
 {sensor}
     </link>

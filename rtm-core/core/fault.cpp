@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <optional>
 #include <utility>
 
+#include "base/fault_text.h"
 #include "base/random.h"
 #include "base/text.h"
 
@@ -20,22 +19,7 @@ constexpr std::array<std::pair<std::string_view, Fault::Kind>, 8> kinds = {{{"er
                                                                             {"delay", Fault::Kind::delay},
                                                                             {"duplicate", Fault::Kind::duplicate},
                                                                             {"reorder", Fault::Kind::reorder}}};
-constexpr double longest_s = 1e9, longest_delay = 1000;
-
-std::chrono::nanoseconds nanoseconds(double seconds) { return std::chrono::nanoseconds(std::llround(seconds * 1e9)); }
-
-std::optional<Fault> parse_one(const std::string& text) {
-  const auto words = base::split_list(text, ':');
-  if (words.size() != 5) return std::nullopt;
-  const auto kind = std::ranges::find_if(kinds, [&](const auto& one) { return one.first == words[0]; });
-  const auto from = base::parse_number(words[1]), length = base::parse_number(words[2]), amount = base::parse_number(words[3]);
-  const auto seed = base::parse_integer(words[4]);
-  if (kind == kinds.end() || !from || !length || !amount || !seed || *from < 0 || *length < 0) return std::nullopt;
-  if (*from > longest_s || *length > longest_s || *amount < 0 || *amount > longest_delay) return std::nullopt;
-  Fault fault{kind->second, nanoseconds(*from), std::chrono::nanoseconds::max(), *amount, static_cast<std::uint64_t>(*seed)};
-  if (*length > 0) fault.until = nanoseconds(*from + *length);
-  return fault;
-}
+constexpr double longest_delay = 1000;
 
 // From 0 up to, not including, 1; the same for the same seed and count.
 double chance(std::uint64_t seed, std::uint64_t count) {
@@ -47,9 +31,16 @@ double chance(std::uint64_t seed, std::uint64_t count) {
 base::Result<std::vector<Fault>> parse_faults(std::string_view text) {
   std::vector<Fault> faults;
   for (const auto& word : base::split_list(text, ' ')) {
-    const auto fault = parse_one(word);
-    if (!fault) return base::Error{"fault " + base::in_quotes(word) + ": expected KIND:FROM:FOR:AMOUNT:SEED"};
-    faults.push_back(*fault);
+    const auto parsed = base::parse_fault_text(word, "SEED");
+    if (!parsed) return parsed.error();
+    const auto kind = std::ranges::find_if(kinds, [&](const auto& one) { return one.first == parsed->kind; });
+    const auto seed = base::parse_integer(parsed->last);
+    const double amount = parsed->amount.value_or(-1);
+    if (kind == kinds.end() || !seed || amount < 0 || amount > longest_delay)
+      return base::Error{"fault " + base::in_quotes(word) +
+                         ": expected KIND:START:DURATION:AMOUNT:SEED with error, exception, slow, hang, drop, delay, duplicate or reorder, "
+                         "an amount from 0 to 1000 and a whole number"};
+    faults.push_back({kind->second, parsed->from, parsed->until, amount, static_cast<std::uint64_t>(*seed)});
   }
   return faults;
 }

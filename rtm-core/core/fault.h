@@ -1,6 +1,6 @@
 // Faults that somebody asks for on purpose, to see what a system makes of them: of a component by its property `fault.on_execute`, of a
-// connection by dataport.fault. A text names them: KIND:FROM:FOR:AMOUNT:SEED, several with blanks between; times in seconds of the clock
-// that the component lives by, FOR 0 means to the end. Values; any thread.
+// connection by dataport.fault. A text names them, as base/fault_text.h has it, with a seed as LAST, several with blanks between; times are
+// of the clock that the component lives by. Values; any thread.
 #pragma once
 
 #include <chrono>

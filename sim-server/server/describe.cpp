@@ -22,6 +22,15 @@ Json numbers(const Eigen::Isometry3d& pose) {
   return Json::array({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
 }
 
+// The three of a box; the radius, and the length; of other shapes nothing.
+Json size_of(const GeometryDef& geometry) {
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) return numbers(box->size);
+  if (const auto* sphere = std::get_if<SphereShape>(&geometry)) return Json::array({sphere->radius});
+  if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) return Json::array({cylinder->radius, cylinder->length});
+  if (const auto* capsule = std::get_if<CapsuleShape>(&geometry)) return Json::array({capsule->radius, capsule->length});
+  return Json::array();
+}
+
 // Names come from files and need not be UTF-8.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -41,7 +50,10 @@ Json model_tree(const Physics& physics, ModelId id) {
       sensors.push_back({{"name", sensor.name}, {"type", sensor.type}, {"iface", iface_name(model, sensor)}});
     }
     for (const auto& collision : link.collisions)
-      collisions.push_back({{"name", collision.name}, {"shape", std::string(kind_of(collision.geometry))}});
+      collisions.push_back({{"name", collision.name},
+                            {"shape", std::string(kind_of(collision.geometry))},
+                            {"pose", numbers(collision.pose)},
+                            {"size", size_of(collision.geometry)}});
     links.push_back({{"name", link.name},
                      {"mass", link.mass},
                      {"pose", numbers(physics.link_pose({id, l}))},
@@ -93,7 +105,9 @@ std::string list_text(Simulation& simulation) {
   return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}});
 }
 
-std::string tree_text(const Simulation& simulation, const std::string& model) {
+namespace {
+
+Json tree_of(const Simulation& simulation, const std::string& model) {
   const Physics& physics = simulation.physics();
   Json models = Json::array();
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
@@ -103,7 +117,27 @@ std::string tree_text(const Simulation& simulation, const std::string& model) {
   for (const auto& actor : simulation.world().actors) {
     if (model.empty()) actors.push_back({{"name", actor.name}});
   }
-  return text({{"models", models}, {"actors", actors}});
+  return {{"models", models}, {"actors", actors}};
+}
+
+}  // namespace
+
+std::string tree_text(const Simulation& simulation, const std::string& model) { return text(tree_of(simulation, model)); }
+
+std::string check_text(const Simulation& simulation, const FoundFiles& found, const std::vector<std::string>& spawned,
+                       const ModelPath& model_path) {
+  Json json = tree_of(simulation, "");
+  json["found"] = Json::array();
+  for (const auto& [named, file] : found) json["found"].push_back({{"folder", named.first}, {"uri", named.second}, {"file", file}});
+  json["spawned"] = Json::array();
+  for (const auto& model : spawned) {
+    const auto loaded = load_model(model, "", std::nullopt, model_path);
+    Json one = {{"model", model}};
+    if (!loaded) one["error"] = loaded.error().message;
+    for (const auto& [named, file] : loaded ? loaded->found : FoundFiles{}) one["files"].push_back(file);
+    json["spawned"].push_back(one);
+  }
+  return text(json);
 }
 
 std::string models_text(const ModelPath& path) {

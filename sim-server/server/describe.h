@@ -6,7 +6,7 @@
 
 #include "server/simulation.h"
 #include "shm/lockstep.h"
-#include "world/model_path.h"
+#include "world/world_loader.h"
 
 namespace sim {
 
@@ -21,9 +21,15 @@ struct LoopState {
 
 // {"world", "models": [{"name", "static", "pose"}], "ifaces": [{"type", "name", "model", "subscribed"}]}
 std::string list_text(Simulation& simulation);
-// {"models": [{"name", "static", "pose", "links": [...], "joints": [...], "plugins": [...]}]}; of one model, or of all when `model` is
-// empty.
+// {"models": [{"name", "static", "pose", "links": [...], "joints": [...], "plugins": [...]}]}; links have "collisions":
+// [{"name", "shape", "pose": in the link, "size"}], size being the three of a box, the radius, or radius and length [m]. Of one model, or
+// of all when `model` is empty.
 std::string tree_text(const Simulation& simulation, const std::string& model);
+// The same with {"found": [{"folder", "uri", "file"}], "spawned": [{"model", "files" or "error"}]}: what the URIs in the files of the world
+// mean, and all files of each model of `spawned`, as it would be spawned from
+// this path.
+std::string check_text(const Simulation& simulation, const FoundFiles& found, const std::vector<std::string>& spawned,
+                       const ModelPath& model_path);
 // {"models": [{"name"}]}: those of the model path.
 std::string models_text(const ModelPath& path);
 std::string stats_text(Simulation& simulation, const LoopState& loop);

@@ -16,6 +16,7 @@
 #include "base/warm_start.h"
 #include "render/assets.h"
 #include "render/scene.h"
+#include "server/describe.h"
 #include "server/server_loop.h"
 #include "shm/segment.h"
 #include "shm/specs.h"
@@ -26,13 +27,13 @@ namespace {
 struct Options {
   std::string world;
   std::uint32_t server_id = 0;
-  bool is_paused = false, is_lockstep = false, check = false, print_hash = false;
+  bool is_paused = false, is_lockstep = false, check = false, is_json = false, print_hash = false;
   double rtf = 1;
   std::uint32_t wait_for = 0;
   double participant_timeout = 0, duration = -1;
   std::optional<double> hash_period{};  // [s]
   std::uint64_t seed = 1;
-  std::vector<std::string> resource_paths, faults;
+  std::vector<std::string> resource_paths, faults, spawned;
   std::string record, hash_log, shm_mode = "0600", shm_group;
   std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
@@ -155,6 +156,8 @@ int run(const Options& options, Signals& signals) {
   }
   dropped += left_out.size();
   if (options.check) {
+    if (options.is_json) std::printf("%s\n", check_text(**simulation, loaded->found, options.spawned, model_path).c_str());
+    std::fflush(stdout);  // before the findings on stderr
     // Pictures are made when somebody looks; their files are read now.
     Assets assets(world->model_path);
     Scene::build(*world, assets);
@@ -237,6 +240,11 @@ int serve(int argc, char** argv) {
         return order ? std::string() : order.error().message;
       });
   app.add_flag("--check", options.check, "load the world, print every finding, exit with 1 if something was left out");
+  app.add_flag("--json", options.is_json, "with --check: print models, their collision shapes and all files as JSON")->needs("--check");
+  app.add_option("--spawn", options.spawned, "with --json: also list the files of this model, file, folder or model://NAME; repeatable")
+      ->expected(1)
+      ->take_all()
+      ->needs("--json");
   app.add_flag("--hash", options.print_hash, "print the hash of the final state");
   app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files");
   app.add_option("--hash-period", options.hash_period,

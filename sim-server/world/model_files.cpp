@@ -155,6 +155,7 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
       if (const auto line = model_path_.other_version(uri, *found); !line.empty())
         complaints_.warn(node, "file " + base::in_quotes(uri) + ": " + line);
       node.text() = found->string().c_str();
+      found_files_[{folder.string(), uri}] = found->string();
       return;
     }
     if (const std::string color = color_of_media(uri); !found && is_image && !color.empty()) {
@@ -277,6 +278,7 @@ pugi::xml_node ModelFiles::included(pugi::xml_node include, const fs::path& fold
     complaints_.drop(include, "model " + base::in_quotes(uri) + " is left out: " + found.error().message);
     return {};
   }
+  if (is_new) found_files_[{folder.string(), uri}] = complaints_.place_of(*found).file;
   return *found;
 }
 

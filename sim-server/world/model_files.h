@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "world/complaints.h"
+#include "world/found_files.h"
 #include "world/model_path.h"
 #include "world/sdf_library.h"
 
@@ -42,6 +43,8 @@ class ModelFiles {
   static void apply_include(pugi::xml_node include, pugi::xml_node copy);
 
   const ModelPath& model_path() const { return model_path_; }
+  // So far: models, meshes and textures.
+  const FoundFiles& found() const { return found_files_; }
 
  private:
   base::Result<pugi::xml_node> load(const std::filesystem::path& file);
@@ -56,6 +59,7 @@ class ModelFiles {
   std::map<std::string, std::string> failures_;
   std::map<std::string, std::optional<std::filesystem::path>> found_;  // by URI and folder
   std::set<std::string> being_loaded_;
+  FoundFiles found_files_;
 };
 
 }  // namespace sim

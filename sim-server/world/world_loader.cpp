@@ -354,6 +354,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   tell_of_unseen_models(result.world, complaints_);
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
+  result.found = files_.found();
   return result;
 }
 
@@ -396,6 +397,8 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   build_instances(world);
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
+  result.found = files_.found();
+  result.found[{"", std::string(trimmed)}] = complaints_.place_of(found).file;
   if (world.models.empty()) {
     return base::Error{result.findings.empty() ? "no model comes out of " + base::in_quotes(trimmed.substr(0, 80))
                                                : result.findings.back().text()};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "world/found_files.h"
 #include "world/model_path.h"
 #include "world/world_def.h"
 
@@ -18,6 +19,7 @@ struct LoadResult {
   WorldDef world;
   std::vector<Finding> findings;
   bool dropped = false;  // some finding is of severity `dropped`
+  FoundFiles found;
 };
 
 // Fails only when there is no world at all: no such file, not XML, older than SDF, no <world> in it. The world's own folder is searched
@@ -32,6 +34,7 @@ struct LoadedModel {
   std::vector<LightDef> lights;  // of an SDF file that holds lights besides the model
   std::vector<Finding> findings;
   bool dropped = false;
+  FoundFiles found;  // with its own file
 };
 
 // A model to spawn: `what` is SDF or URDF text (begins with '<' after blanks), a file, a folder with a model.config, or a URI

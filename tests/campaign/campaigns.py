@@ -222,7 +222,7 @@ def refused():
          'measure: component LaserObstacleAvoid0 has no port "speed" in the profile; ports: range, velocity'),
         ("measure: [{value: {port: LaserObstacleAvoid0, member: data.vx, take: min}}]", 'port "LaserObstacleAvoid0": expected COMPONENT:PORT'),
         ("never: [{port: 'LaserObstacleAvoid0:speed', member: data.vx, min: 1}]", 'never: component LaserObstacleAvoid0 has no port "speed"'),
-        ("never: [{port: 'LaserObstacleAvoid0:velocity', member: 'data[', min: 1}]", 'never: member "data[": expected'),
+        ("never: [{port: 'LaserObstacleAvoid0:velocity', member: 'data[', min: 1}]", 'member "data[": expected'),
         ("expect: [{fly: {model: pioneer2dx}}]", 'expect: unknown expectation "fly"'),
         ("expect: [{path_length: {model: nobody, min: 1}}]", 'the world has no moving model "nobody"; moving models: pioneer2dx'),
         ("expect: [{path_length: {model: box_1, min: 1}}]", 'the world has no moving model "box_1"; moving models: pioneer2dx'),
@@ -384,6 +384,38 @@ eventually: [{model: pioneer2dx, region: [5, 5, 6, 6]}]
     assert "eventually: {model: pioneer2dx, region: [5, 5, 6, 6]}: never became true" in done.stderr, done.stderr
 
 
+# Models of a folder above the world's, of a Fuel cache and of a merged model.config are models for a sweep as they are for the simulator.
+def models_as_simulated():
+    box = "<sdf version='1.9'><model name='{0}'>{1}<link name='l'><collision name='c'><geometry><box><size>0.4 0.4 0.4</size></box></geometry></collision>" \
+          "<visual name='v'><geometry><mesh><uri>{2}</uri></mesh></geometry></visual></link></model></sdf>"
+    (folder / "place/worlds").mkdir(parents=True)
+    for name, place in (("crate", "place/crate"), ("barrel", "fuel/fuel.gazebosim.org/openrobotics/models/barrel/2")):
+        (folder / place / "shapes").mkdir(parents=True)
+        shutil.copy(f"{source}/tests/fuzz/assets/text.stl", folder / place / "shapes/shape.stl")
+        (folder / place / "body.sdf").write_text(box.format(name, "<static>true</static>" if name == "barrel" else "", "shapes/shape.stl"))
+        (folder / place / "model.config").write_text("<model><name>m</name><sdf version='1.5'>old.sdf</sdf><sdf version='1.9'>body.sdf</sdf></model>")
+    world = pathlib.Path(f"{source}/worlds/obstacle_course.sdf").read_text()
+    more = "<include><uri>model://crate</uri><pose>0 9 0.2 0 0 0</pose></include>" \
+           "<include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/Barrel</uri><pose>0 20 0.2 0 0 0</pose></include>"
+    (folder / "place/worlds/w.sdf").write_text(world.replace("</world>", more + "</world>"))
+    p = pathlib.Path(plan("""vary: {model/crate/mass: [2, 3], model/barrel/pose/x: [1]}
+measure: [{clearance: {model: crate, to: barrel, as: apart}}]
+scatter: [{models: crate, region: [0, 12, 1, 13]}]
+events: [{at: 0.1, spawn: {model: place/crate, name: more, pose: [0, 30, 0]}}]
+"""))
+    p.write_text(p.read_text().replace(f"{source}/worlds/obstacle_course.sdf", "place/worlds/w.sdf"))
+    os.environ["GZ_FUEL_CACHE_PATH"] = str(folder / "fuel")
+    first = json.loads(rtse("--json", "sweep", p).stdout)
+    assert (first["rows"], first["passed"], first["stored"]) == (2, 2, 0), first
+    assert all(6.2 < float(row["apart"]) < 8.2 for row in rows()), rows()
+    # What they are made of belongs to what a row is.
+    for file in ("place/crate/body.sdf", "fuel/fuel.gazebosim.org/openrobotics/models/barrel/2/shapes/shape.stl"):
+        assert json.loads(rtse("--json", "sweep", p).stdout)["stored"] == 2
+        with open(folder / file, "a") as more:
+            more.write("\n")
+        assert json.loads(rtse("--json", "sweep", p).stdout)["stored"] == 0, file
+
+
 # Each fault changes the run, and changes it in the same way each time.
 def faults():
     quiet = twice("", "quiet.yaml")
@@ -438,6 +470,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "hunts": hunts}[case]()
+    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

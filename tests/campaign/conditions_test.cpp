@@ -1,5 +1,6 @@
 // Conditions and events of a plan on a simulator without a process.
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <string>
@@ -36,22 +37,10 @@ struct Scene {
   Result<void> look(DeedsRunner& runner, double time_s) { return runner.act(scene, std::llround(time_s / simulator.step())); }
 };
 
-Condition region(const std::string& model) {
-  Condition condition;
-  condition.kind = Condition::Kind::region;
-  condition.text = model + " in region";
-  condition.model = model;
-  condition.region[0] = 1, condition.region[1] = -1, condition.region[2] = 2, condition.region[3] = 1;
-  return condition;
-}
-
+Condition condition(const std::string& yaml) { return to_condition(YAML::Load(yaml)); }
+Condition region(const std::string& model) { return condition("{model: " + model + ", region: [1, -1, 2, 1]}"); }
 Condition contact(const std::string& model, const std::string& touched) {
-  Condition condition;
-  condition.kind = Condition::Kind::touches;
-  condition.text = model + " touches " + touched;
-  condition.model = model;
-  condition.touched = touched;
-  return condition;
+  return condition("{model: " + model + ", touches: " + touched + "}");
 }
 
 std::string problem(DeedsRunner& runner) { return runner.verdicts().at(0).problem; }
@@ -104,6 +93,14 @@ TEST(Conditions, any_contact_leaves_out_the_ground) {
   ASSERT_TRUE(s.look(wall, 0.2));
   EXPECT_EQ(problem(any), "it was so at 0.2 s");
   EXPECT_EQ(problem(wall), "");
+}
+
+TEST(Conditions, a_state_or_a_port_without_a_value_is_false_and_not_an_error) {
+  Scene s;
+  DeedsRunner runner({.never = {condition("{component: A0, is: Error}"), condition("{port: 'A0:out', member: data, max: 1}")}}, 1, 10);
+  ASSERT_TRUE(runner.begin(s.scene));
+  ASSERT_TRUE(s.look(runner, 0.1));
+  for (const auto& verdict : runner.verdicts()) EXPECT_EQ(verdict.problem, "") << verdict.expectation;
 }
 
 TEST(Events, change_models_and_leave_those_that_do_not_exist) {

@@ -85,8 +85,16 @@ class Worlds : public testing::Test {
  protected:
   Worlds() : folder_(fs::path(testing::TempDir()) / ("rows_" + std::to_string(getpid()))) {}
   ~Worlds() override { fs::remove_all(folder_); }
+  static WorldSurvey survey(const std::string& file, const std::vector<std::string>& resource_paths = {}) {
+    auto survey = survey_world(file, resource_paths, {});
+    EXPECT_TRUE(survey) << survey.error().message;
+    return std::move(survey.value());
+  }
+  static std::string file() { return std::string(paths::source_dir) + "/worlds/obstacle_course.sdf"; }
+  static std::map<std::string, StandingModel> models() { return survey(file()).models; }
   static WorldFile world() {
-    auto read = WorldFile::read(std::string(paths::source_dir) + "/worlds/obstacle_course.sdf", {});
+    static const auto here = survey(file());
+    auto read = WorldFile::read(file(), here);
     return std::move(read.value());
   }
   static std::string refusal(const std::string& path, const std::string& value) {
@@ -111,15 +119,14 @@ TEST_F(Worlds, are_changed_by_path_in_copies_of_their_files) {
   }
   const auto written = changed.write(folder_.string());
   ASSERT_TRUE(written) << written.error().message;
-  const auto again = WorldFile::read((folder_ / "world.sdf").string(), {changed.folder()});
-  ASSERT_TRUE(again) << again.error().message;
-  const auto models = again->models();
+  const auto again = survey((folder_ / "world.sdf").string(), {changed.folder()});
+  const auto& models = again.models;
   EXPECT_DOUBLE_EQ(models.at("pioneer2dx").pose.translation().x(), 1.5);
   EXPECT_DOUBLE_EQ(models.at("pioneer2dx").pose.translation().y(), -4.5);
   EXPECT_DOUBLE_EQ(models.at("box_0").pose.translation().y(), 2);
-  EXPECT_EQ(models.size(), world().models().size());
+  EXPECT_EQ(models.size(), Worlds::models().size());
   std::string all;
-  for (const auto& file : again->files()) {
+  for (const auto& file : again.files) {
     std::ifstream in(file);
     all.append(std::istreambuf_iterator<char>(in), {});
   }
@@ -142,7 +149,7 @@ TEST_F(Worlds, have_lights_that_are_included) {
   EXPECT_EQ(refusal("light/moon/intensity", "1"), "light/moon/intensity: the world has no light \"moon\"; lights: sun");
   // What the light is belongs to what the world is made of.
   std::string files;
-  for (const auto& file : world().files()) files += file + " ";
+  for (const auto& file : survey(file()).files) files += file + " ";
   EXPECT_NE(files.find("sun/model.sdf"), std::string::npos) << files;
 }
 
@@ -157,11 +164,34 @@ TEST_F(Worlds, have_no_other_values) {
 }
 
 TEST_F(Worlds, have_footprints_of_their_models) {
-  const auto models = world().models();
+  const auto models = Worlds::models();
   const auto wall = footprint(models.at("wall_north").outline, models.at("wall_north").pose);
   const auto robot = footprint(models.at("pioneer2dx").outline, Eigen::Isometry3d(Eigen::Translation3d(0, 5, 0)));
   // The wall is 0.15 m thick at y = 6; the robot's wheels reach 0.165 + 0.0825 m to the side.
   EXPECT_NEAR(distance(robot, wall), 6 - 0.075 - 5 - 0.2475, 2e-3);
+}
+
+TEST_F(Worlds, are_placed_as_a_row_sets_them) {
+  Row row;
+  row.values = {{"model/box_0/pose", "1 2 0.5"}, {"model/box_1/pose", "1 2 3 0.1 0.2 0.3"}, {"model/box_2/pose/roll", "0.4"}};
+  const auto before = models();
+  const auto placed = placed_models(row, before);
+  const auto expect_pose = [&](const char* name, const std::vector<double>& numbers) {
+    EXPECT_TRUE(placed.at(name).pose.isApprox(to_pose(numbers), 1e-9)) << name;
+  };
+  expect_pose("box_0", {1, 2, before.at("box_0").pose.translation().z(), 0, 0, 0.5});
+  expect_pose("box_1", {1, 2, 3, 0.1, 0.2, 0.3});
+  const Eigen::Isometry3d old = before.at("box_2").pose;
+  const double yaw = std::atan2(old.linear()(1, 0), old.linear()(0, 0));
+  expect_pose("box_2", {old.translation().x(), old.translation().y(), old.translation().z(), 0.4, 0, yaw});
+}
+
+TEST_F(Worlds, that_do_not_load_say_what_the_simulator_says) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "robot.sdf") << "<sdf version='1.9'><model name='m'/></sdf>";
+  const auto none = survey_world((folder_ / "robot.sdf").string(), {}, {});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("a <world> is expected in it"), std::string::npos) << none.error().message;
 }
 
 TEST_F(Worlds, make_rows_of_a_grid_of_samples_and_of_seeds) {
@@ -170,7 +200,7 @@ TEST_F(Worlds, make_rows_of_a_grid_of_samples_and_of_seeds) {
   plan.seed = 10;
   plan.samples = 3;
   plan.axes = {{"a", {"1", "2"}, {}}, {"b", {}, Range{Range::Kind::uniform, 0, 1}}, {"c", {"x", "y"}, {}}};
-  const auto rows = RowMaker::make(plan, world());
+  const auto rows = RowMaker::make(plan, models());
   ASSERT_TRUE(rows);
   ASSERT_EQ(rows->count(), 24U);
   std::set<std::string> all;
@@ -189,14 +219,13 @@ TEST_F(Worlds, scatter_models_without_touching) {
   Plan plan;
   plan.repeat = 20;
   plan.scatters.push_back({{"box_1", "box_2", "cylinder_3"}, {-3, -3, 3, 3}, 0.1, true});
-  const auto rows = RowMaker::make(plan, world());
+  const auto standing = models();
+  const auto rows = RowMaker::make(plan, standing);
   ASSERT_TRUE(rows);
   for (std::size_t i = 1; i <= rows->count(); ++i) {
     const auto row = rows->row(i);
     ASSERT_TRUE(row) << row.error().message;
-    auto changed = world();
-    for (const auto& [path, value] : row->values) ASSERT_TRUE(changed.set(path, value));
-    const auto models = changed.models();
+    const auto models = placed_models(*row, standing);
     for (const char* name : {"box_1", "box_2", "cylinder_3"}) {
       const auto mine = footprint(models.at(name).outline, models.at(name).pose);
       for (const auto& [other, model] : models) {
@@ -205,8 +234,8 @@ TEST_F(Worlds, scatter_models_without_touching) {
       }
     }
   }
-  plan.scatters[0].region[2] = plan.scatters[0].region[3] = -2.9;
-  EXPECT_FALSE(RowMaker::make(plan, world())->row(1));
+  plan.scatters[0].region.x2 = plan.scatters[0].region.y2 = -2.9;
+  EXPECT_FALSE(RowMaker::make(plan, models())->row(1));
 }
 
 }  // namespace

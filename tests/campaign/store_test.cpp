@@ -52,11 +52,11 @@ class Stores : public testing::Test {
   static std::string key(std::size_t number) { return "key-" + std::to_string(number) + "-of-thirty-two-digits"; }
   static Outcome outcome(std::size_t number) {
     Outcome made;
-    made.state_hash = std::to_string(number * 7919);
-    made.simulated_s = 60;
-    made.wall_s = 1.5;
-    made.verdicts = {{"no component ends in an error", "", ""},
-                     {"path_length: {model: robot, min: 2}", number % 5 == 0 ? "it was 1.5 m" : "", ""}};
+    made.run.state_hash = std::to_string(number * 7919);
+    made.run.simulated_s = 60;
+    made.run.wall_s = 1.5;
+    made.run.verdicts = {{"no component ends in an error", "", ""},
+                         {"path_length: {model: robot, min: 2}", number % 5 == 0 ? "it was 1.5 m" : "", ""}};
     made.measures = {{"clearance", static_cast<double>(number) / 7}, {"speed", 0.1}};
     return made;
   }
@@ -228,15 +228,16 @@ TEST_F(HostileResults, names_are_text_in_the_page_and_words_in_its_commands) {
 
 TEST_F(Stores, get_outcomes_of_other_machines_as_they_were) {
   auto told = outcome(3);
-  told.problem = "host of \"A\" was killed\n\xff";
+  told.run.problem = "host of \"A\" was killed\n\xff";
   told.measures["tiny"] = 1.0 / 3e200;
   const auto line = to_line({"key", told, "kept/row-3"});
   EXPECT_EQ(line.find('\n'), line.size() - 1);
   const auto back = from_line(line);
   ASSERT_TRUE(back);
+  EXPECT_TRUE(back->outcome.run.has_begun) << "a row with a problem is a result";
   EXPECT_EQ(back->outcome.measures, told.measures);
-  EXPECT_EQ(back->outcome.state_hash, told.state_hash);
-  EXPECT_EQ(back->outcome.verdicts.size(), told.verdicts.size());
+  EXPECT_EQ(back->outcome.run.state_hash, told.run.state_hash);
+  EXPECT_EQ(back->outcome.run.verdicts.size(), told.run.verdicts.size());
   EXPECT_EQ(to_line(*back), line);
   for (std::size_t size = 0; size + 1 < line.size(); size += 7) EXPECT_FALSE(from_line(line.substr(0, size)));
   EXPECT_FALSE(from_line("[1, 2]"));

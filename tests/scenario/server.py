@@ -286,6 +286,21 @@ def check():
     assert looking.wait(watchdog) == 1, "a drive was left out"
     said = open(looking.log.name).read().splitlines()
     assert len(said) == 1 and said[0].count("drive.sdf") == 1, said
+    # The same as JSON: what there is, and what URIs mean.
+    crate = f"{work.name}/crate.sdf"
+    with open(crate, "w") as file:
+        file.write("<sdf version='1.9'><model name='crate'><link name='l'><collision name='c'><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry></collision></link></model></sdf>")
+    with open(broken, "w") as file:
+        file.write("<sdf version='1.9'><world name='w'><include><uri>crate.sdf</uri><pose>4 0 0 0 0 0</pose></include></world></sdf>")
+    looking = server("--check", "--json", "--spawn", crate, "--spawn", "model://nowhere", world=broken)
+    said = json.loads(looking.communicate(timeout=watchdog)[0])
+    assert looking.returncode == 0
+    assert [(one["uri"], one["file"]) for one in said["found"]] == [("crate.sdf", crate)], said["found"]
+    model = said["models"][0]
+    assert (model["name"], model["static"], model["pose"][0]) == ("crate", False, 4), model
+    assert {key: model["links"][0]["collisions"][0][key] for key in ("shape", "pose", "size")} == {"shape": "box", "pose": [0, 0, 1, 1, 0, 0, 0], "size": [1, 2, 3]}, model
+    assert said["spawned"][0] == {"model": crate, "files": [crate]} and "not found" in said["spawned"][1]["error"], said["spawned"]
+    assert server("--json").wait(watchdog) == 2
     # Who only looks needs no server id of its own.
     process = started("-u")
     assert server("--check").wait(watchdog) == 0

@@ -10,6 +10,8 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "recording/sample_text.h"
+#include "run/condition_words.h"
+#include "run/shm_simulator.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
 #include "system/remote.h"
@@ -52,6 +54,7 @@ struct BreakWatch::State {
   std::uint32_t simulator = 0;
   std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
   std::map<std::string, shm::Iface> models;
+  editor::ShmSimulator contacts_of;  // of models; attached if the condition needs it
   base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::registry> hit;
   std::atomic<bool> is_ending{false};  // relaxed: says nothing but itself
   std::thread thread;
@@ -84,6 +87,9 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       if (!tap) return tap.error();
       port->tap = std::move(*tap);
       ports.emplace(value.name, std::move(port));
+    } else if (value.kind == ValueKind::touches && contacts_of.id().empty()) {
+      if (const auto attached = contacts_of.attach(simulator, editor::ShmSimulator::process_of(simulator).value_or(0)); !attached)
+        return attached;
     } else if (value.kind == ValueKind::state) {
       if (const auto found = session.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
     }
@@ -118,15 +124,16 @@ std::optional<double> BreakWatch::State::look_up(const Expression::Value& value,
       const auto component = session.component(value.name + ".rtc", {.contexts = true});
       return component ? std::optional(static_cast<double>(component->state())) : std::nullopt;
     }
+    case ValueKind::touches: {
+      const auto contacts = contacts_of.contacts(value.name);
+      return contacts ? std::optional(editor::is_touching(*contacts, value.member) ? 1.0 : 0.0) : std::nullopt;
+    }
     case ValueKind::pose:
       break;
   }
   shm::Iface& model = models.at(value.name);
   if (!model.read()) return std::nullopt;
-  const shm::Pose& pose = model.sample<shm::TruthSample>().pose;
-  if (value.member == "x") return pose.x;
-  if (value.member == "y") return pose.y;
-  return value.member == "z" ? pose.z : shm::yaw_of(pose);
+  return editor::member_of(model.sample<shm::TruthSample>().pose, value.member);
 }
 
 void BreakWatch::State::run() {
@@ -137,7 +144,8 @@ void BreakWatch::State::run() {
     const auto what = participant.wait(tick, 100ms);
     if (what == shm::Participant::State::dropped || what == shm::Participant::State::closed) return;
     if (what != shm::Participant::State::tick) continue;
-    if (!condition.holds([&](const auto& value) { return look_up(value, tick.now); })) continue;
+    const auto is_now = condition.holds([&](const auto& value) { return look_up(value, tick.now); });
+    if (!is_now || !*is_now) continue;
     *hit.lock() = tick.now;
     // Steps that were asked for end with this one. A server that does not answer is going.
     if (auto requester = shm::Requester::open(simulator)) (void)requester->ask(shm::PauseRequest{});
@@ -186,6 +194,9 @@ std::vector<std::string> BreakWatch::missing() const {
         break;
       case ValueKind::state:
         all.push_back("component " + value.name + " does not say its state");
+        break;
+      case ValueKind::touches:
+        all.push_back("the world has no model " + value.name);
         break;
       default:
         all.push_back("model " + value.name + " has no pose");

@@ -18,11 +18,10 @@
 #include <vector>
 
 #include "base/result.h"
+#include "run/condition_words.h"
 #include "run/pose_record.h"
 
 namespace editor {
-
-inline constexpr const char* usually_touched = "ground_plane";  // what a model may touch when nothing else is said
 
 struct Expectation {
   enum class Kind { path_length, reach, stay, no_contact, value, state, command };
@@ -30,21 +29,18 @@ struct Expectation {
   std::string text;  // the whole expectation in one line, its name in reports
   std::string model;
   std::optional<double> min, max;
-  double region[4] = {};
-  double within = 0;  // [s]; 0: the whole run
+  double within = 0;               // [s]; 0: the whole run
+  recorder::Expression condition;  // of reach, at one time; of stay and value, at all times; of state, at the end
   std::vector<std::string> except;
   std::string port, member;
-  std::string component, state;
+  std::string component;
   std::string command;
 };
 
-// The error names the file, the line and what was expected there.
+// The error names the file, line and column, and what was expected there.
 base::Result<std::vector<Expectation>> read_expectations(const std::string& file);
 // Of a text that stands elsewhere: errors begin with what it is of.
 base::Result<std::vector<Expectation>> parse_expectations(const std::string& text, const std::string& what);
-
-// "data.vx", "ranges[0]" -> its steps; the error says what is wrong with it.
-base::Result<std::vector<std::string>> member_path(const std::string& member);
 
 struct SeenValue {
   std::size_t samples = 0;      // that had the member as a number
@@ -79,6 +75,9 @@ struct Verdict {
   std::string problem;       // empty: fulfilled
   std::string details = {};  // what a command that failed had said: its last lines
 };
+// Values of expressions on this model.
+recorder::Expression::Lookup values_at(const RecordedPose& pose);
+
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
 
 }  // namespace editor

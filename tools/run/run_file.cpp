@@ -2,14 +2,16 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "base/text.h"
 #include "base/yaml_keys.h"
+#include "run/yaml_shape.h"
 
 namespace editor {
 namespace {
@@ -20,99 +22,75 @@ using base::Result;
 constexpr double longest_wait_s = 3600;
 constexpr std::size_t largest_run_file = std::size_t{1} << 20;
 
-struct FailureAt {
-  std::string what;
-  YAML::Mark at;
-};
+constexpr std::array run_file_keys = {Key{"processes", Form::maps, "process", true}};
+constexpr std::array process_keys = {Key{"command", Form::text, {}, true}, Key{"folder", Form::text}, Key{"environment", Form::any},
+                                     Key{"wait", Form::positive}, Key{"components", Form::any, {}, true}};
+constexpr std::array component_keys = {Key{"name", Form::text, {}, true}, Key{"phase", Form::count}, Key{"rate", Form::positive},
+                                       Key{"join", Form::words, "member tick clock"}};
+constexpr std::array run_file_shapes = {Shape{"run file", run_file_keys}, Shape{"process", process_keys},
+                                        Shape{"component", component_keys}};
 
-void expect_map(const YAML::Node& node, const std::string& what, const std::set<std::string>& keys) {
-  if (!node.IsMap()) throw FailureAt{what + " must be a map", node.Mark()};
-  for (const auto& entry : node) {
-    const auto key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (!keys.contains(key))
-      throw FailureAt{what + " has no key " + base::in_quotes(key) + ", expected " + base::join({keys.begin(), keys.end()}, ", "),
-                      entry.first.Mark()};
-  }
-}
-
-std::string text_of(const YAML::Node& node, const std::string& what) {
-  if (!node.IsScalar() || node.Scalar().empty()) throw FailureAt{what + " must be a text", node.Mark()};
-  return node.Scalar();
-}
-
-double number_of(const YAML::Node& node, const std::string& what, double above, double highest) {
-  const auto text = text_of(node, what);
-  const auto number = base::parse_number(text);
-  if (!number || *number <= above || *number > highest)
-    throw FailureAt{what + " must be a number above " + base::format_number(above) + ", at most " + base::format_number(highest) +
-                        ", got " + base::in_quotes(text),
-                    node.Mark()};
-  return *number;
+// Of a key that has a number.
+double at_most(const YAML::Node& node, const char* key, double highest) {
+  const double value = *number(node, key);
+  if (value > highest)
+    fail_at(node[key], std::string(key) + " must be at most " + base::format_number(highest) + ", got " + base::in_quotes(word(node, key)));
+  return value;
 }
 
 ForeignComponent foreign_component_of(const YAML::Node& node) {
   ForeignComponent component;
   if (node.IsScalar()) {
-    component.instance = text_of(node, "component");
+    check_form(run_file_shapes, node, {"component", Form::text});
+    component.instance = node.Scalar();
     return component;
   }
-  expect_map(node, "component", {"name", "phase", "rate", "join"});
-  if (!node["name"]) throw FailureAt{"component needs a name", node.Mark()};
-  component.instance = text_of(node["name"], "name");
-  if (const auto phase = node["phase"]) {
-    const auto value = base::parse_integer(text_of(phase, "phase"));
-    if (!value || *value < 0 || *value > highest_phase)
-      throw FailureAt{"phase must be a number from 0 to 15, got " + base::in_quotes(phase.Scalar()), phase.Mark()};
-    component.phase = static_cast<int>(*value);
-  }
-  if (const auto rate = node["rate"]) component.rate = base::format_number(number_of(rate, "rate", 0, 1e6));
-  if (const auto how = node["join"]) {
-    const auto found = parse_how(text_of(how, "join"));
-    if (!found) throw FailureAt{"join must be member, tick or clock, got " + base::in_quotes(how.Scalar()), how.Mark()};
-    component.how = *found;
-  }
+  check_shape(run_file_shapes, node, "component", "component");
+  component.instance = word(node, "name");
+  if (node["phase"]) component.phase = static_cast<int>(at_most(node, "phase", highest_phase));
+  if (node["rate"]) component.rate = base::format_number(at_most(node, "rate", 1e6));
+  if (node["join"]) component.how = *parse_how(word(node, "join"));
   return component;
 }
 
-ForeignProcess process_of(const YAML::Node& node, const std::filesystem::path& beside) {
-  expect_map(node, "process", {"command", "folder", "environment", "wait", "components"});
-  ForeignProcess process;
-  if (!node["command"]) throw FailureAt{"process needs a command", node.Mark()};
-  process.command = text_of(node["command"], "command");
-  const auto folder = node["folder"] ? beside / text_of(node["folder"], "folder") : beside;
-  if (!std::filesystem::is_directory(folder))
-    throw FailureAt{"folder " + base::in_quotes(folder.string()) + ": no such folder",
-                    node["folder"] ? node["folder"].Mark() : node.Mark()};
-  process.folder = folder.string();
-  if (const auto environment = node["environment"]) {
-    if (!environment.IsMap()) throw FailureAt{"environment must be a map", environment.Mark()};
-    for (const auto& entry : environment) {
-      const auto key = text_of(entry.first, "environment");
-      if (key.find('=') != std::string::npos || !entry.second.IsScalar())
-        throw FailureAt{"environment must have names without = and texts, got " + base::in_quotes(key), entry.first.Mark()};
-      process.environment[key] = entry.second.Scalar();
-    }
+std::map<std::string, std::string> environment_of(const YAML::Node& node) {
+  if (!node.IsMap()) fail_at(node, "environment must be a map");
+  std::map<std::string, std::string> environment;
+  for (const auto& entry : node) {
+    const auto key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (key.empty() || key.find('=') != std::string::npos || !entry.second.IsScalar())
+      fail_at(entry.first, "environment must have names without = and texts, got " + base::in_quotes(key));
+    environment[key] = entry.second.Scalar();
   }
-  if (node["wait"]) process.wait_s = number_of(node["wait"], "wait", 0, longest_wait_s);
+  return environment;
+}
+
+ForeignProcess process_of(const YAML::Node& node, const std::filesystem::path& beside) {
+  ForeignProcess process;
+  process.command = word(node, "command");
+  const auto folder = node["folder"] ? beside / word(node, "folder") : beside;
+  if (!std::filesystem::is_directory(folder))
+    fail_at(node["folder"] ? node["folder"] : node, "folder " + base::in_quotes(folder.string()) + ": no such folder");
+  process.folder = folder.string();
+  if (node["environment"]) process.environment = environment_of(node["environment"]);
+  if (node["wait"]) process.wait_s = at_most(node, "wait", longest_wait_s);
   const auto components = node["components"];
-  if (!components || !components.IsSequence() || components.size() == 0)
-    throw FailureAt{"process needs the list of its components", components ? components.Mark() : node.Mark()};
-  for (std::size_t i = 0; i < components.size(); ++i) process.components.push_back(foreign_component_of(components[i]));
+  if (!components.IsSequence() || components.size() == 0) fail_at(components, "components must be a list with at least one component");
+  for (const auto& component : components) process.components.push_back(foreign_component_of(component));
   return process;
 }
 
 std::vector<ForeignProcess> all_of(const std::string& text, const std::filesystem::path& beside) {
   const auto root = YAML::Load(text);
   yaml::expect_unique_keys(root);
-  expect_map(root, "run file", {"processes"});
-  const auto list = root["processes"];
-  if (!list || !list.IsSequence() || list.size() == 0) throw FailureAt{"run file needs a list of processes", root.Mark()};
+  check_shape(run_file_shapes, root, "run file", "run file");
+  if (root["processes"].size() == 0) fail_at(root["processes"], "run file needs a list with at least one process");
   std::vector<ForeignProcess> processes;
   std::set<std::string> names;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    processes.push_back(process_of(list[i], beside));
+  for (const auto& node : root["processes"]) {
+    processes.push_back(process_of(node, beside));
     for (const auto& component : processes.back().components) {
-      if (!names.insert(component.instance).second) throw FailureAt{"component " + component.instance + " is there twice", list[i].Mark()};
+      if (!names.insert(component.instance).second) fail_at(node, "component " + component.instance + " is there twice");
     }
   }
   return processes;
@@ -122,12 +100,15 @@ std::vector<ForeignProcess> all_of(const std::string& text, const std::filesyste
 
 Result<std::vector<ForeignProcess>> parse_run_file(const std::string& text, const std::string& file) {
   const auto folder = std::filesystem::path(file).parent_path();
+  const auto fail = [&](int line, int column, const std::string& what) {
+    return Error{"run file " + file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + what};
+  };
   try {
     return all_of(text, folder.empty() ? "." : folder);
-  } catch (const FailureAt& failure) {
-    return Error{"run file " + file + (failure.at.is_null() ? "" : ":" + std::to_string(failure.at.line + 1)) + ": " + failure.what};
+  } catch (const YamlFailure& failure) {
+    return fail(failure.line, failure.column, failure.message);
   } catch (const YAML::Exception& problem) {
-    return Error{"run file " + file + ":" + std::to_string(problem.mark.line + 1) + ": " + problem.msg};
+    return fail(problem.mark.line + 1, problem.mark.column + 1, problem.msg);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,13 +61,19 @@ struct RunResult {
   double simulated_s = 0;  // in each of them
   double wall_s = 0;       // of all
   double path_m = 0;       // of the model that went farthest
-  bool is_passed() const;
+  bool is_passed() const { return first_problem().empty(); }
+  // The first thing that was not as expected; empty: nothing.
+  std::string first_problem() const;
 };
 
 // Returns when everything that it started has ended. catch_interrupts() first: an interrupt is a problem like others. `reporter` receives
 // what takes long, what failed beside the first problem, and the progress.
 RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& reporter, const RunHooks& hooks = {});
 
+// For other programs: rtse run --json prints it, and reads what it has started prints. Throws what nlohmann::json throws for members of
+// another type; members that are missing have the values of a new RunResult.
+nlohmann::ordered_json to_json(const RunResult& result);
+RunResult run_result_of(const nlohmann::ordered_json& json);
 // The verdicts as JUnit XML: a test case for each run and for each of its expectations; a run with a problem is an error.
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results);
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "base/fault_text.h"
 #include "base/text.h"
 #include "shm/iface_types.h"
 
@@ -34,25 +35,11 @@ std::span<std::byte> waiting_sample(shm::IfaceWriter& writer) {
 }  // namespace
 
 base::Result<FaultOrder> parse_fault_order(const std::string& text) {
-  constexpr double longest = 1e9;
-  const auto fail = [&] { return base::Error{"fault " + base::in_quotes(text) + ": expected KIND:FROM:FOR:AMOUNT:IFACE"}; };
-  std::string rest = text;
-  std::array<std::string, 4> words;
-  for (auto& word : words) {
-    const auto end = rest.find(':');
-    if (end == std::string::npos) return fail();
-    word = rest.substr(0, end);
-    rest.erase(0, end + 1);
-  }
-  const auto from = base::parse_number(words[1]), length = base::parse_number(words[2]), amount = base::parse_number(words[3]);
-  if (!from || !length || (!amount && !words[3].empty()) || rest.empty() || *from < 0 || *from > longest || *length < 0 ||
-      *length > longest)
-    return fail();
-  const auto row = shm::check_fault(words[0], amount);
+  const auto parsed = base::parse_fault_text(text, "IFACE");
+  if (!parsed) return parsed.error();
+  const auto row = shm::check_fault(parsed->kind, parsed->amount);
   if (!row) return row.error();
-  FaultOrder order{rest, (*row)->kind, amount.value_or((*row)->amount.value_or(0)), std::chrono::nanoseconds(std::llround(*from * 1e9))};
-  if (*length > 0) order.until = std::chrono::nanoseconds(std::llround((*from + *length) * 1e9));
-  return order;
+  return FaultOrder{parsed->last, (*row)->kind, parsed->amount.value_or((*row)->amount.value_or(0)), parsed->from, parsed->until};
 }
 
 base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed) {

@@ -24,7 +24,7 @@ struct FaultOrder {
 
   bool is_at(std::chrono::nanoseconds now) const { return now >= from && now < until; }
 };
-// "KIND:FROM:FOR:AMOUNT:IFACE", seconds; FOR 0: to the end; AMOUNT empty: the usual one.
+// As base/fault_text.h has it, with an iface as LAST; AMOUNT empty: the usual one.
 base::Result<FaultOrder> parse_fault_order(const std::string& text);
 
 class SensorFault {

@@ -92,14 +92,14 @@ class Hunt {
     ++result_.cases;
     bool is_new = false;
     for (const auto& feature : outcome.features) is_new |= features_.insert(feature).second;
-    if (is_new && outcome.is_passed()) corpus_.push_back(tried);
+    if (is_new && outcome.run.is_passed()) corpus_.push_back(tried);
     const auto kind = signature(outcome);
-    if (!outcome.problem.empty() && is_trouble_of_the_machine(outcome)) return;
-    if (!outcome.is_passed() && signatures_.insert(kind).second) {
+    if (!outcome.run.problem.empty() && is_trouble_of_the_machine(outcome)) return;
+    if (!outcome.run.is_passed() && signatures_.insert(kind).second) {
       Find find;
       find.case_number = result_.cases;
       find.after_s = wall();
-      broken_ = {outcome.first_problem(), outcome.state_hash};
+      broken_ = {outcome.run.first_problem(), outcome.run.state_hash};
       find.tried = shrunk(tried, kind);
       if (!write(find, kind)) return;
       result_.finds.push_back(std::move(find));
@@ -114,14 +114,14 @@ class Hunt {
       problem_ = room.error().message;
       return true;
     }
-    if (outcome.has_begun) {
+    if (outcome.run.has_begun) {
       not_begun_ = 0;
       return false;
     }
     constexpr std::size_t from_the_start = 3, later = 2 * generation;
     ++not_begun_;
     if (not_begun_ >= (not_begun_ == result_.cases ? from_the_start : later))
-      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.problem;
+      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + outcome.run.problem;
     return true;
   }
 
@@ -133,7 +133,7 @@ class Hunt {
   std::optional<Broken> still_breaks(const HuntCase& tried, const std::string& kind) {
     if (editor::is_interrupted()) return std::nullopt;
     const auto outcome = run(tried, "shrinking");
-    return signature(outcome) == kind ? std::optional(Broken{outcome.first_problem(), outcome.state_hash}) : std::nullopt;
+    return signature(outcome) == kind ? std::optional(Broken{outcome.run.first_problem(), outcome.run.state_hash}) : std::nullopt;
   }
 
   // Whether it is not simply too short for what is expected: a path that is long enough, a place that is reached.
@@ -202,15 +202,15 @@ class Hunt {
     find.problem = broken_.problem;
     find.state_hash = broken_.state_hash;
     const auto first = run(find.tried, "again"), second = run(find.tried, "again");
-    if (find.tried.deeds() == 0 && !first.problem.empty() && first.simulated_s <= 0 && !editor::is_interrupted()) {
-      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.problem;
+    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !editor::is_interrupted()) {
+      problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.run.problem;
       return false;
     }
     find.was_repeated = !editor::is_interrupted();
     if (find.was_repeated) {
-      find.state_hash = first.state_hash;
-      if (!first.first_problem().empty()) find.problem = first.first_problem();
-      find.is_repeatable = first.state_hash == second.state_hash && signature(first) == kind && signature(second) == kind;
+      find.state_hash = first.run.state_hash;
+      if (!first.run.first_problem().empty()) find.problem = first.run.first_problem();
+      find.is_repeatable = first.run.state_hash == second.run.state_hash && signature(first) == kind && signature(second) == kind;
     }
     // Another line of it would be one of the plan.
     std::ofstream file(find.file);
@@ -248,9 +248,9 @@ std::string signature(const Outcome& outcome) {
     }
     return words;
   };
-  if (!outcome.problem.empty()) return without_numbers(outcome.problem.substr(0, outcome.problem.find(" at ")));
+  if (!outcome.run.problem.empty()) return without_numbers(outcome.run.problem.substr(0, outcome.run.problem.find(" at ")));
   std::string all;
-  for (const auto& verdict : outcome.verdicts) {
+  for (const auto& verdict : outcome.run.verdicts) {
     if (!verdict.problem.empty()) all += verdict.expectation + verdict_mark;
   }
   return all;

@@ -7,12 +7,14 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "campaign/plan/grammar.h"
+#include "run/condition_words.h"
 #include "run/flow_text.h"
 
 namespace campaign {
 namespace {
 
+using editor::fail_at;
+using editor::word;
 using Kind = Fault::Kind;
 using Object = Fault::Object;
 
@@ -146,6 +148,10 @@ void set_spawned(Event& event, const std::string& file) {
   auto node = YAML::Load(event.text);
   node["spawn"]["model"] = file;
   event.text = editor::flow_text(node);
+}
+
+Condition to_condition(const YAML::Node& node) {
+  return {editor::flow_text(node), editor::to_expression(node), editor::number(node, "after").value_or(0), editor::number(node, "within")};
 }
 
 Event to_event(const YAML::Node& node) {

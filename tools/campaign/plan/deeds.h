@@ -6,9 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "campaign/plan/condition.h"
+#include "recording/expression.h"
+
+namespace YAML {
+class Node;
+}
 
 namespace campaign {
+
+// On a running system; true or false between two steps.
+struct Condition {
+  std::string text;  // in one line, for reports
+  recorder::Expression expression;
+  double after_s = 0;
+  std::optional<double> within_s;
+};
 
 struct Event {
   enum class Kind { spawn, remove, push, pose, set, activate, deactivate, reset, connect, disconnect, command };
@@ -66,7 +78,8 @@ std::optional<double> usual_amount(Fault::Kind kind);
 // Sets the file of a spawn, in its text too.
 void set_spawned(Event& event, const std::string& file);
 
-// Of nodes that fit the shapes. Throw PlanError.
+// Of nodes that fit the shapes. Throw YamlFailure.
+Condition to_condition(const YAML::Node& node);  // see run/condition_words.h
 Event to_event(const YAML::Node& node);
 Fault to_fault(const YAML::Node& node);
 

@@ -13,15 +13,18 @@
 
 #include "base/text.h"
 #include "campaign/plan/grammar.h"
+#include "run/condition_words.h"
+#include "run/flow_text.h"
 
 namespace campaign {
 namespace {
 
 constexpr std::array<std::string_view, 7> result_columns = {"row", "seed", "passed", "problem", "state", "simulated_s", "wall_s"};
 
-double number(const YAML::Node& node, const char* key, double usual) {
-  return node[key] ? base::parse_number(node[key].Scalar()).value_or(usual) : usual;
-}
+using editor::fail_at;
+using editor::number;
+using editor::word;
+using editor::words;
 
 std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual) {
   return node[key] ? static_cast<std::uint64_t>(base::parse_integer(node[key].Scalar()).value_or(0)) : usual;
@@ -29,7 +32,7 @@ std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual
 
 // An option of a run, within the limits of its row.
 double run_number(const YAML::Node& node, const char* key, double usual, std::string_view option) {
-  const auto value = number(node, key, usual);
+  const auto value = number(node, key).value_or(usual);
   const auto& row = editor::run_option(option);
   if (value < row.low || value > row.high)
     fail_at(node[key], std::string(key) + " must be from " + base::format_number(row.low) + " to " + base::format_number(row.high) +
@@ -39,27 +42,13 @@ double run_number(const YAML::Node& node, const char* key, double usual, std::st
 
 bool flag(const YAML::Node& node, const char* key, bool usual) { return node[key] ? node[key].Scalar() == "true" : usual; }
 
-std::vector<std::string> words(const YAML::Node& node) {
-  std::vector<std::string> all;
-  if (!node) return all;
-  if (node.IsScalar()) return {node.Scalar()};
-  for (const auto& one : node) all.push_back(one.Scalar());
-  return all;
-}
-
-void read_region(const YAML::Node& node, double* region) {
-  for (std::size_t i = 0; node && i < 4; ++i) region[i] = *base::parse_number(node[i].Scalar());
-  if (region[0] > region[2]) std::swap(region[0], region[2]);
-  if (region[1] > region[3]) std::swap(region[1], region[3]);
-}
-
 std::vector<std::string> grid(const YAML::Node& node) {
-  const double from = number(node, "from", 0), to = number(node, "to", 0);
+  const double from = number(node, "from").value_or(0), to = number(node, "to").value_or(0);
   if (!node["from"] || !node["to"]) fail_at(node, "a grid needs from and to");
   if (node["step"] && node["steps"]) fail_at(node, "a grid has step or steps, not both");
   const auto steps = count(node, "steps", 0);
   if (node["steps"] && steps < 1) fail_at(node["steps"], "steps must be at least 1");
-  double step = number(node, "step", 1);
+  double step = number(node, "step").value_or(1);
   if (steps > 1) step = (to - from) / static_cast<double>(steps - 1);
   if (!node["steps"] && to < from) fail_at(node["to"], "to must not be less than from");
   const double all = node["steps"] ? static_cast<double>(steps) : std::floor((to - from) / step + 1e-9) + 1;
@@ -111,7 +100,7 @@ void read_measure(const std::string& kind, const YAML::Node& node, Measure& meas
   measure.to = words(node["to"]);
   measure.port = word(node, "port");
   measure.member = word(node, "member");
-  read_region(node["region"], measure.region);
+  if (measure.kind == Measure::Kind::time_to) measure.reached = editor::to_expression(node);
   if (node["take"]) measure.take = takes.at(node["take"].Scalar());
   if (measure.kind == Measure::Kind::value) measure.name = measure.port + " " + measure.member + " " + word(node, "take");
   measure.name = word(node, "as", measure.name);
@@ -122,6 +111,7 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
   std::set<std::string> names;
   for (const auto& entry : node) {
     Measure measure;
+    measure.text = editor::flow_text(entry);
     read_measure(entry.begin()->first.Scalar(), entry.begin()->second, measure);
     if (std::ranges::find(result_columns, measure.name) != result_columns.end())
       fail_at(entry, "the results have a column " + base::in_quotes(measure.name) + " already; name the measure otherwise with as");
@@ -223,8 +213,8 @@ void read_variation(const YAML::Node& root, Plan& plan) {
   for (const auto& entry : root["scatter"]) {
     Scatter scatter;
     scatter.models = words(entry["models"]);
-    read_region(entry["region"], scatter.region);
-    scatter.clearance = number(entry, "clearance", 0.05);
+    scatter.region = editor::to_region(entry["region"]);
+    scatter.clearance = number(entry, "clearance").value_or(0.05);
     scatter.turns = flag(entry, "turn", true);
     plan.scatters.push_back(scatter);
   }
@@ -253,7 +243,7 @@ void read_deeds(const YAML::Node& root, Plan& plan) {
 }
 
 Plan to_plan(const YAML::Node& root, const std::string& file) {
-  check_shape(root, plan_shape, "plan");
+  editor::check_shape(plan_shapes(), root, plan_shape, "plan");
   Plan plan;
   plan.file = file;
   plan.run.system = in_folder(plan, word(root, "system"));
@@ -298,7 +288,7 @@ Result<Plan> read_plan(const std::string& file) {
     auto plan = to_plan(documents.front(), file);
     plan.text = text.str();
     return plan;
-  } catch (const PlanError& error) {
+  } catch (const editor::YamlFailure& error) {
     return fail(error.line, error.column, error.message);
   } catch (const YAML::Exception& error) {
     return fail(error.mark.line + 1, error.mark.column + 1, "is no YAML: " + error.msg);

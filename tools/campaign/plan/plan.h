@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/result.h"
-#include "campaign/plan/condition.h"
 #include "campaign/plan/deeds.h"
 #include "run/run_options.h"
+#include "run/yaml_shape.h"
 
 namespace campaign {
 
@@ -32,7 +32,7 @@ struct Axis {
 
 struct Scatter {
   std::vector<std::string> models;
-  double region[4] = {};
+  editor::Region region;
   double clearance = 0.05;  // [m]
   bool turns = true;
 };
@@ -42,8 +42,9 @@ struct Measure {
   enum class Take { min, max, mean, last, count };
   Kind kind = Kind::wall_time;
   std::string name;  // in the results
+  std::string text;  // in one line
   std::string model;
-  double region[4] = {};
+  recorder::Expression reached;  // of time_to
   std::vector<std::string> to;
   std::string port, member;
   Take take = Take::last;

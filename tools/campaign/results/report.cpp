@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <pugixml.hpp>
 
 #include "base/shell_word.h"
 #include "base/text.h"
-#include "run/run_files.h"
+#include "run/junit.h"
 
 namespace campaign {
 namespace {
@@ -117,32 +116,21 @@ void print_csv(std::ostream& out, const Results& results) {
 }
 
 Result<void> write_junit(const Results& results, const std::string& file) {
-  pugi::xml_document document;
-  auto suite = document.append_child("testsuite");
-  suite.append_attribute("name") = editor::printable(results.plan_file).c_str();
-  double seconds = 0;
+  using Outcome = editor::JunitCase::Outcome;
+  std::vector<editor::JunitCase> cases;
   for (const auto& row : results.rows) {
     if (!row.run) continue;
-    auto test = suite.append_child("testcase");
     std::string name = "row " + std::to_string(row.number) + " seed " + std::to_string(row.seed);
     for (const auto& [path, value] : row.values) name += " " + path + "=" + value;
-    test.append_attribute("classname") = editor::printable(results.plan_file).c_str();
-    test.append_attribute("name") = editor::printable(name).c_str();
-    test.append_attribute("time") = base::format_number(row.run->wall_s).c_str();
-    seconds += row.run->wall_s;
-    if (row.run->is_passed) continue;
-    auto failure = test.append_child(row.run->state_hash.empty() ? "error" : "failure");
-    failure.append_attribute("message") = editor::printable(row.run->problem).c_str();
-    failure.text().set(editor::printable(command_again(results, row)).c_str());
+    const auto outcome = row.run->is_passed ? Outcome::passed : row.run->state_hash.empty() ? Outcome::broken : Outcome::failed;
+    cases.push_back({.outcome = outcome,
+                     .group = results.plan_file,
+                     .name = name,
+                     .wall_s = row.run->wall_s,
+                     .problem = row.run->problem,
+                     .details = command_again(results, row)});
   }
-  const auto errors = std::ranges::count_if(
-      results.rows, [](const ResultRow& row) { return row.run && !row.run->is_passed && row.run->state_hash.empty(); });
-  suite.append_attribute("tests") = static_cast<unsigned long long>(results.run_count());
-  suite.append_attribute("failures") = static_cast<long long>(results.run_count() - results.passed_count()) - errors;
-  suite.append_attribute("errors") = static_cast<long long>(errors);
-  suite.append_attribute("time") = base::format_number(seconds).c_str();
-  if (!document.save_file(file.c_str(), "  ")) return Error{"file " + base::in_quotes(file) + ": cannot be written"};
-  return {};
+  return editor::write_junit_suite(file, results.plan_file, cases);
 }
 
 }  // namespace campaign

@@ -128,10 +128,10 @@ Result<std::optional<StoredRun>> Store::run(const std::string& key) {
 Result<void> Store::add_run(const std::string& key, const Outcome& outcome, const std::string& folder) {
   if (const auto begun = database_.execute("BEGIN IMMEDIATE"); !begun) return begun;
   const auto add = [&]() -> Result<void> {
-    const auto problem = outcome.first_problem();
+    const auto problem = outcome.run.first_problem();
     auto& run = statements_[insert_run];
-    run.bind(1, key).bind(2, std::int64_t{problem.empty()}).bind(3, problem).bind(4, outcome.state_hash).bind(5, folder);
-    run.bind(6, outcome.simulated_s).bind(7, outcome.wall_s).bind(8, outcome.logs);
+    run.bind(1, key).bind(2, std::int64_t{problem.empty()}).bind(3, problem).bind(4, outcome.run.state_hash).bind(5, folder);
+    run.bind(6, outcome.run.simulated_s).bind(7, outcome.run.wall_s).bind(8, outcome.run.logs);
     if (const auto added = run.run(); !added) return added;
     for (const auto number : {drop_measures, drop_verdicts}) {
       if (const auto dropped = statements_[number].bind(1, key).run(); !dropped) return dropped;
@@ -140,7 +140,7 @@ Result<void> Store::add_run(const std::string& key, const Outcome& outcome, cons
       if (const auto added = statements_[insert_measure].bind(1, key).bind(2, name).bind(3, value).run(); !added) return added;
     }
     std::int64_t place = 0;
-    for (const auto& verdict : outcome.verdicts) {
+    for (const auto& verdict : outcome.run.verdicts) {
       auto& insert = statements_[insert_verdict];
       insert.bind(1, key).bind(2, place++).bind(3, verdict.expectation).bind(4, verdict.problem).bind(5, verdict.details);
       if (const auto added = insert.run(); !added) return added;

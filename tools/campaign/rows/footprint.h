@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 namespace campaign {
@@ -19,6 +20,7 @@ std::vector<Polygon> footprint(const Outline& outline, const Eigen::Isometry3d& 
 double distance(const Polygon& a, const Polygon& b);
 double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
 
+inline constexpr std::array pose_parts = {"x", "y", "z", "roll", "pitch", "yaw"};
 // "x y z roll pitch yaw" [m, rad]; missing numbers are 0.
 Eigen::Isometry3d to_pose(const std::vector<double>& numbers);
 

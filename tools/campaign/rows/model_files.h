@@ -1,23 +1,26 @@
-// The models that a world file includes: their files and contents. Changed copies can replace them. Contents are cached; one thread at a
-// time.
+// The contents of the models that a world file includes, by the files that the simulator found. Changed copies can replace them. Contents
+// are cached; one thread at a time.
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
-#include <set>
 #include <string>
 #include <vector>
+
+#include "campaign/rows/world_survey.h"
 
 namespace campaign {
 
 class ModelFiles {
  public:
-  ModelFiles() = default;
-  ModelFiles(const std::filesystem::path& world_folder, const std::vector<std::string>& resource_paths);
+  // `found` must live as long.
+  explicit ModelFiles(const FoundFiles& found) : found_(found) {}
+
+  // The file that a URI in a file of folder `at` means; one that was not found stays as it is.
+  std::string absolute(const std::string& uri, const std::filesystem::path& at) const;
 
   struct Opened {
     pugi::xml_node model;
@@ -38,19 +41,11 @@ class ModelFiles {
 
   // The name that an included model gets in the world.
   std::string name_of(pugi::xml_node include, const std::filesystem::path& at) const;
-  // The models in a <model> or <include>, itself first, with the folder of the file that each stands in.
-  void walk(pugi::xml_node node, const std::filesystem::path& at,
-            const std::function<void(pugi::xml_node model, const std::filesystem::path& folder)>& visit) const;
-  // Adds the files of what a path or an URI means, a folder or a file. False: there is none.
-  bool add_model(const std::string& uri, std::set<std::string>& files) const;
-  // The files that a <model> or <include> is made of, with its meshes and textures.
-  void add_files(pugi::xml_node node, const std::filesystem::path& at, std::set<std::string>& files) const;
 
  private:
   std::optional<Opened> open(pugi::xml_node include, const std::filesystem::path& at, const char* kind) const;
-  std::optional<std::filesystem::path> find(const std::string& uri, const std::filesystem::path& at) const;
 
-  std::vector<std::filesystem::path> folders_;
+  const FoundFiles& found_;
   std::map<std::string, std::unique_ptr<Copy>> copies_;
   mutable std::map<std::filesystem::path, std::unique_ptr<pugi::xml_document>> read_;
 };

@@ -19,30 +19,36 @@ std::string short_number(double value) {
   return base::format_number(base::parse_number(text).value_or(value));
 }
 
-// Where a row puts its models that are not scattered.
-std::map<std::string, Eigen::Isometry3d> placed_models(const Row& row, const std::map<std::string, StandingModel>& models) {
-  std::map<std::string, Eigen::Isometry3d> poses;
-  for (const auto& [name, model] : models) poses[name] = model.pose;
-  for (const auto& [path, value] : row.values) {
-    const auto words = base::split_list(path, '/');
-    if (words.size() < 3 || words[0] != "model" || words[2] != "pose" || !poses.contains(words[1])) continue;
-    auto& pose = poses[words[1]];
-    auto numbers = numbers_in(value);
-    if (words.size() == 3) {
-      if (numbers.size() == 3) numbers = {numbers[0], numbers[1], 0, 0, 0, numbers[2]};
-      pose = to_pose(numbers);
-    } else if (!numbers.empty()) {
-      if (words[3] == "x") pose.translation().x() = numbers[0];
-      if (words[3] == "y") pose.translation().y() = numbers[0];
-      if (words[3] == "yaw") pose.linear() = to_pose({0, 0, 0, 0, 0, numbers[0]}).linear();
-    }
-  }
-  return poses;
+// x y z roll pitch yaw
+std::vector<double> six_numbers(const Eigen::Isometry3d& pose) {
+  const auto& r = pose.linear();
+  return {pose.translation().x(),
+          pose.translation().y(),
+          pose.translation().z(),
+          std::atan2(r(2, 1), r(2, 2)),
+          std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+          std::atan2(r(1, 0), r(0, 0))};
 }
 
 }  // namespace
 
-Result<RowMaker> RowMaker::make(const Plan& plan, const WorldFile& world) {
+std::map<std::string, StandingModel> placed_models(const Row& row, std::map<std::string, StandingModel> models) {
+  for (const auto& [path, value] : row.values) {
+    const auto words = base::split_list(path, '/');
+    if (words.size() < 3 || words[0] != "model" || words[2] != "pose" || !models.contains(words[1])) continue;
+    auto& pose = models.at(words[1]).pose;
+    auto numbers = six_numbers(pose);
+    const auto given = numbers_in(value);
+    if (words.size() == 3 && given.size() == 3) numbers = {given[0], given[1], numbers[2], 0, 0, given[2]};
+    if (words.size() == 3 && given.size() == 6) numbers = given;
+    const auto part = words.size() == 4 ? std::ranges::find(pose_parts, words[3]) : pose_parts.end();
+    if (part != pose_parts.end() && !given.empty()) numbers[static_cast<std::size_t>(part - pose_parts.begin())] = given.front();
+    pose = to_pose(numbers);
+  }
+  return models;
+}
+
+Result<RowMaker> RowMaker::make(const Plan& plan, const std::map<std::string, StandingModel>& models) {
   RowMaker maker(plan);
   double rows = static_cast<double>(plan.repeat);
   std::size_t ranges = 0;
@@ -64,7 +70,7 @@ Result<RowMaker> RowMaker::make(const Plan& plan, const WorldFile& world) {
     maker.points_ = std::move(*points);
   }
   if (plan.scatters.empty()) return maker;
-  maker.models_ = world.models();
+  maker.models_ = models;
   for (const auto& scatter : plan.scatters) {
     for (const auto& name : scatter.models) {
       if (!maker.models_.contains(name))
@@ -109,9 +115,9 @@ Result<Row> RowMaker::row(std::size_t number) const {
 Result<void> RowMaker::scatter(Row& row, std::size_t sample) const {
   constexpr int tries = 2000;
   base::Random random(plan_->sampling_seed, "scatter " + std::to_string(row.seed) + " " + std::to_string(sample));
-  auto poses = placed_models(row, models_);
+  auto models = placed_models(row, models_);
   std::map<std::string, std::vector<Polygon>> standing;
-  for (const auto& [name, model] : models_) standing[name] = footprint(model.outline, poses[name]);
+  for (const auto& [name, model] : models) standing[name] = footprint(model.outline, model.pose);
   for (const auto& scatter : plan_->scatters) {
     for (const auto& name : scatter.models) standing.erase(name);
   }
@@ -119,12 +125,12 @@ Result<void> RowMaker::scatter(Row& row, std::size_t sample) const {
     for (const auto& name : scatter.models) {
       bool is_placed = false;
       for (int i = 0; i < tries && !is_placed; ++i) {
-        auto pose = poses[name];
-        pose.translation().x() = scatter.region[0] + random.uniform() * (scatter.region[2] - scatter.region[0]);
-        pose.translation().y() = scatter.region[1] + random.uniform() * (scatter.region[3] - scatter.region[1]);
+        auto pose = models.at(name).pose;
+        pose.translation().x() = scatter.region.x1 + random.uniform() * (scatter.region.x2 - scatter.region.x1);
+        pose.translation().y() = scatter.region.y1 + random.uniform() * (scatter.region.y2 - scatter.region.y1);
         const double yaw = scatter.turns ? random.uniform() * 2 * std::numbers::pi - std::numbers::pi : 0;
         if (scatter.turns) pose.linear() = to_pose({0, 0, 0, 0, 0, yaw}).linear();
-        const auto mine = footprint(models_.at(name).outline, pose);
+        const auto mine = footprint(models.at(name).outline, pose);
         is_placed = std::ranges::none_of(standing, [&](const auto& other) { return distance(mine, other.second) <= scatter.clearance; });
         if (!is_placed) continue;
         standing[name] = mine;

@@ -19,10 +19,13 @@ struct Row {
   std::vector<std::pair<std::string, std::string>> values;  // by path, in the order of the plan; then what was scattered
 };
 
+// The models of the world where a row puts them.
+std::map<std::string, StandingModel> placed_models(const Row& row, std::map<std::string, StandingModel> models);
+
 class RowMaker {
  public:
-  // `plan` must live as long. Fails when there are more than a million rows.
-  static Result<RowMaker> make(const Plan& plan, const WorldFile& world);
+  // `models`: of the world. `plan` must live as long. Fails when there are more than a million rows.
+  static Result<RowMaker> make(const Plan& plan, const std::map<std::string, StandingModel>& models);
 
   std::size_t count() const { return count_; }
   // number from 1 to count(). Fails when a scattered model finds no place.

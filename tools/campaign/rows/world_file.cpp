@@ -1,21 +1,18 @@
 #include "campaign/rows/world_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
 
 #include "base/text.h"
 #include "campaign/rows/model_files.h"
-#include "campaign/rows/outlines.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr std::array<const char*, 6> pose_parts = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 pugi::xml_node child_made(pugi::xml_node parent, const char* name) {
   auto child = parent.child(name);
@@ -140,9 +137,11 @@ void set_noise(pugi::xml_node sensor, const std::string& value) {
 }  // namespace
 
 struct WorldFile::State {
-  std::string file;
+  const std::string file;
+  const WorldSurvey& survey;
   ModelFiles files;
-  pugi::xml_document document;
+  std::map<std::string, double> masses{};  // of models that were set [kg]
+  pugi::xml_document document{};
 
   pugi::xml_node world() const { return document.child("sdf").child("world"); }
   fs::path folder() const { return fs::path(file).parent_path(); }
@@ -187,27 +186,25 @@ struct WorldFile::State {
   pugi::xml_node light_in_world(const std::string& name, std::vector<std::string>& names);
   Result<void> set_light(const std::string& path, const std::vector<std::string>& words, const std::string& value);
   Result<void> set_world(const std::string& path, const std::string& what, const std::string& value);
+  void name_files(pugi::xml_node node, const fs::path& at) const;
   std::string model_names() const;
-  double mass(pugi::xml_node node, const fs::path& at) const;
 };
+
+// Writes absolute names: the document is read from another folder.
+void WorldFile::State::name_files(pugi::xml_node node, const fs::path& at) const {
+  const std::string name = node.name();
+  const bool is_file = name == "uri" || name == "filename" || name == "diffuse" || name == "normal" || name.ends_with("_map");
+  if (is_file && node.text()) node.text().set(files.absolute(node.text().get(), at).c_str());
+  for (auto child : node.children()) {
+    if (!is_file) name_files(child, at);
+  }
+}
 
 std::string WorldFile::State::model_names() const {
   std::vector<std::string> names;
-  for (auto node : world().children()) {
-    if (std::string(node.name()) == "model") names.emplace_back(node.attribute("name").value());
-    if (std::string(node.name()) == "include") names.push_back(files.name_of(node, folder()));
-  }
-  std::erase(names, "");  // includes of lights
-  if (names.size() > 12) names = {names.begin(), names.begin() + 12}, names.emplace_back("...");
+  for (const auto& [name, model] : survey.models) names.push_back(name);
+  if (names.size() > 12) names.resize(12), names.emplace_back("...");
   return names.empty() ? "none" : base::join(names, ", ");
-}
-
-double WorldFile::State::mass(pugi::xml_node node, const fs::path& at) const {
-  double sum = 0;
-  files.walk(node, at, [&](pugi::xml_node model, const fs::path&) {
-    for (auto link : model.children("link")) sum += link.child("inertial").child("mass").text().as_double(1);
-  });
-  return sum;
 }
 
 Result<void> WorldFile::State::set_sensor(pugi::xml_node node, const std::string& path, const std::vector<std::string>& words,
@@ -239,9 +236,11 @@ Result<void> WorldFile::State::set_model(const std::string& path, const std::vec
   const auto number = base::parse_number(value);
   if (!number || *number < 0 || (is_mass && *number == 0))
     return Error{path + ": must be a number " + (is_mass ? "more than 0" : "that is not negative") + ", got " + base::in_quotes(value)};
-  const double now = is_mass ? mass(node, folder()) : 1;
-  if (now <= 0 || !change(node, folder(), "row-" + words[1], is_mass ? scale_mass(*number / now) : set_friction(value)))
+  const auto known = survey.models.find(words[1]);
+  double& now = known == survey.models.end() ? masses[words[1]] : masses.try_emplace(words[1], known->second.mass).first->second;
+  if ((is_mass && now <= 0) || !change(node, folder(), "row-" + words[1], is_mass ? scale_mass(*number / now) : set_friction(value)))
     return Error{path + ": model " + words[1] + " has no " + (is_mass ? "mass" : "collision")};
+  if (is_mass) now = *number;
   return {};
 }
 
@@ -300,10 +299,8 @@ WorldFile::WorldFile(WorldFile&&) noexcept = default;
 WorldFile& WorldFile::operator=(WorldFile&&) noexcept = default;
 WorldFile::~WorldFile() = default;
 
-Result<WorldFile> WorldFile::read(const std::string& file, const std::vector<std::string>& resource_paths) {
-  auto state = std::make_unique<State>();
-  state->file = fs::absolute(file).string();
-  state->files = ModelFiles(state->folder(), resource_paths);
+Result<WorldFile> WorldFile::read(const std::string& file, const WorldSurvey& survey) {
+  auto state = std::unique_ptr<State>(new State{fs::absolute(file).string(), survey, ModelFiles(survey.found)});
   const auto loaded = state->document.load_file(file.c_str());
   if (!loaded) return Error{"world " + base::in_quotes(file) + ": " + loaded.description()};
   if (!state->world()) return Error{"world " + base::in_quotes(file) + ": has no <sdf><world>"};
@@ -321,52 +318,24 @@ Result<void> WorldFile::set(const std::string& path, const std::string& value) {
 Result<void> WorldFile::write(const std::string& folder) const {
   std::error_code error;
   fs::create_directories(folder, error);
-  const auto save = [](const pugi::xml_document& document, const fs::path& path) { return document.save_file(path.c_str(), " "); };
-  if (!save(state_->document, fs::path(folder) / "world.sdf"))
+  const auto save = [&](const pugi::xml_document& original, const fs::path& at, const fs::path& path) {
+    pugi::xml_document document;
+    document.reset(original);
+    state_->name_files(document, at);
+    return document.save_file(path.c_str(), " ");
+  };
+  if (!save(state_->document, state_->folder(), fs::path(folder) / "world.sdf"))
     return Error{"file " + base::in_quotes(folder + "/world.sdf") + ": cannot be written"};
   for (const auto& [name, copy] : state_->files.copies()) {
     const auto place = fs::path(folder) / "models" / name;
     fs::create_directories(place, error);
-    // Its meshes and materials stay where they are.
-    for (const auto& neighbour : fs::directory_iterator(copy->file.parent_path(), error)) {
-      const auto file = neighbour.path().filename();
-      if (file.extension() != ".sdf" && file.extension() != ".config" && !fs::exists(place / file, error))
-        fs::create_symlink(fs::absolute(neighbour.path()), place / file, error);
-    }
-    if (!save(copy->document, place / "model.sdf"))
+    if (!save(copy->document, copy->file.parent_path(), place / "model.sdf"))
       return Error{"file " + base::in_quotes((place / "model.sdf").string()) + ": cannot be written"};
   }
   return {};
 }
 
 std::string WorldFile::folder() const { return state_->folder().string(); }
-
-std::map<std::string, StandingModel> WorldFile::models() const {
-  std::map<std::string, StandingModel> models;
-  for (auto node : state_->world().children()) {
-    const std::string kind = node.name();
-    if (kind != "model" && kind != "include") continue;
-    const auto name = kind == "model" ? node.attribute("name").value() : state_->files.name_of(node, state_->folder());
-    if (std::string(name).empty()) continue;  // what is included is no model: a light
-    StandingModel model;
-    model.pose = to_pose(numbers_in(node.child("pose").text().get()));
-    const auto opened = kind == "include" ? state_->files.open(node, state_->folder()) : std::nullopt;
-    if (opened && !node.child("pose")) model.pose = to_pose(numbers_in(opened->model.child("pose").text().get()));
-    model.is_static = (node.child("static") || !opened ? node : opened->model).child("static").text().as_bool();
-    model.outline = outline_of(node, state_->folder(), state_->files);
-    models.emplace(name, std::move(model));
-  }
-  return models;
-}
-
-std::set<std::string> WorldFile::files() const {
-  std::set<std::string> files{state_->file};
-  for (auto node : state_->world().children()) {
-    if (std::string(node.name()) == "include" || std::string(node.name()) == "model")
-      state_->files.add_files(node, state_->folder(), files);
-  }
-  return files;
-}
 
 bool is_world_path(const std::string& path) {
   return path.starts_with("model/") || path.starts_with("light/") || path.starts_with("world/");

@@ -11,45 +11,31 @@
 //   world/gravity, world/step
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/result.h"
-#include "campaign/rows/footprint.h"
+#include "campaign/rows/world_survey.h"
 
 namespace campaign {
 
 using base::Error;
 using base::Result;
 
-struct StandingModel {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  Outline outline;  // empty: nothing of it collides, or nothing with an end (a plane, a mesh)
-  bool is_static = false;
-};
-
 class WorldFile {
  public:
-  static Result<WorldFile> read(const std::string& file, const std::vector<std::string>& resource_paths);
+  // `survey`: of the same file; must live as long.
+  static Result<WorldFile> read(const std::string& file, const WorldSurvey& survey);
   WorldFile(WorldFile&&) noexcept;
   WorldFile& operator=(WorldFile&&) noexcept;
   ~WorldFile();
 
   // An error when the world has no such value, or it cannot be this.
   Result<void> set(const std::string& path, const std::string& value);
-  // Writes what has been set as FOLDER/world.sdf, with changed models in FOLDER/models.
+  // Writes what has been set as FOLDER/world.sdf, with changed models in FOLDER/models. Other files stay where they were found.
   Result<void> write(const std::string& folder) const;
   // The folder of the world itself, in which the simulator must look for models of a changed one.
   std::string folder() const;
-
-  std::map<std::string, StandingModel> models() const;
-  // All files that the world is made of, as far as they were found.
-  std::set<std::string> files() const;
 
  private:
   struct State;

@@ -11,9 +11,7 @@
 #include "base/child_process.h"
 #include "base/content_hash.h"
 #include "base/text.h"
-#include "campaign/run/deed_checks.h"
 #include "campaign/run/iface_faults.h"
-#include "campaign/run/spawned_models.h"
 #include "campaign/run/subject_checks.h"
 
 namespace campaign {
@@ -165,6 +163,26 @@ Result<void> hash_programs(const Plan& plan, base::ContentHash& hash) {
   return {};
 }
 
+// The models that events spawn. Sets relative paths to absolute ones: in the folder of the plan, else in the one that rtse is called in.
+std::vector<std::string> spawned_models(Plan& plan) {
+  std::vector<std::string> models;
+  for (auto* events : {&plan.events, &plan.hunt.events}) {
+    for (auto& event : *events) {
+      const bool is_text = event.target.find('<') != std::string::npos;
+      if (event.kind != Event::Kind::spawn || is_text || event.target.starts_with("http")) continue;
+      std::error_code ignored;  // what is not there is looked for among the models
+      for (const auto& folder : {fs::path(plan.folder()), fs::path(".")}) {
+        const auto file = fs::absolute(folder / event.target, ignored).lexically_normal();
+        if (event.target.find("://") != std::string::npos || !fs::exists(file, ignored)) continue;
+        set_spawned(event, file.string());
+        break;
+      }
+      models.push_back(event.target);
+    }
+  }
+  return models;
+}
+
 }  // namespace
 
 bool can_be_started(const std::string& name) {
@@ -176,28 +194,32 @@ bool can_be_started(const std::string& name) {
 }
 
 Result<Campaign> Campaign::prepare(Plan plan) {
-  const auto spawned = find_spawned(plan);
+  const auto spawned = spawned_models(plan);
   Campaign campaign(std::move(plan));
   if (const auto good = campaign.check_files(); !good) return good.error();
-  if (!spawned) return spawned.error();
-  campaign.spawned_files_ = *spawned;
   auto system = editor::read_system(campaign.plan().run.system);
   if (!system) return system.error();
   campaign.system_ = std::move(*system);
-  const auto world = WorldFile::read(campaign.plan().run.world, campaign.plan().run.resource_paths);
-  if (!world) return world.error();
-  campaign.models_ = world->models();
+  if (const auto done = campaign.survey_world(spawned); !done) return done.error();
   if (const auto good = campaign.check_axes(); !good) return good.error();
   if (const auto good = check_subjects(campaign.plan(), campaign.system(), campaign.models()); !good) return good.error();
-  if (const auto good = check_deeds(campaign.plan(), campaign.system(), campaign.models()); !good) return good.error();
   if (const auto good = check_iface_faults(campaign.plan()); !good) return good.error();
-  auto rows = RowMaker::make(campaign.plan(), *world);
+  auto rows = RowMaker::make(campaign.plan(), campaign.models());
   if (!rows) return rows.error();
   campaign.rows_ = std::make_unique<RowMaker>(std::move(*rows));
   const auto first = campaign.row(1);
   if (!first) return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + first.error().message};
   if (const auto hashed = campaign.hash_everything(); !hashed) return hashed.error();
   return campaign;
+}
+
+Result<void> Campaign::survey_world(const std::vector<std::string>& spawned) {
+  auto survey = campaign::survey_world(plan_->run.world, plan_->run.resource_paths, spawned);
+  if (!survey) return survey.error();
+  survey_ = std::move(*survey);
+  if (survey_.not_found.empty()) return {};
+  return Error{"plan " + base::in_quotes(plan_->file) + ": events: there is no model " + base::in_quotes(survey_.not_found.front()) +
+               " to spawn; expected a file, a folder or model://NAME"};
 }
 
 Result<void> Campaign::check_files() const {
@@ -231,7 +253,7 @@ Result<void> Campaign::check_axes() const {
       values = {base::format_number(axis.range->a), base::format_number(axis.range->b)};
     std::optional<WorldFile> world;
     if (is_world_path(axis.path)) {
-      auto read = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
+      auto read = WorldFile::read(plan_->run.world, survey_);
       if (!read) return read.error();
       world.emplace(std::move(*read));
     }
@@ -252,11 +274,8 @@ Result<void> Campaign::hash_everything() {
   base::ContentHash hash;
   hash.add("rows of a campaign, 1");
   if (const auto added = hash_programs(*plan_, hash); !added) return added;
-  const auto world = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
-  if (!world) return world.error();
-  auto files = world->files();
+  auto files = survey_.files;
   files.insert(plan_->run.system);
-  files.insert(spawned_files_.begin(), spawned_files_.end());
   if (!plan_->run.expectations.empty()) files.insert(plan_->run.expectations);
   for (const auto& file : files) {
     if (const auto added = hash.add_file(file); !added) return added;
@@ -266,11 +285,7 @@ Result<void> Campaign::hash_everything() {
   hash.add(base::format_number(plan_->run.duration_s) + (plan_->run.one_process_each ? " each" : "") +
            (plan_->checks_invariants ? " invariants" : ""));
   for (const auto& property : plan_->run.properties) hash.add(property);
-  for (const auto& measure : plan_->measures) {
-    hash.add(measure.name + "|" + measure.model + "|" + measure.port + "|" + measure.member + "|" + base::join(measure.to, ",") + "|" +
-             std::to_string(static_cast<int>(measure.kind)) + "|" + std::to_string(static_cast<int>(measure.take)));
-    for (const double corner : measure.region) hash.add(base::format_number(corner));
-  }
+  for (const auto& measure : plan_->measures) hash.add(measure.text);
   for (const auto& event : plan_->events) hash.add(event.text);
   for (const auto& fault : plan_->faults) hash.add(fault.text());
   for (const auto& condition : plan_->never) hash.add("never " + condition.text);
@@ -300,7 +315,7 @@ std::string Campaign::list_key() const {
 
 Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
   if (std::ranges::none_of(row.values, [](const auto& one) { return is_world_path(one.first); })) return std::optional<WorldFile>();
-  auto world = WorldFile::read(plan_->run.world, plan_->run.resource_paths);
+  auto world = WorldFile::read(plan_->run.world, survey_);
   if (!world) return world.error();
   for (const auto& [path, value] : row.values) {
     if (!is_world_path(path)) continue;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <set>
 #include <string>
 
 #include "campaign/plan/plan.h"
@@ -39,18 +38,18 @@ class Campaign {
   Result<void> alter(editor::SavedSystem& system, const Row& row) const;
   // "INSTANCE:KEY=VALUE", those of the plan and of the row.
   std::vector<std::string> properties_of(const Row& row) const;
-  const std::map<std::string, StandingModel>& models() const { return models_; }
+  const std::map<std::string, StandingModel>& models() const { return survey_.models; }
 
  private:
   explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}
   Result<void> check_files() const;
+  Result<void> survey_world(const std::vector<std::string>& spawned);
   Result<void> check_axes() const;
   Result<void> hash_everything();
 
   std::unique_ptr<const Plan> plan_;
   editor::SavedSystem system_;
-  std::map<std::string, StandingModel> models_;
-  std::set<std::string> spawned_files_;
+  WorldSurvey survey_;
   std::unique_ptr<RowMaker> rows_;
   std::string base_key_;
 };

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/fault_text.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "run/condition_words.h"
 #include "system/remote.h"
 
 namespace campaign {
@@ -16,11 +18,8 @@ using Kind = Fault::Kind;
 
 constexpr double look_period_s = 0.1;
 
-// "kind:from:for:amount:seed", as core/fault.h reads it.
-std::string fault_text(const Fault& fault, std::uint64_t seed) {
-  const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
-  return std::string(to_text(fault.kind)) + ":" + base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
-         ":" + base::format_number(fault.amount) + ":" + std::to_string(own_seed);
+std::string text_of(const Fault& fault, std::string_view kind, const std::string& last) {
+  return base::fault_text(kind, fault.at_s, fault.for_s.value_or(0), fault.amount, last);
 }
 
 bool is_by_property(Kind kind) { return kind == Kind::error || kind == Kind::exception || kind == Kind::slow || kind == Kind::hang; }
@@ -30,7 +29,8 @@ std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Ob
   for (const auto& fault : faults) {
     if (fault.object != object || (object == Object::component && !is_by_property(fault.kind))) continue;
     auto& text = texts[fault.target];
-    text += (text.empty() ? "" : " ") + fault_text(fault, seed);
+    const auto own_seed = base::Random(seed, fault.text()).next() >> 2U;
+    text += (text.empty() ? "" : " ") + text_of(fault, to_text(fault.kind), std::to_string(own_seed));
   }
   return texts;
 }
@@ -66,9 +66,7 @@ std::vector<std::string> DeedsRunner::simulator_options() const {
   for (const auto& fault : deeds_.faults) {
     if (fault.object != Object::sensor && fault.object != Object::actuator) continue;
     const bool is_halted = fault.object == Object::actuator && fault.kind == Kind::stuck;
-    options.insert(options.end(), {"--fault", (is_halted ? "halted" : std::string(to_text(fault.kind))) + ":" +
-                                                  base::format_number(fault.at_s) + ":" + base::format_number(fault.for_s.value_or(0)) +
-                                                  ":" + base::format_number(fault.amount) + ":" + fault.target});
+    options.insert(options.end(), {"--fault", text_of(fault, is_halted ? "halted" : to_text(fault.kind), fault.target)});
   }
   return options;
 }
@@ -76,12 +74,14 @@ std::vector<std::string> DeedsRunner::simulator_options() const {
 std::vector<editor::Expectation> DeedsRunner::watched() const {
   std::vector<editor::Expectation> watched;
   const auto add = [&](const Condition& condition) {
-    if (condition.kind != Condition::Kind::value) return;
-    editor::Expectation expectation;
-    expectation.kind = editor::Expectation::Kind::value;
-    expectation.port = condition.port;
-    expectation.member = condition.member;
-    watched.push_back(std::move(expectation));
+    for (const auto& value : condition.expression.values()) {
+      if (value.kind != recorder::Expression::Value::Kind::port) continue;
+      editor::Expectation expectation;
+      expectation.kind = editor::Expectation::Kind::value;
+      expectation.port = value.name;
+      expectation.member = value.member;
+      watched.push_back(std::move(expectation));
+    }
   };
   for (const auto& condition : deeds_.never) add(condition);
   for (const auto& condition : deeds_.eventually) add(condition);
@@ -216,32 +216,47 @@ Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
   return {};
 }
 
+namespace {
+
+Result<std::optional<double>> look_up(editor::RunScene& scene, const recorder::Expression::Value& value,
+                                      std::map<std::string, shm::Pose>& poses, double now_s) {
+  using Number = std::optional<double>;
+  // A model that does not exist, or does not exist yet, has no values.
+  const auto none_if_missing = [&](const Error& error) { return is_missing(scene, value.name) ? Result<Number>(std::nullopt) : error; };
+  switch (value.kind) {
+    case recorder::Expression::Value::Kind::number:
+      return Number(value.number);
+    case recorder::Expression::Value::Kind::time:
+      return Number(now_s);
+    case recorder::Expression::Value::Kind::port: {
+      const auto seen = scene.values.so_far(value.name, value.member);
+      return seen && seen->mean() ? Number(seen->last) : std::nullopt;
+    }
+    case recorder::Expression::Value::Kind::state: {
+      const auto view = scene.is_away(value.name) ? Error{"killed"} : scene.component(value.name, {.contexts = true});
+      return view ? Number(view->state()) : std::nullopt;
+    }
+    case recorder::Expression::Value::Kind::touches: {
+      const auto contacts = scene.simulator.contacts(value.name);
+      return contacts ? Number(editor::is_touching(*contacts, value.member) ? 1 : 0) : none_if_missing(contacts.error());
+    }
+    case recorder::Expression::Value::Kind::pose:
+      break;
+  }
+  if (!poses.contains(value.name)) {
+    const auto pose = scene.simulator.pose(value.name);
+    if (!pose) return none_if_missing(pose.error());
+    poses.emplace(value.name, *pose);
+  }
+  return Number(editor::member_of(poses.at(value.name), value.member));
+}
+
+}  // namespace
+
 Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& condition, double now_s) {
   if (now_s < condition.after_s) return false;
-  if (condition.kind == Condition::Kind::value) {
-    const auto value = scene.values.so_far(condition.port, condition.member);
-    if (!value || !value->mean()) return false;
-    return (!condition.min || value->last >= *condition.min) && (!condition.max || value->last <= *condition.max);
-  }
-  if (condition.kind == Condition::Kind::state) {
-    const auto view = scene.is_away(condition.component) ? Error{"killed"} : scene.component(condition.component, {.contexts = true});
-    const std::string state = view ? editor::state_text(view->state()) : "gone";
-    return base::equal_ignoring_case(state, condition.state);
-  }
-  // Of a model that does not exist, or does not exist yet, nothing is true.
-  const auto false_if_missing = [&](const Error& error) { return is_missing(scene, condition.model) ? Result<bool>(false) : error; };
-  if (condition.kind == Condition::Kind::region) {
-    const auto pose = scene.simulator.pose(condition.model);
-    if (!pose) return false_if_missing(pose.error());
-    const auto& region = condition.region;
-    return pose->x >= region[0] && pose->y >= region[1] && pose->x <= region[2] && pose->y <= region[3];
-  }
-  const auto contacts = scene.simulator.contacts(condition.model);
-  if (!contacts) return false_if_missing(contacts.error());
-  return std::ranges::any_of(*contacts, [&](const editor::ModelContact& contact) {
-    const auto model = contact.other.substr(0, contact.other.find("::"));
-    return condition.touched == "any" ? model != editor::usually_touched : model == condition.touched;
-  });
+  std::map<std::string, shm::Pose> poses;  // one request for all members of a pose
+  return condition.expression.holds([&](const auto& value) { return look_up(scene, value, poses, now_s); });
 }
 
 bool DeedsRunner::excuses(const std::string& instance) const {

@@ -55,9 +55,8 @@ std::optional<double> clearance(const Measure& measure, const std::map<std::stri
 std::optional<double> time_to(const Measure& measure, const editor::Seen& seen) {
   const auto poses = seen.record.poses.find(measure.model);
   if (poses == seen.record.poses.end()) return std::nullopt;
-  const double* r = measure.region;
-  const auto in = std::ranges::find_if(
-      poses->second, [&](const auto& pose) { return pose.x >= r[0] && pose.y >= r[1] && pose.x <= r[2] && pose.y <= r[3]; });
+  const auto in =
+      std::ranges::find_if(poses->second, [&](const auto& pose) { return measure.reached.holds(editor::values_at(pose)).value(); });
   return in == poses->second.end() ? std::nullopt : std::optional(in->time);
 }
 

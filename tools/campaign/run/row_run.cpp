@@ -49,16 +49,16 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
   Outcome outcome;
   const auto world = campaign.world_of(row);
   if (!world) {
-    outcome.has_begun = true;  // with these values it never will
-    outcome.problem = world.error().message;
+    outcome.run.has_begun = true;  // with these values it never will
+    outcome.run.problem = world.error().message;
     return outcome;
   }
   auto run = options_of(campaign, row, options);
   if (const auto written = write_files(campaign.plan(), *world, run); !written) {
-    outcome.problem = written.error().message;
+    outcome.run.problem = written.error().message;
     return outcome;
   }
-  RowScript script(campaign, row, *world,
+  RowScript script(campaign, row,
                    {.folder = fs::absolute(options.folder).string(),
                     .deeds = options.deeds.value_or(
                         Deeds{campaign.plan().events, campaign.plan().faults, campaign.plan().never, campaign.plan().eventually}),
@@ -67,34 +67,18 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
                     .draws = options.draws && campaign.plan().has_pictures});
   for (const auto& property : script.properties()) run.properties.push_back(property);
   const editor::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
-  const auto result = editor::run_system(orb, run, reporter, hooks);
-  outcome.has_begun = result.has_begun;
-  outcome.problem = result.problem;
-  outcome.logs = result.logs;
-  outcome.verdicts = result.verdicts;
-  outcome.notes = result.notes;
-  outcome.state_hash = result.state_hash;
-  outcome.simulated_s = result.simulated_s;
-  outcome.wall_s = result.wall_s;
+  outcome.run = editor::run_system(orb, run, reporter, hooks);
   outcome.measures = script.measures();
   outcome.features = script.features();
   for (const auto& measure : campaign.plan().measures) {
-    if (measure.kind == Measure::Kind::wall_time && outcome.problem.empty()) outcome.measures[measure.name] = result.wall_s;
+    if (measure.kind == Measure::Kind::wall_time && outcome.run.problem.empty()) outcome.measures[measure.name] = outcome.run.wall_s;
   }
   std::error_code ignored;  // files that stay do no harm
-  if (outcome.is_passed() && !options.keeps_files) fs::remove_all(options.folder, ignored);
+  if (outcome.run.is_passed() && !options.keeps_files) fs::remove_all(options.folder, ignored);
   return outcome;
 }
 
 }  // namespace
-
-bool Outcome::is_passed() const { return first_problem().empty(); }
-
-std::string Outcome::first_problem() const {
-  if (!problem.empty()) return problem;
-  const auto unmet = std::ranges::find_if(verdicts, [](const auto& verdict) { return !verdict.problem.empty(); });
-  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
-}
 
 Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, editor::Reporter& reporter) {
   ValueScript script(campaign.plan());
@@ -111,7 +95,7 @@ Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const st
 Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter) {
   const auto warm = options.warm != nullptr ? options.warm->count() : 0;
   auto outcome = run_once(orb, campaign, row, options, reporter);
-  if (outcome.problem.empty() || warm == 0 || options.warm->count() == warm || editor::is_interrupted()) return outcome;
+  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || editor::is_interrupted()) return outcome;
   // Who made a program of it was killed and took that along: that says nothing about the row.
   std::error_code ignored;
   fs::remove_all(options.folder, ignored);

@@ -27,19 +27,9 @@ struct RowRunOptions {
 };
 
 struct Outcome {
-  bool has_begun = false;  // false: the machine did not let it, which says nothing about the row
-  std::string problem;     // why it did not run to its end
-  std::string logs;        // then: last lines of all processes
-  std::vector<editor::Verdict> verdicts;
-  std::vector<std::string> notes;
-  std::string state_hash;
+  editor::RunResult run;
   std::map<std::string, double> measures;
   std::set<std::string> features;  // states, places and values that it has reached, coarsely
-  double simulated_s = 0, wall_s = 0;
-
-  bool is_passed() const;
-  // The first thing that was not as expected; empty: nothing.
-  std::string first_problem() const;
 };
 
 // Whether the components take the values that the plan has for their parameters. Starts the system for it, when there are some; one that

@@ -7,10 +7,9 @@
 
 namespace campaign {
 
-RowScript::RowScript(const Campaign& campaign, const Row& row, const std::optional<WorldFile>& world, RowScriptOptions options)
+RowScript::RowScript(const Campaign& campaign, const Row& row, RowScriptOptions options)
     : campaign_(campaign),
       row_(row),
-      world_(world),
       options_(std::move(options)),
       deeds_(options_.deeds, row.seed, options_.duration_s),
       watched_(watched_values(campaign.plan().measures)) {
@@ -47,7 +46,7 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
       if (value == seen.values.end() || value->second.samples > 0 || value->second.problem.empty() || watched.member.empty()) continue;
       result.verdicts.push_back({watched.port + " has " + watched.member, value->second.problem});
     }
-    measures_ = take_measures(campaign_.plan().measures, seen, world_ ? world_->models() : campaign_.models(), 0);
+    measures_ = take_measures(campaign_.plan().measures, seen, placed_models(row_, campaign_.models()), 0);
   }
   result.notes.insert(result.notes.end(), deeds_.notes().begin(), deeds_.notes().end());
   add_features(seen);

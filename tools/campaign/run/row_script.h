@@ -23,8 +23,8 @@ struct RowScriptOptions {
 
 class RowScript final : public editor::RunScript {
  public:
-  // `world` is the row's, nothing when it is the plan's own. All must live as long.
-  RowScript(const Campaign& campaign, const Row& row, const std::optional<WorldFile>& world, RowScriptOptions options);
+  // All must live as long.
+  RowScript(const Campaign& campaign, const Row& row, RowScriptOptions options);
 
   // That components are created with because of faults.
   std::vector<std::string> properties() const { return deeds_.properties(); }
@@ -47,7 +47,6 @@ class RowScript final : public editor::RunScript {
 
   const Campaign& campaign_;
   const Row& row_;
-  const std::optional<WorldFile>& world_;
   RowScriptOptions options_;
   DeedsRunner deeds_;
   std::vector<std::string> invariant_ports_;

@@ -14,6 +14,38 @@ namespace {
 
 using editor::Expectation;
 
+// COMPONENT:PORT of a condition or a measure; empty: good. The problem says what is there.
+std::string port_problem(const editor::SavedSystem& system, const std::string& port) {
+  const auto colon = port.find(':');
+  if (colon == std::string::npos || colon + 1 == port.size()) return "port " + base::in_quotes(port) + ": expected COMPONENT:PORT";
+  const auto* component = system.component(port.substr(0, colon));
+  if (component == nullptr || component->data_ports.empty()) return "";
+  std::vector<std::string> names;
+  for (const auto& one : component->data_ports) names.push_back(one.name.substr(one.name.find('.') + 1));
+  if (std::ranges::find(names, port.substr(colon + 1)) != names.end()) return "";
+  return "component " + component->instance + " has no port " + base::in_quotes(port.substr(colon + 1)) +
+         " in the profile; ports: " + base::join(names, ", ");
+}
+
+// Of a number that it sends, as far as the profile's connections tell; empty: good.
+std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member) {
+  const auto path = editor::member_path(member);
+  if (!path) return path.error().message;
+  const auto is_at = [&](const editor::SavedTarget& end) {
+    return end.instance + ":" + end.port_name.substr(end.port_name.find('.') + 1) == port;
+  };
+  bool is_read = false;
+  for (const auto& connector : system.connectors) {
+    if (!connector.is_data) continue;
+    if (is_at(connector.source)) {
+      const auto problem = editor::member_problem(connector.data_type, *path);
+      return problem.empty() ? "" : "port " + base::in_quotes(port) + " sends no number " + base::in_quotes(member) + "; it has " + problem;
+    }
+    is_read = is_read || is_at(connector.target);
+  }
+  return is_read ? "port " + base::in_quotes(port) + " is no OutPort, so there are no values to see" : "";
+}
+
 class SubjectChecks {
  public:
   SubjectChecks(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models)
@@ -41,6 +73,12 @@ class SubjectChecks {
       if (!expectations) return expectations.error();
       for (const auto& expectation : *expectations) check_expectation(expectation);
     }
+    for (const auto& event : plan_.events) check_event("events", event);
+    for (const auto& event : plan_.hunt.events) check_event("hunt: events", event);
+    for (const auto& fault : plan_.faults) check_target("faults", fault.object, fault.target);
+    for (const auto& target : plan_.hunt.targets) check_target("hunt: faults", target.object, target.name);
+    for (const auto& condition : plan_.never) check_values("never", condition.expression);
+    for (const auto& condition : plan_.eventually) check_values("eventually", condition.expression);
     return problem_.empty() ? Result<void>() : Error{problem_};
   }
 
@@ -49,91 +87,160 @@ class SubjectChecks {
     if (problem_.empty()) problem_ = "plan " + base::in_quotes(plan_.file) + ": " + where + ": " + what;
   }
 
+  template <class Items>
+  static std::string listed(const Items& items) {
+    const std::vector<std::string> names(items.begin(), items.end());
+    return names.empty() ? "none" : base::join(names, ", ");
+  }
+
+  // Of a model, a link in it or an iface. What is spawned without a name may have any.
   void check_model(const std::string& where, const std::string& name, bool must_move = false) {
     const auto model_name = name.substr(0, name.find("::"));
-    if (name.empty() || has_unnamed_ || spawned_.contains(model_name)) return;
+    if (name.empty() || name == "any" || has_unnamed_ || spawned_.contains(model_name)) return;
     const auto found = models_.find(model_name);
-    std::vector<std::string> names;
-    for (const auto& [one, model] : models_) {
-      if (!must_move || !model.is_static) names.push_back(one);
-    }
     if (found != models_.end() && !(must_move && found->second.is_static)) return;
+    std::set<std::string> names;
+    for (const auto& [one, model] : models_) {
+      if (!must_move || !model.is_static) names.insert(one);
+    }
+    if (!must_move) names.insert(spawned_.begin(), spawned_.end());
     const std::string kind = must_move ? "moving model" : "model";
-    fail(where, "the world has no " + kind + " " + base::in_quotes(name) + "; " + kind +
-                    "s: " + (names.empty() ? "none" : base::join(names, ", ")));
+    fail(where, "the world has no " + kind + " " + base::in_quotes(name) + "; " + kind + "s: " + listed(names));
+  }
+
+  bool is_static(const std::string& name) const {
+    const auto model = models_.find(name.substr(0, name.find("::")));
+    return !has_unnamed_ && model != models_.end() && model->second.is_static && !spawned_.contains(model->first);
   }
 
   void check_component(const std::string& where, const std::string& name) {
     if (name.empty() || system_.component(name)) return;
     std::vector<std::string> names;
     for (const auto& component : system_.components) names.push_back(component.instance);
-    fail(where, "the system has no component " + base::in_quotes(name) + "; components: " + base::join(names, ", "));
+    fail(where, "the system has no component " + base::in_quotes(name) + "; components: " + listed(names));
   }
 
-  void check_port(const std::string& where, const std::string& port) {
+  void check_connection(const std::string& where, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& connector : system_.connectors) {
+      if (connector.id == name || connector.name == name) return;
+      names.push_back(connector.id);
+    }
+    fail(where, "the system has no connection " + base::in_quotes(name) + "; connections: " + listed(names));
+  }
+
+  void check_faulty_connection(const std::string& where, const std::string& name) {
+    check_connection(where, name);
+    for (const auto& connector : system_.connectors) {
+      if (connector.id != name && connector.name != name) continue;
+      if (!connector.is_data || base::equal_ignoring_case(connector.dataflow_type, "pull"))
+        fail(where, "connection " + base::in_quotes(name) + " carries " + (connector.is_data ? "data by pull" : "service calls") +
+                        "; only data that are pushed can be dropped, delayed, doubled or reordered");
+    }
+  }
+
+  void check_port(const std::string& where, const std::string& port, const std::string& member) {
     if (port.empty()) return;
     check_component(where, port.substr(0, port.find(':')));
-    if (const auto problem = port_problem(system_, port); !problem.empty()) fail(where, problem);
+    if (const auto problem = port_problem(system_, port); !problem.empty()) return fail(where, problem);
+    if (const auto problem = value_problem(system_, port, member); !problem.empty()) fail(where, problem);
+  }
+
+  void check_parameter(const std::string& where, const Event& event) {
+    const auto* component = system_.component(event.target);
+    if (component == nullptr) return check_component(where, event.target);
+    std::set<std::string> known;
+    for (const auto& set : component->configuration_sets) {
+      if (set.is_hidden()) continue;
+      for (const auto& [key, value] : set.values) known.insert(key);
+    }
+    if (known.empty() || known.contains(event.name)) return;  // a profile need not list any
+    fail(where, "component " + event.target + " has no parameter " + base::in_quotes(event.name) + "; parameters: " + listed(known));
+  }
+
+  // `must_move`: the models.
+  void check_values(const std::string& where, const recorder::Expression& expression, bool must_move = false) {
+    using Kind = recorder::Expression::Value::Kind;
+    for (const auto& value : expression.values()) {
+      if (value.kind == Kind::state) check_component(where, value.name);
+      if (value.kind == Kind::pose || value.kind == Kind::touches) check_model(where, value.name, must_move);
+      if (value.kind == Kind::touches) check_model(where, value.member);
+      if (value.kind == Kind::port) check_port(where, value.name, value.member);
+    }
   }
 
   void check_measure(const Measure& measure) {
     for (const auto& model : measure.to) check_model("measure", model);
     const bool must_move = measure.kind == Measure::Kind::path_length || measure.kind == Measure::Kind::time_to;
     check_model("measure", measure.model, must_move);
-    check_port("measure", measure.port);
-    if (measure.kind != Measure::Kind::value) return;
-    if (const auto problem = value_problem(system_, measure.port, measure.member); !problem.empty()) fail("measure", problem);
+    check_port("measure", measure.port, measure.member);
   }
 
   void check_expectation(const Expectation& expectation) {
     const auto where = "expect: " + expectation.text;
     check_model(where, expectation.model, true);
     for (const auto& model : expectation.except) check_model(where, model);
-    check_component(where, expectation.component);
-    check_port(where, expectation.port);
-    if (expectation.kind != Expectation::Kind::value) return;
-    if (const auto problem = value_problem(system_, expectation.port, expectation.member); !problem.empty()) fail(where, problem);
+    check_values(where, expectation.condition, true);
+  }
+
+  void check_event(const std::string& where, const Event& event) {
+    if (event.when) check_values(where, event.when->expression);
+    switch (event.kind) {
+      case Event::Kind::remove:
+        return check_model(where, event.target);
+      case Event::Kind::push:
+        if (is_static(event.target)) fail(where, "model " + base::in_quotes(event.target) + " is static and cannot be pushed");
+        return check_model(where, event.target);
+      case Event::Kind::pose:
+        return check_model(where, event.target);
+      case Event::Kind::set:
+        return check_parameter(where, event);
+      case Event::Kind::activate:
+      case Event::Kind::deactivate:
+      case Event::Kind::reset:
+        return check_component(where, event.target);
+      case Event::Kind::connect:
+      case Event::Kind::disconnect:
+        return check_connection(where, event.target);
+      case Event::Kind::spawn:
+        return check_new_name(where, event.name);
+      case Event::Kind::command:
+        return;
+    }
+  }
+
+  // What the world has from its beginning, and nobody takes away, cannot be added.
+  void check_new_name(const std::string& where, const std::string& name) {
+    const auto takes_it = [&](const Event& event) { return event.kind == Event::Kind::remove && event.target == name; };
+    if (!models_.contains(name) || std::ranges::any_of(plan_.events, takes_it) || std::ranges::any_of(plan_.hunt.events, takes_it)) return;
+    fail(where, "the world has a model " + base::in_quotes(name) + " already, so none can be spawned under this name");
+  }
+
+  void check_target(const std::string& where, Fault::Object object, const std::string& name) {
+    switch (object) {
+      case Fault::Object::sensor:
+      case Fault::Object::actuator:
+        if (name.find("::") == std::string::npos)
+          return fail(where, "iface " + base::in_quotes(name) + ": expected MODEL::NAME, as \"pioneer2dx::laser\"");
+        return check_model(where, name);
+      case Fault::Object::connector:
+        return check_faulty_connection(where, name);
+      case Fault::Object::component:
+        return check_component(where, name);
+      case Fault::Object::naming:
+        return;
+    }
   }
 
   const Plan& plan_;
   const editor::SavedSystem& system_;
   const std::map<std::string, StandingModel>& models_;
   std::set<std::string> spawned_;
-  bool has_unnamed_ = false;
+  bool has_unnamed_ = false;  // something that is spawned has the name that its file says
   std::string problem_;
 };
 
 }  // namespace
-
-std::string port_problem(const editor::SavedSystem& system, const std::string& port) {
-  const auto colon = port.find(':');
-  if (colon == std::string::npos || colon + 1 == port.size()) return "port " + base::in_quotes(port) + ": expected COMPONENT:PORT";
-  const auto* component = system.component(port.substr(0, colon));
-  if (component == nullptr || component->data_ports.empty()) return "";
-  std::vector<std::string> names;
-  for (const auto& one : component->data_ports) names.push_back(one.name.substr(one.name.find('.') + 1));
-  if (std::ranges::find(names, port.substr(colon + 1)) != names.end()) return "";
-  return "component " + component->instance + " has no port " + base::in_quotes(port.substr(colon + 1)) +
-         " in the profile; ports: " + base::join(names, ", ");
-}
-
-std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member) {
-  const auto path = editor::member_path(member);
-  if (!path) return path.error().message;
-  const auto is_at = [&](const editor::SavedTarget& end) {
-    return end.instance + ":" + end.port_name.substr(end.port_name.find('.') + 1) == port;
-  };
-  bool is_read = false;
-  for (const auto& connector : system.connectors) {
-    if (!connector.is_data) continue;
-    if (is_at(connector.source)) {
-      const auto problem = editor::member_problem(connector.data_type, *path);
-      return problem.empty() ? "" : "port " + base::in_quotes(port) + " sends no number " + base::in_quotes(member) + "; it has " + problem;
-    }
-    is_read = is_read || is_at(connector.target);
-  }
-  return is_read ? "port " + base::in_quotes(port) + " is no OutPort, so there are no values to see" : "";
-}
 
 Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
   return SubjectChecks(plan, system, models).check();

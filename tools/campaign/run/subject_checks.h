@@ -1,4 +1,5 @@
-// Checks that the models, components and ports that a plan measures and expects exist. Any thread.
+// Checks that what a plan or hunt measures, expects and changes exists: components, parameters, connections, ports, models and ifaces.
+// Errors are reported before the first run, since every row would fail. Any thread.
 #pragma once
 
 #include <map>
@@ -12,9 +13,5 @@ namespace campaign {
 
 // A port is there when the profile lists it, or lists none of its component. What is spawned may have any name.
 Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models);
-// That of a condition or a measure, COMPONENT:PORT; empty: good. The problem says what is there.
-std::string port_problem(const editor::SavedSystem& system, const std::string& port);
-// Of a number that it sends, as far as the profile's connections tell; empty: good.
-std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member);
 
 }  // namespace campaign

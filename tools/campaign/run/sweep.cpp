@@ -25,13 +25,13 @@ void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRo
   std::error_code ignored;
   fs::remove_all(folder, ignored);  // of a call that was killed
   const auto outcome = run(*row, folder);
-  const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
+  const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
   if (!room) tally.give_up(room.error().message);
-  if (!room || (editor::is_interrupted() && !outcome.problem.empty())) {
+  if (!room || (editor::is_interrupted() && !outcome.run.problem.empty())) {
     fs::remove_all(folder, ignored);
     return;
   }
-  tally.take(todo, key, outcome, outcome.is_passed() ? "" : folder);
+  tally.take(todo, key, outcome, outcome.run.is_passed() ? "" : folder);
 }
 
 void work(const Campaign& campaign, const SweepOptions& options, const RunRow& run, Tally& tally, const RowLocks& locks,

@@ -60,16 +60,17 @@ bool Tally::is_stopped() {
 
 void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome, const std::string& folder) {
   auto& progress = result_.progress;
-  const bool was_run = outcome.has_begun || outcome.problem.empty();
+  const bool was_run = outcome.run.has_begun || outcome.run.problem.empty();
   if (todo.is_audit && !was_run) return;
   if (todo.is_audit) {
-    const bool is_same = outcome.state_hash == todo.stored_state;
+    const bool is_same = outcome.run.state_hash == todo.stored_state;
     ++progress.audited;
     if (!is_same) {
       ++progress.different;
       result_.different.push_back(todo.number);
     }
-    if (const auto added = store_.add_audit(key, outcome.state_hash, is_same); !added && problem_.empty()) problem_ = added.error().message;
+    if (const auto added = store_.add_audit(key, outcome.run.state_hash, is_same); !added && problem_.empty())
+      problem_ = added.error().message;
     return;
   }
   // What the machine did not let begin is run again by the next call.
@@ -78,8 +79,9 @@ void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome
   const auto twins = twins_.find(key);
   const std::size_t rows = 1 + (twins == twins_.end() ? 0 : twins->second);
   progress.done += rows;
-  (outcome.is_passed() ? progress.passed : progress.failed) += rows;
-  if (!outcome.is_passed() && result_.failed.size() < most_failed_told) result_.failed.push_back({todo.number, outcome.first_problem()});
+  (outcome.run.is_passed() ? progress.passed : progress.failed) += rows;
+  if (!outcome.run.is_passed() && result_.failed.size() < most_failed_told)
+    result_.failed.push_back({todo.number, outcome.run.first_problem()});
 }
 
 bool Tally::was_stored(const Todo& todo, const std::string& key) {

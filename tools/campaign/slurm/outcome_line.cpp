@@ -1,23 +1,13 @@
 #include "campaign/slurm/outcome_line.h"
 
 #include <nlohmann/json.hpp>
-#include <utility>
 
 namespace campaign {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
 
-}  // namespace
-
 std::string to_line(const OutcomeLine& line) {
-  const auto& outcome = line.outcome;
-  Json json{{"key", line.key},       {"problem", outcome.problem},       {"state", outcome.state_hash},
-            {"folder", line.folder}, {"simulated", outcome.simulated_s}, {"wall", outcome.wall_s},
-            {"logs", outcome.logs},  {"measures", Json::object()},       {"verdicts", Json::array()}};
-  for (const auto& [name, value] : outcome.measures) json["measures"][name] = value;
-  for (const auto& verdict : outcome.verdicts) json["verdicts"].push_back({verdict.expectation, verdict.problem, verdict.details});
+  const Json json{{"key", line.key}, {"folder", line.folder}, {"run", to_json(line.outcome.run)}, {"measures", line.outcome.measures}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -26,17 +16,11 @@ std::optional<OutcomeLine> from_line(const std::string& text) {
   if (!json.is_object()) return std::nullopt;
   try {
     OutcomeLine line;
-    auto& outcome = line.outcome;
     json.at("key").get_to(line.key);
     json.at("folder").get_to(line.folder);
-    json.at("problem").get_to(outcome.problem);
-    json.at("state").get_to(outcome.state_hash);
-    json.at("simulated").get_to(outcome.simulated_s);
-    json.at("wall").get_to(outcome.wall_s);
-    json.at("logs").get_to(outcome.logs);
-    json.at("measures").get_to(outcome.measures);
-    for (const auto& verdict : json.at("verdicts"))
-      outcome.verdicts.push_back({verdict.at(0).get<std::string>(), verdict.at(1).get<std::string>(), verdict.at(2).get<std::string>()});
+    line.outcome.run = editor::run_result_of(json.at("run"));
+    line.outcome.run.has_begun = true;  // a row that did not begin has no line
+    json.at("measures").get_to(line.outcome.measures);
     return line;
   } catch (const Json::exception&) {  // of another version
     return std::nullopt;

@@ -119,14 +119,14 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     auto outcome =
         run_row(orb, campaign, *row,
                 {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
-    if (editor::is_interrupted() && !outcome.problem.empty()) return;
-    const auto room = outcome.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
+    if (editor::is_interrupted() && !outcome.run.problem.empty()) return;
+    const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);
-    if (!outcome.has_begun && !outcome.problem.empty()) return part.give_up(outcome.problem);  // another machine may let it
+    if (!outcome.run.has_begun && !outcome.run.problem.empty()) return part.give_up(outcome.run.problem);  // another machine may let it
     std::string kept;
-    if (!outcome.is_passed()) {
+    if (!outcome.run.is_passed()) {
       kept = options.kept + "/" + name;
-      if (const auto copied = keep(folder, kept); !copied) outcome.logs += "\n" + copied.error().message;
+      if (const auto copied = keep(folder, kept); !copied) outcome.run.logs += "\n" + copied.error().message;
     }
     std::error_code ignored;
     fs::remove_all(folder, ignored);

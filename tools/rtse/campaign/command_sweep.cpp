@@ -97,27 +97,28 @@ void run_one(const Session& session, Console& console, const Campaign& campaign,
   nlohmann::ordered_json json{{"row", row->number},
                               {"seed", row->seed},
                               {"key", campaign.key(*row)},
-                              {"passed", outcome.is_passed()},
-                              {"state", outcome.state_hash},
-                              {"problem", outcome.problem},
-                              {"simulated", outcome.simulated_s},
-                              {"wall", outcome.wall_s},
+                              {"passed", outcome.run.is_passed()},
+                              {"state", outcome.run.state_hash},
+                              {"problem", outcome.run.problem},
+                              {"simulated", outcome.run.simulated_s},
+                              {"wall", outcome.run.wall_s},
                               {"folder", folder},
                               {"measures", outcome.measures}};
   if (console.json()) {
     std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else {
-    std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.is_passed() ? "passed" : "FAILED", outcome.simulated_s,
-                outcome.wall_s, outcome.state_hash.empty() ? no_state : outcome.state_hash.c_str(), base::printable(folder).c_str());
+    std::printf("%s  %.1f s simulated in %.1f s  state %s  files in %s\n", outcome.run.is_passed() ? "passed" : "FAILED",
+                outcome.run.simulated_s, outcome.run.wall_s, outcome.run.state_hash.empty() ? no_state : outcome.run.state_hash.c_str(),
+                base::printable(folder).c_str());
     for (const auto& [name, value] : outcome.measures) std::printf("  %s  %.6g\n", base::printable(name).c_str(), value);
   }
   std::fflush(stdout);
-  for (const auto& note : outcome.notes) console.warn(note);
-  const std::string state = outcome.state_hash.empty() ? no_state : outcome.state_hash;
+  for (const auto& note : outcome.run.notes) console.warn(note);
+  const std::string state = outcome.run.state_hash.empty() ? no_state : outcome.run.state_hash;
   if (!call.state.empty() && call.state != state)
     console.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
-  if (!outcome.problem.empty()) console.fail({outcome.problem});
-  for (const auto& verdict : outcome.verdicts) {
+  if (!outcome.run.problem.empty()) console.fail({outcome.run.problem});
+  for (const auto& verdict : outcome.run.verdicts) {
     if (!verdict.problem.empty()) console.fail({verdict.expectation + ": " + verdict.problem});
   }
 }

@@ -33,33 +33,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::chrono::seconds interrupted_limit{60};  // of a run that was interrupted
 constexpr const char* options_from_input = "--options-from-input";
 
-Json to_json(const RunResult& result) {
-  Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
-            {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
-            {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
-            {"wall", result.wall_s},       {"runs", result.runs},          {"expectations", Json::array()}};
-  for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
-  return json;
-}
-
-RunResult from_json(const Json& json, std::uint64_t seed) {
-  RunResult result;
-  result.seed = seed;
-  result.problem = json.value("problem", "");
-  result.logs = json.value("logs", "");
-  result.notes = json.value("notes", std::vector<std::string>());
-  result.state_hash = json.value("state_hash", "");
-  result.run_hash = json.value("run_hash", "");
-  result.path_m = json.value("path", 0.0);
-  result.runs = json.value("runs", 1);
-  result.simulated_s = json.value("simulated", 0.0);
-  result.wall_s = json.value("wall", 0.0);
-  for (const auto& entry : json.value("expectations", Json::array()))
-    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", "")});
-  return result;
-}
-
 double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.runs * result.simulated_s / result.wall_s : 0; }
 
 void print_heading() {
@@ -148,7 +121,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   const auto lines = base::split_list(child->said(), '\n');
   for (const auto& line : lines) {
     const auto json = Json::parse(line, nullptr, false);
-    if (json.is_object()) return from_json(json, seed);
+    if (json.is_object()) return run_result_of(json);
   }
   failed.problem = "rtse " + child->how_it_ended() + (lines.empty() ? "" : ": " + lines.back());
   return failed;
