@@ -1,5 +1,5 @@
 // The world: drawn here from one export of the simulator, moved by streamed poses.
-import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, Vector3, WebGLRenderer } from 'three';
+import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, SkinnedMesh, Vector3, WebGLRenderer } from 'three';
 import { Contacts } from './contacts';
 import { Daylight } from './daylight';
 import { Frames } from './frames';
@@ -189,7 +189,9 @@ export class WorldView {
     this.bounds.makeEmpty();
     this.world!.root.updateMatrixWorld(true);
     this.world!.root.traverse((part) => {
-      if (part instanceof Mesh && !part.userData.ground) this.bounds.expandByObject(part);
+      if (!(part instanceof Mesh) || part.userData.ground) return;
+      if (part instanceof SkinnedMesh) part.computeBoundingBox(); // with its bones where they are
+      this.bounds.union(new Box3().copy(part instanceof SkinnedMesh ? part.boundingBox! : part.geometry.boundingBox!).applyMatrix4(part.matrixWorld));
     });
     if (this.bounds.isEmpty()) this.bounds.set(new Vector3(-3, -3, 0), new Vector3(3, 3, 1));
   }
@@ -354,21 +356,21 @@ export class WorldView {
 
   // ---- views ----
 
-  // Obliquely from the south-west, as near as all corners fit into the picture.
+  // Obliquely from the south-west, as near as all corners fit into the picture: the view of `simctl screenshot`.
   whole(): void {
     const middle = this.bounds.getCenter(new Vector3());
     const aspect = this.element.clientWidth / Math.max(1, this.element.clientHeight);
     const direction = new Vector3(-0.35, -0.8, 0.62).normalize();
     const right = new Vector3(0, 0, 1).cross(direction).normalize(), up = direction.clone().cross(right);
-    const wide = Math.tan(0.5) * 0.95, high = (Math.tan(0.5) / aspect) * 0.92;
-    let distance = 1;
+    const wide = Math.tan(0.5) * 0.96, high = (Math.tan(0.5) / aspect) * 0.94;
+    let distance = 0.5;
     for (let corner = 0; corner < 8; ++corner) {
       const at = new Vector3(corner & 1 ? this.bounds.max.x : this.bounds.min.x, corner & 2 ? this.bounds.max.y : this.bounds.min.y, corner & 4 ? this.bounds.max.z : this.bounds.min.z).sub(middle);
       distance = Math.max(distance, at.dot(direction) + Math.abs(at.dot(right)) / wide, at.dot(direction) + Math.abs(at.dot(up)) / high);
     }
     this.eye.orbit_from(middle.clone().addScaledVector(direction, distance), middle);
     const size = this.bounds.getSize(new Vector3());
-    this.eye.span = Math.max(size.x, size.y * aspect) * 1.06;
+    this.eye.span = Math.max(size.x, size.y * aspect, 1) * 1.06;
   }
 
   top(): void {
