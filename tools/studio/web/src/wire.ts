@@ -28,7 +28,7 @@ export interface LogLine { level: string; source: string; time?: number; text: s
 export interface Recording {
   file: string; from: number; to: number; step: number; damage: string; states: Record<string, [number, string][]>; lines: [number, string, string, string][]; lines_left_out: number;
 }
-export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording }
+export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; start?: { simulator: string; components: string }; recording?: Recording }
 // Of a recorded moment: models that the scene of the beginning does not have, with the triangles of their links, and those that are there no more.
 export interface Late { version: number; models: { name: string; links: { name: string; parts: { color: number[]; points: number[] }[] }[] }[]; gone: string[] }
 export interface Values { rate?: number; latency?: number; watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }

@@ -93,7 +93,7 @@ export class WorldView {
       this.failed_version = -1;
       const why = world?.problem || 'No simulator runs.';
       if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording can be looked at.'}`);
-      return this.say(`${capital(why)} Start one: \`sim-server worlds/obstacle_course.sdf${store.hello?.server_id ? ` -s ${store.hello.server_id}` : ''}\`. It appears here by itself.`);
+      return this.say(`${capital(why)} Start one${store.hello?.start ? `: \`${store.hello.start.simulator}\`` : ''}. It appears here by itself.`);
     }
     if (this.world?.version === world.version && this.world_key === this.key_of()) return this.say('');
     this.load(world.version);
