@@ -241,15 +241,58 @@ const flows = [
     await until('answered', () => page.evaluate(() => window.studio.wire.open.size === 0 && window.studio.store.acts.at(-1).text.startsWith('Spawn')));
     check(Math.abs(spawned.args.pose[6] - Math.SQRT1_2) < 1e-9, JSON.stringify(spawned.args));
   }],
-  ['a model is deleted after a question, and undo means no act before it', async ({ page, mock }) => {
-    const count = asked(mock, 'delete_model').length;
-    await choose(page, 'model', 'pioneer2dx');
-    await page.locator('.inspector .danger', { hasText: 'Delete' }).click();
-    same(asked(mock, 'delete_model').length, count, 'nothing before the answer');
-    check((await page.locator('dialog[open]').textContent()).includes('pioneer2dx'), 'it says which');
-    await page.locator('dialog[open] button.main').click();
-    await until('deleted', () => asked(mock, 'delete_model').length === count + 1);
-    await until('no undo', () => page.locator('#undo').isDisabled());
+  ['a model is deleted by the button or the key, and undo restores it before it undoes what came before', async ({ page, mock }) => {
+    await page.evaluate(() => window.studio.act('Earlier', 'set_pose', {}, () => ({ text: 'Undo what was earlier', name: 'set_pose', args: { model: 'earlier' } })));
+    for (const way of ['button', 'key']) {
+      const count = asked(mock, 'delete_model').length;
+      await choose(page, 'model', 'pioneer2dx');
+      if (way === 'button') await page.locator('.inspector .danger', { hasText: 'Delete' }).click();
+      else await page.keyboard.press('Delete');
+      await until('deleted', () => asked(mock, 'delete_model').length === count + 1);
+      await page.keyboard.press('Control+z');
+      await until('restored', () => asked(mock, 'restore_model').at(count)?.args.model === 'pioneer2dx');
+    }
+    await page.keyboard.press('Control+z');
+    await until('what came before', () => asked(mock, 'set_pose').at(-1).args.model === 'earlier');
+  }],
+  ['a wire offers by its context menu what can be done with it', async ({ page, mock }) => {
+    const count = asked(mock, 'disconnect').length;
+    const wire = await page.locator('.edge[data-connection="a"] .line').boundingBox();
+    const menu = page.locator('.menu[role=menu]');
+    await page.mouse.click(wire.x + wire.width / 2, wire.y + wire.height / 2, { button: 'right' });
+    await menu.waitFor();
+    same(await page.evaluate(() => window.studio.store.selection), { kind: 'connection', id: 'a' }, 'it is selected');
+    same(await menu.locator('button').allTextContents(), ['DisconnectDelete', 'Show the values of range', 'Plot range', 'Select RTCLaser0:range', 'Select LaserObstacleAvoid0:range'], 'entries');
+    await page.keyboard.press('Escape');
+    await menu.waitFor({ state: 'detached' });
+    await page.keyboard.press('Shift+F10');
+    await menu.waitFor();
+    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowUp');
+    await page.keyboard.press('Enter');
+    await until('cut', () => asked(mock, 'disconnect').length === count + 1);
+    check((await menu.count()) === 0, 'the menu is closed');
+  }],
+  ['ports, components and models have context menus, and a press elsewhere closes them', async ({ page, mock }) => {
+    const menu = page.locator('.menu[role=menu]');
+    await page.locator(`[data-port="${avoid}:range"] > path`).click({ button: 'right' });
+    check((await menu.locator('button').allTextContents()).includes('Write …'), 'of an InPort');
+    await page.locator(`[data-path="${laser}"] .name`).click({ button: 'right', force: true, position: { x: 3, y: 3 } });
+    const count = asked(mock, 'deactivate').length;
+    await page.locator('.menu[aria-label="Component RTCLaser0"] button', { hasText: 'Deactivate' }).click();
+    await until('deactivated', () => asked(mock, 'deactivate').at(count)?.args.path === laser);
+    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.draw(); });
+    const box = await page.locator('.world canvas').boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2, { button: 'right' });
+    await page.locator('.menu[aria-label="Model pioneer2dx"]').waitFor();
+    await page.mouse.click(box.x + 5, box.y + 5);
+    await menu.waitFor({ state: 'detached' });
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down({ button: 'right' });
+    await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 3 });
+    await page.mouse.up({ button: 'right' });
+    same(await menu.count(), 0, 'a drag with the right button moves the eye');
+    await page.evaluate(() => window.studio.world.whole());
   }],
   ['settings of a component fit into a narrow inspector', async ({ page, mock }) => {
     const was = mock.answer;
@@ -452,11 +495,12 @@ const flows = [
   ['empty and broken states say what to do', async ({ browser }) => {
     const mock = new Mock({ page: built, glb });
     mock.answer = answer(mock);
-    for (const event of [hello({ name_server: 'localhost:2999' }), { op: 'system', revision: 1, problem: 'no naming service at localhost:2999', components: [], connections: [], managers: [] }, { op: 'world', present: false, problem: 'no simulator of number 0 runs', models: [], ifaces: [], version: 0, links: 0 }]) mock.say(event);
+    for (const event of [hello({ name_server: 'localhost:2999', start: { simulator: 'bin/sim-server worlds/x.sdf', components: 'bin/rtcd --with-naming Laser' } }), { op: 'system', revision: 1, problem: 'no naming service at localhost:2999', components: [], connections: [], managers: [] }, { op: 'world', present: false, problem: 'no simulator of number 0 runs', models: [], ifaces: [], version: 0, links: 0 }]) mock.say(event);
     const url = await mock.start();
     const page = await open(browser, url);
-    await until('world says', async () => (await page.locator('.world .card').textContent()).includes('sim-server worlds/'));
-    check((await page.locator('.diagram .card').textContent()).includes('localhost:2999'), 'the system says where it looks');
+    await until('world says', async () => (await page.locator('.world .card').textContent()).includes('bin/sim-server worlds/x.sdf'));
+    const card = await page.locator('.diagram .card').textContent();
+    check(card.includes('localhost:2999') && card.includes('bin/rtcd --with-naming Laser'), `the system says where it looks and what to start: ${card}`);
     mock.say(demo_system());
     await until('system comes', async () => (await page.locator('.diagram .box').count()) === 3);
     mock.say(await world_of(glb));

@@ -390,10 +390,19 @@ const flows = [
     await page.locator('.links li', { hasText: 'chassis' }).first().waitFor();
     await until('its velocity', async () => /^-?0\.\d\d .* m\/s$/.test(await page.locator('.inspector dt:text-is("velocity") + dd').textContent()));
     if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'model.png') });
+    await rig.simctl('pause');
+    await rig.simctl('pose', 'second', '3', '3.5', '0.7');
     await page.locator('.inspector button:has-text("Delete")').click();
-    await page.locator('dialog[open] button.main').click();
     await until('gone', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
-    void rig;
+    await page.keyboard.press('Control+z');
+    await until('restored', () => page.evaluate(() => window.studio.world.world.models.has('second')));
+    const { position, yaw } = JSON.parse(await rig.simctl('--json', 'pose', 'second'));
+    check(Math.hypot(position[0] - 3, position[1] - 3.5) < 1e-6 && Math.abs(yaw - 0.7) < 1e-6, `where it was: ${position} ${yaw}`);
+    await until('with its ifaces', () => page.evaluate(() => window.studio.store.world.ifaces.some((i) => i.model === 'second')));
+    await page.evaluate(() => window.studio.select({ kind: 'model', id: 'second' }));
+    await page.locator('.inspector button:has-text("Delete")').click();
+    await until('gone again', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
+    await rig.simctl('run');
   }],
   ['a manager creates a component and deletes it', async ({ page }) => {
     const manager = await until('manager', () => page.evaluate(() => window.studio.store.system.managers[0]?.path));

@@ -17,6 +17,7 @@ export class Hands {
   private drag: Drag | null = null;
   private placing: Promise<void> = Promise.resolve();
   private is_placing = false;
+  menu: (event: MouseEvent, model: string) => void = () => {};
 
   constructor(private readonly view: Reach, scene: Scene) {
     this.arrow.renderOrder = 10;
@@ -114,8 +115,9 @@ export class Hands {
     this.view.canvas.addEventListener('pointermove', (event) => this.go_on(event, false));
     this.view.canvas.addEventListener('pointerup', (event) => {
       if (this.drag) return this.go_on(event, true);
-      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button !== 0) return;
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button === 1) return;
       const hit = this.hit(event);
+      if (event.button === 2) return void (hit && this.menu(event, hit.model)); // with a drag it moves the eye
       select(hit ? { kind: 'model', id: hit.model } : null);
     });
     this.view.canvas.addEventListener('pointercancel', () => {

@@ -4,14 +4,15 @@ import { in_degrees, in_radians } from './angles';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
-import { ask_text, open_dialog } from './dialog';
+import { ask_text } from './dialog';
 import { pose_of } from './glb';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  act, component, component_of_port, components_of, connection, connections_of, forget_undo, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
+  act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
+import { signal_of_port } from './signal_names';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
 import { watch } from './watches';
@@ -134,10 +135,10 @@ export class Inspector {
       h('div', { class: 'acts' },
         button('Follow with the eye', { icon: 'follow', label: 'Follow', key: 'F' }, () => world.follow(name)),
         drive && can ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive', key: 'G' }, () => this.parts.drive(drive.name)) : null,
-        can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => this.put_model(name)) : null,
+        can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => put_model(world, name)) : null,
         can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
         can && !model?.is_static ? button('Set its velocity', { label: 'Set moving …' }, () => this.set_moving(name)) : null,
-        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => this.delete_model(name)) : null),
+        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => delete_model(name)) : null),
       h('h3', null, 'Pose'), pose,
       ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
       h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
@@ -173,31 +174,11 @@ export class Inspector {
     }
   }
 
-  private put_model(name: string): void {
-    const model = this.parts.world.world?.models.get(name);
-    const pose = model?.canonical ? pose_of(model) : null;
-    const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
-    const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
-    ask_text(`Put ${name}`, 'X Y YAW [m, m, °]', [...start.slice(0, 2).map((v) => v.toFixed(3)), in_degrees(start[2]).toFixed(1)].join(' '), 'Put', (text) => {
-      const [x, y, yaw, ...more] = text.split(/[\s,]+/).map(Number);
-      const planar = [x, y, in_radians(yaw), ...more];
-      if (planar.length === 3 && planar.every(Number.isFinite)) {
-        act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
-      }
-    });
-  }
-
   private push_model(name: string): void {
     ask_text(`Push ${name}`, 'FX FY FZ [N] for 0.2 s', '50 0 0', 'Push', (text) => {
       const force = text.split(/[\s,]+/).map(Number);
       if (force.length === 3 && force.every(Number.isFinite)) act(`Push ${name}`, 'push', { name, force, seconds: 0.2 });
     });
-  }
-
-  // Nothing brings it back as it was, so undo means no act before it either.
-  private delete_model(name: string): void {
-    open_dialog(`Delete ${name}`, h('p', null, `${name} and its sensors and drives are removed from the world. This cannot be undone, nor can what was done before it.`), 'Delete',
-      () => act(`Delete ${name}`, 'delete_model', { model: name }).then((result) => { if (result) forget_undo(); }));
   }
 
   private set_moving(name: string): void {
@@ -368,7 +349,7 @@ export class Inspector {
   private port(id: string): Content {
     const port = port_of(id), path = component_of_port(id);
     if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It is not there now.')];
-    const signal = store.signals.find((x) => x.kind === 'port' && (x.topic === id || (x.component === path && x.topic.endsWith(`/${port.name}`)) || x.topic.endsWith(`${component(path)?.instance}/${port.name}`)));
+    const signal = signal_of_port(id);
     const detail = store.details.get(path)?.ports.find((p) => p.name === port.name);
     return [
       this.title(port.name, { in: 'InPort', out: 'OutPort', service: 'service port' }[port.kind]),
@@ -440,7 +421,26 @@ export class Inspector {
   }
 }
 
-function disconnect_all(all: { id: string }[]): void {
+export function put_model(world: WorldView, name: string): void {
+  const model = world.world?.models.get(name);
+  const pose = model?.canonical ? pose_of(model) : null;
+  const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
+  const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
+  ask_text(`Put ${name}`, 'X Y YAW [m, m, °]', [...start.slice(0, 2).map((v) => v.toFixed(3)), in_degrees(start[2]).toFixed(1)].join(' '), 'Put', (text) => {
+    const [x, y, yaw, ...more] = text.split(/[\s,]+/).map(Number);
+    const planar = [x, y, in_radians(yaw), ...more];
+    if (planar.length === 3 && planar.every(Number.isFinite)) {
+      act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
+    }
+  });
+}
+
+// Undo restores it as it was.
+export function delete_model(name: string): void {
+  if (!read_only()) act(`Delete ${name}`, 'delete_model', { model: name }, () => ({ text: `Restore ${name}`, name: 'restore_model', args: { model: name } }));
+}
+
+export function disconnect_all(all: { id: string }[]): void {
   const group = {};
   for (const { id } of all) disconnect(id, group);
 }

@@ -5,7 +5,9 @@ import { open_dialog } from './dialog';
 import { button, h, once_a_frame, put } from './dom';
 import { Drive } from './drive';
 import { History } from './history';
-import { disconnect, Inspector } from './inspector';
+import { delete_model, disconnect, Inspector, put_model } from './inspector';
+import { model_menu } from './menus';
+import { first_member } from './plots';
 import { is_pasteable, shell_line, shell_word } from './shell';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
@@ -26,14 +28,17 @@ const drive = new Drive();
 const history_of_run = new History(world);
 const playback = new Playback(() => world.trails.forget());
 const bottom = new Bottom(history_of_run, playback);
+function plot(topic: string, member: string): void {
+  show_panel('bottom', true);
+  bottom.show_tab('plots');
+  bottom.plots.add(topic, member);
+}
+diagram.plot = (topic) => first_member(topic).then((line) => line && plot(line.topic, line.member));
+world.hands.menu = (event, name) => model_menu(event, name, { follow: () => world.follow(name), put: () => put_model(world, name) });
 const inspector = new Inspector({
   world,
   drive: (iface) => drive.begin(iface),
-  plot: (topic, member) => {
-    show_panel('bottom', true);
-    bottom.show_tab('plots');
-    bottom.plots.add(topic, member);
-  },
+  plot,
   show_image: (iface) => {
     show_panel('bottom', true);
     bottom.show_image(iface);
@@ -300,12 +305,18 @@ function show_tools(): void {
 
 const keys: [string, string][] = [
   ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
-  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
+  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'cut the selected connection, delete the selected model'],
   ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
 ];
 
 function show_keys(): void {
   open_dialog('Keys', h('dl', { class: 'keys' }, keys.map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)])), 'Close');
+}
+
+function delete_selected(): void {
+  const now = store.selection;
+  if (now?.kind === 'connection') disconnect(now.id);
+  if (now?.kind === 'model') delete_model(now.id);
 }
 
 document.addEventListener('keydown', (event) => {
@@ -325,7 +336,7 @@ document.addEventListener('keydown', (event) => {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
     o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => recordings_dialog(),
     a: on_chosen('activate', 'Activate'), d: on_chosen('deactivate', 'Deactivate'), e: on_chosen('reset', 'Reset'),
-    c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
+    c: () => document.getElementById('connect')?.click(), Delete: delete_selected, Escape: () => select(null),
   };
   panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !settings.panels[panel]); }; });
   // Space on a button presses it.

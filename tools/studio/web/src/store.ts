@@ -140,12 +140,6 @@ async function carry_out(text: string, name: string, args: object, undo?: (resul
   }
 }
 
-// After what cannot be undone.
-export function forget_undo(): void {
-  for (const one of store.acts) one.undo = undefined;
-  changed('acts');
-}
-
 export async function undo_last(): Promise<void> {
   await Promise.allSettled([...under_way]);
   for (let i = store.acts.length - 1; i >= 0; --i) {
