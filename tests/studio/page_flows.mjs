@@ -241,6 +241,21 @@ const flows = [
     await until('answered', () => page.evaluate(() => window.studio.wire.open.size === 0 && window.studio.store.acts.at(-1).text.startsWith('Spawn')));
     check(Math.abs(spawned.args.pose[6] - Math.SQRT1_2) < 1e-9, JSON.stringify(spawned.args));
   }],
+  ['angles of signals are shown in degrees, in the inspector and in plots', async ({ page, mock }) => {
+    const was = mock.answer;
+    mock.answer = (message) => {
+      if (message.name === 'watch' && message.args.members) setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: [1], v: [[Math.PI / 2]] }, false), 20);
+      else if (message.name === 'watch') setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: [1], value: { data: { position: { x: 1.5 }, heading: Math.PI / 2, va: -Math.PI } } }, false), 20);
+      return was(message);
+    };
+    await choose(page, 'signal', '/demo/RTCLaser0/range');
+    await until('values', async () => (await page.locator('.inspector dl.values dd').allTextContents()).join(' ') === '1.5 90° -180°/s');
+    await page.locator('.inspector button[aria-label="Plot data.heading"]').click();
+    await until('a line', async () => (await page.locator('.plot .legend').textContent()).includes('data.heading [°]'));
+    await until('its value', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].values.at(-1) === 90));
+    await page.locator('.plot .legend button').click();
+    mock.answer = was;
+  }],
   ['a model is deleted by the button or the key, and undo restores it before it undoes what came before', async ({ page, mock }) => {
     await page.evaluate(() => window.studio.act('Earlier', 'set_pose', {}, () => ({ text: 'Undo what was earlier', name: 'set_pose', args: { model: 'earlier' } })));
     for (const way of ['button', 'key']) {

@@ -1,6 +1,6 @@
 // What is selected, in full, and what can be done with it.
 import { Euler } from 'three';
-import { in_degrees, in_radians } from './angles';
+import { angle_unit, in_degrees, in_radians, shown_value } from './angles';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
@@ -208,7 +208,7 @@ export class Inspector {
             () => ({ text: `Switch the motors of ${iface.name} ${on ? 'off' : 'on'}`, name: 'set_motors', args: { iface: iface.name, on: !on } }))))] : null),
       values,
       iface.info && Object.keys(iface.info).length > 0 ? h('h3', null, 'Constants') : null,
-      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, format(value)])),
+      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, measure(key, value, iface.type)])),
     ];
   }
 
@@ -255,7 +255,8 @@ export class Inspector {
         all.length > 60 ? h('p', { class: 'hint' }, `and ${all.length - 60} more`) : null);
     }
     const cells = into.querySelectorAll('dd');
-    all.slice(0, 60).forEach(([, value], i) => { if (cells[i]) cells[i].textContent = format(value); });
+    const type = iface_type(topic);
+    all.slice(0, 60).forEach(([key, value], i) => { if (cells[i]) cells[i].textContent = measure(key, value, type); });
     const canvas = into.querySelector('canvas');
     if (scan && canvas) polar(canvas, scan, sample.value as { [key: string]: unknown });
   }
@@ -488,6 +489,11 @@ function format(value: unknown): string {
   if (Number.isInteger(value)) return String(value);
   return Math.abs(value) < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(6)));
 }
+
+// With its unit where that is known.
+const measure = (key: string, value: unknown, type: string): string => (typeof value === 'number' ? `${format(shown_value(key, value, type))}${angle_unit(key, type)}` : format(value));
+
+export const iface_type = (topic: string): string => store.signals.find((s) => s.topic === topic && s.kind === 'iface')?.type ?? '';
 
 export function image_iface(topic: string): string | undefined {
   const found = store.world?.ifaces.find((i) => /camera|rgbd|depth/.test(i.type) && topic === `/sim/${i.type}/${i.name.replaceAll('::', '/')}`) ?? store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type));

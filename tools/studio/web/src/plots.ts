@@ -1,7 +1,8 @@
 // Signals over simulated time, a few lines a plot. Signals come by drag from the tree, by the inspector or by search.
 import uPlot from 'uplot';
 import { button, h, put } from './dom';
-import { flatten } from './inspector';
+import { angle_unit, shown_value } from './angles';
+import { flatten, iface_type } from './inspector';
 import { recording } from './playback';
 import { keep, settings } from './settings';
 import { on, store, wire } from './store';
@@ -12,6 +13,13 @@ import { palette } from './palette';
 interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string }
 const most_points = 12000;
 const recorded_points = 6000; // of a line, of all of a recording or of the part that is looked at
+
+// Angles in degrees.
+const number_of = ({ topic, member }: Line, value: unknown): number | null => (typeof value === 'number' ? shown_value(member, value, iface_type(topic)) as number : typeof value === 'boolean' ? Number(value) : null);
+function name_of({ topic, member }: Line): string {
+  const unit = angle_unit(member, iface_type(topic));
+  return unit ? `${member} [${unit}]` : member;
+}
 
 class Plot {
   readonly element = h('div', { class: 'plot' });
@@ -60,7 +68,7 @@ class Plot {
         if (last !== undefined && time < last) line.times.length = line.values.length = 0; // reset
         const value = values.v?.[i]?.[0];
         line.times.push(time);
-        line.values.push(typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null);
+        line.values.push(number_of(line, value));
       });
       if (line.times.length > most_points) {
         line.times.splice(0, 2000);
@@ -78,7 +86,7 @@ class Plot {
       for (let from = whole.from; from < whole.to && this.lines.includes(line);) {
         const { result } = await wire.request('series', { topic: line.topic, members: [line.member], from, to: whole.to, points: recorded_points });
         line.times.push(...result.t);
-        line.values.push(...result.v.map(([value]: [unknown]) => (typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null)));
+        line.values.push(...result.v.map(([value]: [unknown]) => number_of(line, value)));
         line.error = result.left_out > 0 ? `(${result.t.length} of ${result.t.length + result.left_out} samples)` : '';
         if (!(result.until > from)) break;
         from = result.until >= whole.to ? whole.to : result.until;
@@ -102,7 +110,7 @@ class Plot {
     put(this.legend, this.lines.map((line, i) => {
       const sign = h('i');
       sign.style.background = palette[i % palette.length];
-      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${line.member}`, line.error ? h('em', null, ` ${line.error}`) : null,
+      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${name_of(line)}`, line.error ? h('em', null, ` ${line.error}`) : null,
         button(`Remove ${line.member}`, { icon: 'close', class: 'plain small' }, () => this.drop(i)));
     }));
   }

@@ -32,7 +32,7 @@ export function inject_dialog(port: string, type: string): void {
   const label = `${short_path(component_of_port(port))}:${name_of_port(port)}`;
   wire.request('members', { topic: port }).then(({ result }) => {
     if (value.value === '') value.value = JSON.stringify(result?.zero ?? {}, null, 1).replace(/\{\n\s+"sec": 0,\n\s+"nsec": 0\n\s+\}/, '{ "sec": 0, "nsec": 0 }');
-    put(hint, 'Members that are left out are zero. What is written goes to this port alone, once.');
+    put(hint, 'Values are those of the data type: angles in radians. Members that are left out are zero. They are written once, to this port alone.');
   }, (error) => put(hint, (error as Error).message));
   open_dialog(`Write to ${label}`, h('div', { class: 'inject' }, h('label', { for: 'inject-value' }, type.replace(/^IDL:|:\d+(\.\d+)?$/g, '')), value, hint), 'Write', () => {
     let text = value.value.trim();
