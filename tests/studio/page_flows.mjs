@@ -194,7 +194,7 @@ const flows = [
   }],
   ['the world or the system alone fill the middle', async ({ page }) => {
     const width = (name) => page.locator(name).evaluate((element) => element.getBoundingClientRect().width);
-    const middle = await width('.middle');
+    const middle = (await width('.world-panel')) + (await width('.system-panel'));
     for (const [key, other] of [['2', '.system-panel'], ['3', '.world-panel']]) {
       await page.keyboard.press('Escape');
       await page.locator('.world canvas').focus().catch(() => {});
@@ -314,14 +314,12 @@ const flows = [
     mock.answer = (message) => (message.name === 'component' && message.args.path === avoid ? { result: { ...detail(avoid), sets: [{ id: 'default', active: true, values: [
       { name: 'a_parameter_with_a_name_that_is_long', value: '1', type: 'double', widget: 'slider.0.1', constraint: '0<=x<=180' }, { name: 'mode', value: 'the_first_of_the_choices', type: 'string', widget: 'radio', constraint: '(the_first_of_the_choices_there_are_here,another_choice_with_a_long_name_that_does_not_end)' },
       { name: 'order', value: 'a', type: 'string', widget: 'ordered_list', constraint: '(a_rather_long_word_of_an_ordered_list_that_does_not_end_soon,b)' }, { name: 'text', value: 'x'.repeat(90), type: 'string', widget: 'text' }, { name: 'spin', value: '3', type: 'int', widget: 'spin', constraint: '0<=x<=9' }] }] } } : was(message));
-    await page.evaluate(() => { window.studio.settings.sizes.inspector = 220; window.studio.store.details.clear(); });
-    await page.keyboard.press('4');
-    await page.keyboard.press('4');
+    await page.evaluate(() => { window.studio.dock.resize('inspector', 220); window.studio.store.details.clear(); });
     await choose(page, 'component', avoid);
     await until('its settings', async () => (await page.locator('.inspector').textContent()).includes('a_parameter_with'));
     const wide = await page.evaluate(() => { const box = document.querySelector('.inspector').getBoundingClientRect(); return [...document.querySelectorAll('.inspector *')].filter((e) => { const { width, right } = e.getBoundingClientRect(); return width > 0 && right > box.right + 1; }).map((e) => `${e.tagName} ${e.className} ${e.id}`); });
     same(wide, [], 'too wide');
-    await page.evaluate(() => { window.studio.settings.sizes.inspector = 300; });
+    await page.evaluate(() => { window.studio.dock.resize('inspector', 300); });
     mock.answer = was;
   }],
   ['the bars of a telephone have one row each', async ({ browser, url }) => {
@@ -444,6 +442,52 @@ const flows = [
     await page.locator('.of-tree').focus();
     await page.keyboard.press('ArrowRight');
     check((await page.locator('.tree-panel').boundingBox()).width > before, 'wider');
+  }],
+  ['a panel is dragged by its grip beside another, as a tab, and to an edge', async ({ page }) => {
+    const box = (panel) => page.locator(`.${panel}-panel`).boundingBox();
+    const drag = async (panel, x, y) => {
+      const grip = await page.locator(`.${panel}-panel .grip`).boundingBox();
+      await page.mouse.move(grip.x + 6, grip.y + 6);
+      await page.mouse.down();
+      await page.mouse.move(x, y, { steps: 4 });
+      check(await page.locator('.drop').isVisible(), 'the place is shown');
+      await page.mouse.up();
+    };
+    const tree = await box('tree');
+    await drag('inspector', tree.x + tree.width / 2, tree.y + tree.height - 20);
+    const [above, below, world] = [await box('tree'), await box('inspector'), await box('world')];
+    check(below.y > above.y + above.height - 10 && Math.abs(below.x - above.x) < 2, 'the inspector is below the tree');
+    await drag('system', world.x + world.width / 2, world.y + world.height / 2);
+    check(await page.locator('.system-panel').isVisible() && !(await page.locator('.world-panel').isVisible()), 'the system is in front of the world');
+    await page.locator('.leaf-tabs [data-panel=world]').click();
+    check(await page.locator('.world-panel').isVisible(), 'the world by its tab');
+    await page.keyboard.press('3');
+    check(await page.locator('.system-panel').isVisible(), 'the system by its key');
+    await drag('bottom', 3, 300);
+    check((await box('bottom')).x < 2 && (await box('bottom')).height > 600, 'time at the left edge');
+    await until('kept', () => page.evaluate(() => JSON.parse(localStorage.getItem('rtm-studio')).layout.root.parts[0].shown === 'bottom'));
+  }],
+  ['a layout is saved under a name, and comes back after another one and after a reload', async ({ page }) => {
+    const entry = async (text) => { await page.locator('#layouts').click(); await page.locator('.menu button', { hasText: text }).click(); };
+    await entry('Save this layout');
+    await page.locator('#ask-text').fill('tuning');
+    await page.locator('dialog[open] button.main').click();
+    await entry('Usual layout');
+    check((await page.locator('.bottom-panel').boundingBox()).x < 2 && (await page.locator('.tree-panel').boundingBox()).y < 60 && (await page.locator('.bottom-panel').boundingBox()).y > 300, 'the usual one');
+    await until('kept', () => page.evaluate(() => 'tuning' in JSON.parse(localStorage.getItem('rtm-studio')).layouts));
+    await page.evaluate(() => { location.hash = ''; });
+    await page.reload();
+    await is_ready(page);
+    await has_world(page);
+    await entry(/^tuning$/);
+    check((await page.locator('.bottom-panel').boundingBox()).height > 600, 'the saved one');
+    await entry('Delete tuning');
+    await entry('Usual layout');
+    await page.locator('.inspector-panel .grip').focus();
+    await page.keyboard.press('Enter');
+    await page.locator('.menu button', { hasText: 'As a tab of Tree' }).click();
+    check(await page.locator('.inspector-panel').isVisible() && !(await page.locator('.tree-panel').isVisible()), 'by the keyboard, too');
+    await entry('Usual layout');
   }],
   ['a link holds the view', async ({ page, browser }) => {
     await page.evaluate(() => { window.studio.world.top(); window.studio.select({ kind: 'model', id: 'pioneer2dx' }); });

@@ -11,7 +11,7 @@ import { watch_image } from './watches';
 import type { Participant } from './wire';
 
 export class Bottom {
-  readonly transport = h('div', { class: 'transport', role: 'toolbar', 'aria-label': 'Time' });
+  readonly transport = h('div', { class: 'transport grip-place', role: 'toolbar', 'aria-label': 'Time' });
   readonly element = h('div', { class: 'bottom' });
   readonly plots: Plots;
   private readonly clock = h('output', { class: 'clock', 'aria-label': 'Simulated time' }, '–');

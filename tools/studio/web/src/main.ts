@@ -1,11 +1,13 @@
 // The page: panels round the world and the system, and the keys.
 import { Bottom } from './bottom';
 import { Diagram } from './diagram';
-import { open_dialog } from './dialog';
+import { ask_text, open_dialog } from './dialog';
+import { Dock } from './dock';
 import { button, h, once_a_frame, put } from './dom';
 import { Drive } from './drive';
 import { History } from './history';
 import { delete_model, disconnect, Inspector, put_model } from './inspector';
+import type { Panel } from './layout';
 import { model_menu } from './menus';
 import { first_member } from './plots';
 import { is_pasteable, shell_line, shell_word } from './shell';
@@ -18,8 +20,6 @@ import { spawn_dialog } from './spawn_dialog';
 import { with_token } from './token';
 import { Tree } from './tree';
 import { WorldView } from './world';
-
-type Panel = keyof typeof settings.panels;
 
 const world = new WorldView();
 const diagram = new Diagram();
@@ -55,10 +55,11 @@ const panel_names: [Panel, string, string][] = [['tree', 'Tree', 'tree'], ['worl
 const top_bar = h('header', { class: 'top' },
   h('h1', null, 'rtm-studio'), world_name, link_state, h('span', { class: 'spring' }),
   h('div', { class: 'toggles', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name, sign], i) => {
-    const toggle = button(`${name} panel`, { icon: sign, key: String(i + 1), pressed: true }, () => show_panel(panel, !settings.panels[panel]));
+    const toggle = button(`${name} panel`, { icon: sign, key: String(i + 1), pressed: true }, () => show_panel(panel, !dock.is_front(panel)));
     toggles.set(panel, toggle);
     return toggle;
   })),
+  button('Layouts of the panels', { icon: 'layout', id: 'layouts' }, (event) => dock.offer_layouts(event, (save) => ask_text('Save this layout', 'Name', '', 'Save', save))),
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
   button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
@@ -183,20 +184,20 @@ async function copy(text: string): Promise<void> {
 // ---- panels ----
 
 const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'World' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
+  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
+  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
     button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
     button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
     button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
-const inspector_panel = h('aside', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, inspector.element);
+const inspector_panel = h('section', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, h('div', { class: 'bar grip-place' }, h('h2', null, 'Inspector')), inspector.element);
 const bottom_panel = h('section', { class: 'panel bottom-panel', 'aria-label': 'Time' }, bottom.element);
-const middle = h('main', { class: 'middle' }, world_panel, splitter('split', 'x'), system_panel);
 const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name]) => h('button', { type: 'button', 'data-panel': panel, onclick: () => show_only(panel) }, name.split(' ')[0])));
-const page = h('div', { class: 'page' }, top_bar, tree_panel, edge('tree', 'x'), middle, edge('inspector', 'x'), inspector_panel, edge('bottom', 'y'), bottom_panel, tab_bar, status_bar);
+const dock = new Dock({ tree: tree_panel, world: world_panel, system: system_panel, inspector: inspector_panel, bottom: bottom_panel });
+const page = h('div', { class: 'page' }, top_bar, dock.element, tab_bar, status_bar);
 
 async function all_components(state: string, name: string, word: string): Promise<void> {
   const group = {};
@@ -204,69 +205,22 @@ async function all_components(state: string, name: string, word: string): Promis
   await Promise.all(store.system.components.filter((c) => c.state === state).map((one) => state_act(one, word, name, group)));
 }
 
-// Between panels, where a landmark of its own says what it is.
-function edge(what: 'tree' | 'inspector' | 'bottom', axis: 'x' | 'y'): HTMLElement {
-  return h('div', { class: 'edge-of-panel', role: 'region', 'aria-label': `Size of ${what}` }, splitter(what, axis));
-}
-
-function splitter(what: keyof typeof settings.sizes, axis: 'x' | 'y'): HTMLElement {
-  const names = { split: 'World and system', tree: 'Tree', inspector: 'Inspector', bottom: 'Time and plots' };
-  const handle = h('div', { class: `splitter ${axis} of-${what}`, role: 'separator', tabindex: 0, 'aria-orientation': axis === 'x' ? 'vertical' : 'horizontal', 'aria-label': `Size: ${names[what]}`, 'aria-valuenow': 50, 'aria-valuemin': 0, 'aria-valuemax': 100 });
-  const change = (by: number) => {
-    const { sizes } = settings;
-    if (what === 'split') sizes.split = Math.min(0.9, Math.max(0.1, sizes.split + by / Math.max(1, middle.clientWidth)));
-    else sizes[what] = Math.min(axis === 'x' ? innerWidth * 0.45 : innerHeight * 0.7, Math.max(axis === 'x' ? 140 : 96, sizes[what] + (what === 'tree' ? by : -by)));
-    lay_out();
-    keep();
-  };
-  let last = 0;
-  handle.addEventListener('pointerdown', (event) => {
-    last = axis === 'x' ? event.clientX : event.clientY;
-    handle.setPointerCapture(event.pointerId);
-  });
-  handle.addEventListener('pointermove', (event) => {
-    if (!handle.hasPointerCapture(event.pointerId)) return;
-    const now = axis === 'x' ? event.clientX : event.clientY;
-    change(now - last);
-    last = now;
-  });
-  handle.addEventListener('keydown', (event) => {
-    const by = { ArrowLeft: -20, ArrowUp: -20, ArrowRight: 20, ArrowDown: 20 }[event.key];
-    if (by === undefined) return;
-    change(by);
-    event.preventDefault();
-    event.stopPropagation();
-  });
-  return handle;
-}
-
 function lay_out(): void {
-  const { panels, sizes } = settings;
-  page.style.setProperty('--tree', `${sizes.tree}px`);
-  page.style.setProperty('--inspector', `${sizes.inspector}px`);
-  page.style.setProperty('--bottom', `${sizes.bottom}px`);
-  page.style.setProperty('--split', String(sizes.split));
-  page.style.setProperty('--rest', String(1 - sizes.split));
-  for (const [panel] of panel_names) {
-    page.classList.toggle(`no-${panel}`, !panels[panel]);
-    toggles.get(panel)!.setAttribute('aria-pressed', String(panels[panel]));
-  }
-  page.querySelectorAll<HTMLElement>('.splitter').forEach((handle) => {
-    const what = ['tree', 'inspector', 'bottom', 'split'].find((w) => handle.classList.contains(`of-${w}`))!;
-    const share = what === 'split' ? sizes.split : what === 'bottom' ? sizes.bottom / innerHeight : sizes[what as 'tree'] / innerWidth;
-    handle.setAttribute('aria-valuenow', String(Math.round(100 * Math.min(1, share))));
-  });
+  dock.lay_out();
+  for (const [panel] of panel_names) toggles.get(panel)!.setAttribute('aria-pressed', String(settings.panels[panel]));
 }
 
 function show_panel(panel: Panel, on_: boolean): void {
   settings.panels[panel] = on_;
+  if (on_) dock.raise(panel);
   lay_out();
   keep();
 }
 
 // On narrow screens one panel at a time.
 function show_only(panel: Panel): void {
-  page.dataset.only = panel;
+  page.dataset.only = dock.only = panel;
+  dock.lay_out();
   for (const tab of tab_bar.querySelectorAll('button')) tab.setAttribute('aria-pressed', String(tab.dataset.panel === panel));
 }
 
@@ -338,7 +292,7 @@ document.addEventListener('keydown', (event) => {
     a: on_chosen('activate', 'Activate'), d: on_chosen('deactivate', 'Deactivate'), e: on_chosen('reset', 'Reset'),
     c: () => document.getElementById('connect')?.click(), Delete: delete_selected, Escape: () => select(null),
   };
-  panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !settings.panels[panel]); }; });
+  panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !dock.is_front(panel)); }; });
   // Space on a button presses it.
   if (event.key === ' ' && target.matches('button,[role=treeitem],summary')) return;
   const work = table[event.key];
@@ -350,8 +304,8 @@ document.addEventListener('keydown', (event) => {
 // ---- the link ----
 
 const write_link = once_a_frame(() => {
-  const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames } = settings;
-  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
+  const { panels, layout, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames } = settings;
+  const link = to_link({ settings: { panels, layout, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
   history.replaceState(null, '', link);
 });
 let link_timer = 0;
@@ -380,4 +334,4 @@ if (typeof linked.moment === 'number') playback.moment = linked.moment;
 wire.connect();
 
 // For tests, and for whoever looks with the browser's console.
-Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act, playback, bottom, shell_word, shell_line } });
+Object.assign(window, { studio: { dock, world, diagram, store, wire, settings, select, act, playback, bottom, shell_word, shell_line } });

@@ -18,7 +18,7 @@ export class Tree {
   private refresh = once_a_frame(() => unless_pressed(this.list, () => this.build()));
 
   constructor() {
-    this.element.append(h('div', { class: 'search' }, this.search), this.list);
+    this.element.append(h('div', { class: 'search grip-place' }, this.search), this.list);
     on(['system', 'world', 'signals', 'selection', 'details', 'states', 'status'], this.refresh);
     this.search.addEventListener('input', this.refresh);
     this.search.addEventListener('keydown', (event) => {
