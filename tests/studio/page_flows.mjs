@@ -394,7 +394,7 @@ const flows = [
   }],
   ['a signal is dragged into the plots', async ({ page, mock }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/demo/RTCLaser0/range' }));
-    const watch_id = await until('watch', () => asked(mock, 'watch').find((m) => m.args.topic === '/demo/RTCLaser0/range')?.args.watch);
+    const watch_id = await until('watch', () => asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range')?.args.watch);
     mock.say({ op: 'values', watch: watch_id, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
     await page.locator('.inspector canvas.polar').waitFor();
     await page.locator('.inspector button[aria-label="Plot config.minAngle"]').click();
@@ -404,6 +404,36 @@ const flows = [
     await page.locator('.plot canvas').waitFor();
     await page.locator('.plot .legend button').click();
     await until('gone', async () => (await page.locator('.plot').count()) === 0);
+  }],
+  ['time is paused when a value becomes true of a comparison, once each time', async ({ page, mock }) => {
+    const was = mock.answer, pauses = () => asked(mock, 'pause').length;
+    mock.say(time({ paused: false }));
+    await choose(page, 'signal', '/demo/RTCLaser0/range');
+    await page.locator('#pause-when').click();
+    await page.locator('#break-member').selectOption('data.vx');
+    await page.locator('#break-compare').selectOption('>');
+    await page.locator('#break-value').fill('0.5');
+    await page.locator('dialog[open] button.main').click();
+    const id = (await until('its watch', () => asked(mock, 'watch').findLast((m) => m.args.members?.[0] === 'data.vx'))).args.watch;
+    const before = pauses();
+    mock.say({ op: 'values', watch: id, t: [1, 2, 3, 4], v: [[0.1], [0.4], [0.6], [0.7]] }, false);
+    await until('paused', () => pauses() === before + 1);
+    await until('it shows that it holds', async () => (await page.locator('.breaks .met').count()) === 1);
+    mock.say({ op: 'values', watch: id, t: [5, 6], v: [[0.1], [0.8]] }, false);
+    await until('paused again', () => pauses() === before + 2);
+    check((await page.locator('.status .act').textContent()).includes('data.vx > 0.5'), 'why');
+    await page.locator('.breaks button').click();
+    await until('no watch', () => asked(mock, 'unwatch').some((m) => m.args.watch === id));
+    await choose(page, 'component', laser);
+    await page.locator('#pause-on-error').click();
+    await until('pressed', async () => (await page.locator('#pause-on-error').getAttribute('aria-pressed')) === 'true');
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Error' }, rates: {} });
+    await until('paused by the error', () => pauses() === before + 3);
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Active' }, rates: {} });
+    await page.locator('#pause-on-error').click();
+    await until('none', async () => (await page.locator('.breaks li').count()) === 0);
+    mock.say(time());
+    mock.answer = was;
   }],
   ['logs are filtered', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');

@@ -1,5 +1,6 @@
 // Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
 import { button, h, icon, once_a_frame, put, unless_pressed, with_code } from './dom';
+import { Breaks } from './breaks';
 import { Contexts } from './contexts';
 import { History } from './history';
 import { Playback, recording } from './playback';
@@ -14,6 +15,7 @@ export class Bottom {
   readonly transport = h('div', { class: 'transport grip-place', role: 'toolbar', 'aria-label': 'Time' });
   readonly element = h('div', { class: 'bottom' });
   readonly plots: Plots;
+  readonly breaks: Breaks;
   private readonly clock = h('output', { class: 'clock', 'aria-label': 'Simulated time' }, '–');
   private readonly rate = h('span', { class: 'rate' });
   private readonly waits = h('span', { class: 'waits' });
@@ -40,6 +42,7 @@ export class Bottom {
   private readonly step_box = h('select', { id: 'step-what', 'aria-label': 'What a step is', hidden: true }, h('option', { value: '' }, 'one step'));
 
   constructor(private readonly history: History, private readonly playback: Playback) {
+    this.breaks = new Breaks(playback);
     this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
     const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present && store.time !== null));
     const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
@@ -58,7 +61,7 @@ export class Bottom {
     this.speed.addEventListener('change', set_speed);
     this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
     const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.plots.draw(); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
-    this.transport.append(this.run_button, step_button, this.step_box, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
+    this.transport.append(this.run_button, step_button, this.step_box, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, this.breaks.element, h('span', { class: 'spring' }), window_box, this.live);
     this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
     this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
     this.log_filter.addEventListener('input', () => this.show_logs());

@@ -23,6 +23,9 @@ export interface Parts {
   drive: (iface: string) => void;
   plot: (topic: string, member: string) => void;
   show_image: (iface: string) => void;
+  pause_when: (topic: string, members: string[]) => void;
+  pauses_on_error: (path: string) => boolean;
+  pause_on_error: (path: string) => void; // or not any more
 }
 
 type Content = (HTMLElement | string | null | false | HTMLElement[])[];
@@ -80,7 +83,7 @@ export class Inspector {
     const path = now.kind === 'port' ? component_of_port(now.id) : now.id;
     const model = store.world?.models.find((m) => m.name === now.id);
     return JSON.stringify([
-      more, component(path), store.details.get(path), connection(now.id), store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)), model,
+      more, now.kind === 'component' && this.parts.pauses_on_error(path), component(path), store.details.get(path), connection(now.id), store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)), model,
       now.kind === 'model' || now.kind === 'iface' ? [store.world?.ifaces.filter((i) => i.model === now.id || iface_id(i) === now.id), components_of(now.id).map((p) => component(p)?.state), this.parts.world.world?.models.has(now.id)] : 0,
       store.signals.find((s) => s.topic === now.id || s.component === path),
     ]);
@@ -237,8 +240,14 @@ export class Inspector {
       h('p', { class: 'hint' }, topic, signal.kind === 'port' ? `, ${short_type(signal.type)}` : ''),
       signal.model ? h('p', null, 'of ', link_to(signal.model, { kind: 'model', id: signal.model })) : null,
       signal.component ? h('p', null, 'of ', link_to(short_path(signal.component), { kind: 'component', id: signal.component })) : null,
+      signal.kind === 'image' || (read_only() && !store.hello?.recording) ? null : h('div', { class: 'acts' }, button('Pause when a value of it becomes true of a comparison', { label: store.hello?.recording ? 'Go to …' : 'Pause when …', id: 'pause-when' }, () => this.ask_break(topic))),
       rate, values,
     ];
+  }
+
+  private async ask_break(topic: string): Promise<void> {
+    const { result } = await wire.request('members', { topic }).catch(() => ({ result: null }));
+    this.parts.pause_when(topic, ((result?.members ?? []) as { path: string; type: string }[]).filter((m) => m.type === 'number').map((m) => m.path));
   }
 
   // The newest sample: each number can go into a plot; long arrays as polar plot.
@@ -281,6 +290,7 @@ export class Inspector {
         does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true),
         one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Let ${one.instance} take part in simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
+        button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),

@@ -39,6 +39,9 @@ const inspector = new Inspector({
   world,
   drive: (iface) => drive.begin(iface),
   plot,
+  pause_when: (topic, members) => bottom.breaks.ask(topic, members),
+  pauses_on_error: (path) => bottom.breaks.has_state(path),
+  pause_on_error: (path) => bottom.breaks.toggle_state(path),
   show_image: (iface) => {
     show_panel('bottom', true);
     bottom.show_image(iface);
