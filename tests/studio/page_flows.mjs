@@ -364,6 +364,35 @@ const flows = [
     await changes(world);
     mock.say(time());
   }],
+  ['scans and trails of a live run are those of the moment that the time line shows', async ({ page, mock, world }) => {
+    const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
+    const fan = (await until('the watch of a fan', () => asked(mock, 'watch').findLast((m) => m.args.topic.includes('laser') && m.args.hz === 15))).args.watch;
+    const seen = () => page.evaluate(() => {
+      const { world } = window.studio, [fan] = world.ranges.fans.values(), [trail] = world.trails.trails.values(), points = fan.parts[0].geometry.getAttribute('position');
+      return { visible: fan.parts[0].visible, first: points ? Math.hypot(points.getX(1), points.getY(1)) : 0, trail: trail?.line.geometry.drawRange.count ?? 0 };
+    });
+    const at = (seconds) => { const frame = poses(world.version, [[index, seconds - 200, 4, 0.1]]); frame.writeBigUInt64LE(BigInt(seconds * 1e9), 8); return frame; };
+    for (let seconds = 201; seconds <= 206; ++seconds) {
+      mock.say(at(seconds), false);
+      mock.say({ op: 'values', watch: fan, t: [seconds], value: { ranges: Array.from({ length: 60 }, () => (seconds - 200) / 2) } }, false);
+      mock.say(time({ sim_time: seconds }), false);
+      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time.sim_time === t, seconds));
+    }
+    const now = await seen();
+    check(Math.abs(now.first - 3) < 1e-5 && now.trail >= 6, JSON.stringify(now));
+    await page.evaluate(() => window.studio.bottom.look(202.5));
+    const then = await seen();
+    check(then.visible && Math.abs(then.first - 1) < 1e-5, `the scan of then: ${JSON.stringify(then)}`);
+    same(now.trail - then.trail, 4, 'points that were still to come');
+    mock.say({ op: 'values', watch: fan, t: [206.2], value: { ranges: Array.from({ length: 60 }, () => 4) } }, false);
+    mock.say(at(207), false);
+    await until('it was told', () => page.evaluate(() => window.studio.world.told_time === 207));
+    check(Math.abs((await seen()).first - 1) < 1e-5 && (await seen()).trail === then.trail, 'what comes meanwhile changes nothing that is shown');
+    await page.evaluate(() => window.studio.bottom.look(null));
+    same((await seen()).trail, now.trail + 1, 'and is there afterwards');
+    check(Math.abs((await seen()).first - 4) < 1e-5, 'the scan of now');
+    mock.say(time());
+  }],
   ['trails end with the world that they were made in', async ({ page, mock, world }) => {
     const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
     for (const x of [3, 3.2, 3.4]) mock.say(poses(world.version, [[index, x, 1, 0.1]]));

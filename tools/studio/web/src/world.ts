@@ -14,7 +14,7 @@ import { Eye, EyeState, to_ours } from './orbit';
 import { Ranges } from './ranges';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
-import { Trails } from './trails';
+import { type Mover, Trails } from './trails';
 import type { Poses } from './wire';
 import { fetch_data } from './token';
 
@@ -144,12 +144,17 @@ export class WorldView {
     const is_first = this.world === null;
     if (this.world) this.drop(this.world);
     const run = `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.birth}`;
-    if (run !== this.run_key) this.trails.forget();
+    if (run !== this.run_key) {
+      this.trails.forget();
+      this.ranges.forget();
+    }
     this.run_key = run;
     this.trails.keep(new Set(world.models.keys()));
     this.world = world;
     this.is_past = false;
     this.present = null;
+    this.ranges.show_at(null);
+    this.trails.show(null);
     this.scene.add(world.root);
     this.scene.background = linear(world.look.background);
     this.measure();
@@ -201,11 +206,13 @@ export class WorldView {
   // The newest of each link that the server has told, by what stands where in which frame: a scene may come long after they did.
   private told = new Map<number, { view: DataView; at: number }>();
   private told_version = -1;
+  private told_time = 0; // [s]
   is_past = false;
   private present: Float32Array | null = null;
   private take(poses: Poses): void {
     if (poses.all || poses.version !== this.told_version) this.told.clear();
     this.told_version = poses.version;
+    this.told_time = poses.time;
     const { view } = poses;
     const is_shown = this.world?.version === poses.version;
     for (let i = 0, at = 24; i < poses.count; ++i, at += 24) {
@@ -249,19 +256,21 @@ export class WorldView {
   }
 
   // Seven numbers a link: what was, of links with these names. Null: what is.
-  show_past(was: Float32Array | null, names = this.link_names()): void {
+  // `moment`: when that was [s].
+  show_past(was: Float32Array | null, names = this.link_names(), moment: number | null = null): void {
     const links = this.world?.links ?? [];
     const places = was && this.in_order(was, names);
     if (places && !this.is_past) this.present = this.places();
     const shown = places ?? this.present;
     this.is_past = places !== null;
+    this.ranges.show_at(this.is_past ? moment : null);
+    this.trails.show(this.is_past ? moment : null);
     if (!places) this.present = null;
     if (!shown || shown.length !== links.length * 7) return;
     links.forEach((link, i) => {
       link.position.fromArray(shown, 7 * i);
       link.quaternion.fromArray(shown, 7 * i + 3);
     });
-    this.ranges.hide_in_the_past(this.is_past);
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -279,8 +288,8 @@ export class WorldView {
   }
 
   private after_places(): void {
+    this.trails.lengthen(this.movers_now(), this.told_time);
     if (this.is_past) return;
-    this.trails.lengthen(this.movers());
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -298,6 +307,15 @@ export class WorldView {
   private movers(): Model[] {
     const models = new Set(store.world?.ifaces.filter((i) => i.type.startsWith('position')).map((i) => i.model));
     return [...(this.world?.models.values() ?? [])].filter((m) => models.has(m.name));
+  }
+
+  // Also while the past is shown.
+  private movers_now(): Mover[] {
+    const { present } = this, links = this.world?.links ?? [];
+    return this.movers().filter((m) => m.canonical).map(({ name, canonical }) => {
+      const at = present ? links.indexOf(canonical!) : -1;
+      return { name, position: present && at >= 0 ? new Vector3().fromArray(present, 7 * at) : canonical!.position };
+    });
   }
 
   private resize(): void {
