@@ -42,6 +42,12 @@ const flows = [
     check((await page.locator('.inspector h2').textContent()) === 'pioneer2dx', 'the inspector shows it');
     check((await page.locator('.tree li.related').count()) >= 1, 'its signals are marked');
   }],
+  ['all tools of the world are within its panel', async ({ page }) => {
+    const bar = await page.locator('.world-panel > .bar').boundingBox();
+    const out = await page.locator('.world-panel > .bar > *').evaluateAll((all, box) => all.map((e) => [e.getAttribute('aria-label') ?? e.textContent, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0 && (r.right > box.x + box.width + 0.5 || r.bottom > box.y + box.height + 0.5)).map(([name]) => name), bar);
+    same(out, [], 'cut off');
+    check(bar.height < 40, `one row: ${bar.height}`);
+  }],
   ['eyes: from above, follow, all', async ({ page }) => {
     await page.locator('.world canvas').focus();
     await page.keyboard.press('t');
@@ -88,6 +94,28 @@ const flows = [
     await page.mouse.up();
     await until('push', () => asked(mock, 'push').length > 0);
     await page.evaluate(() => { window.studio.world.hands.set_tool('push'); window.studio.world.whole(); });
+  }],
+  ['an arrow above the selected model moves it along its axis alone', async ({ page, mock }) => {
+    await choose(page, 'model', 'pioneer2dx');
+    await page.evaluate(() => { const { world } = window.studio; world.follow('pioneer2dx'); world.draw(); world.eye.set_mode('orbit'); if (world.hands.tool !== 'move') world.hands.set_tool('move'); world.draw(); world.draw(); });
+    const before = await page.evaluate(() => window.studio.world.hands.gizmo.pose());
+    for (const [axis, i] of [['Z', 2], ['Y', 1]]) {
+      const [x, y] = await page.evaluate((a) => window.studio.world.hands.gizmo.handle(a), axis);
+      const count = await page.evaluate(() => window.studio.store.acts.length);
+      await page.mouse.move(x, y, { steps: 2 });
+      await until(`${axis} is under the mouse`, () => page.evaluate(() => window.studio.world.hands.gizmo.is_under_mouse()));
+      await page.mouse.down();
+      await page.mouse.move(x + (axis === 'Z' ? 0 : 30), y - 30, { steps: 4 });
+      await page.mouse.up();
+      await until('an act', () => page.evaluate((n) => window.studio.store.acts.length > n, count));
+      const { pose } = asked(mock, 'set_pose').at(-1).args;
+      check(Math.abs(pose[i] - before[i]) > 0.01, `${axis}: ${pose} after ${before}`);
+      check([0, 1, 2].every((k) => k === i || Math.abs(pose[k] - before[k]) < 1e-6), `along ${axis} alone: ${pose}, before ${before}`);
+      await page.evaluate(() => window.studio.world.draw());
+    }
+    await page.keyboard.press('Control+z');
+    await until('back', () => asked(mock, 'set_pose').at(-1).args.pose?.every((v, k) => Math.abs(v - before[k]) < 1e-6));
+    await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
   }],
   ['keys drive the robot, and stop it when they are let go', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');
@@ -253,7 +281,7 @@ const flows = [
     await page.locator('.inspector button[aria-label="Plot data.heading"]').click();
     await until('a line', async () => (await page.locator('.plot .legend').textContent()).includes('data.heading [°]'));
     await until('its value', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].values.at(-1) === 90));
-    await page.locator('.plot .legend button').click();
+    await page.locator('.plot .legend button').first().click();
     mock.answer = was;
   }],
   ['a model is deleted by the button or the key, and undo restores it before it undoes what came before', async ({ page, mock }) => {
@@ -423,7 +451,7 @@ const flows = [
   }],
   ['a signal is dragged into the plots', async ({ page, mock }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/demo/RTCLaser0/range' }));
-    const watch_id = await until('watch', () => asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range')?.args.watch);
+    const watch_id = await until('watch', () => asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range' && !m.args.members)?.args.watch);
     mock.say({ op: 'values', watch: watch_id, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
     await page.locator('.inspector canvas.polar').waitFor();
     await page.locator('.inspector button[aria-label="Plot config.minAngle"]').click();
@@ -431,8 +459,42 @@ const flows = [
     const plotted = await until('plot watch', () => asked(mock, 'watch').find((m) => m.args.members?.[0] === 'config.minAngle')?.args.watch);
     mock.say({ op: 'values', watch: plotted, t: [12.0, 12.1, 12.2], v: [[1], [2], [3]] });
     await page.locator('.plot canvas').waitFor();
-    await page.locator('.plot .legend button').click();
+    await page.locator('.plot .legend button').first().click();
     await until('gone', async () => (await page.locator('.plot').count()) === 0);
+  }],
+  ['plots are zoomed by a drag and the wheel, show values at the cursor, and are saved as CSV', async ({ page, mock }) => {
+    const was = mock.answer;
+    mock.answer = (message) => {
+      if (message.name === 'watch' && message.args.members?.[0] === 'data.vx') setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: Array.from({ length: 60 }, (_, i) => i / 2), v: Array.from({ length: 60 }, (_, i) => [i]) }, false), 20);
+      return was(message);
+    };
+    mock.say(time({ sim_time: 30 }));
+    await page.evaluate(() => window.studio.bottom.plots.add('/demo/RTCLaser0/range', 'data.vx'));
+    await until('its samples', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].values.length === 60));
+    await page.locator('.u-over').waitFor();
+    const shown = () => page.evaluate(() => { const { min, max } = window.studio.bottom.plots.plots[0].plot.scales.x; return [min, max]; });
+    await until('all of it', async () => Math.abs((await shown())[1] - 30) < 0.1);
+    const over = await page.locator('.u-over').boundingBox();
+    await page.mouse.move(over.x + over.width / 2, over.y + 20);
+    await until('the value at the cursor', async () => /data\.vx = (29|30|31)/.test(await page.locator('.plot .legend').textContent()));
+    await page.mouse.move(over.x + over.width * 0.25, over.y + 20);
+    await page.mouse.down();
+    await page.mouse.move(over.x + over.width * 0.5, over.y + 25, { steps: 4 });
+    await page.mouse.up();
+    await until('zoomed', async () => Math.abs((await shown())[0] - 7.5) < 0.5 && Math.abs((await shown())[1] - 15) < 0.5);
+    same(await page.locator('#live').getAttribute('aria-pressed'), 'true', 'a drag chooses no moment');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.plot .csv').click()]);
+    const rows = readFileSync(await download.path(), 'utf8').trim().split('\n');
+    same(rows[0], 'time [s],/demo/RTCLaser0/range data.vx', 'head');
+    check(rows.length > 12 && rows.length < 20 && rows.includes('10,20'), rows.join(' '));
+    await page.mouse.move(over.x + over.width * 0.5, over.y + 20);
+    await page.mouse.wheel(0, 200);
+    await until('further away', async () => { const [min, max] = await shown(); return max - min > 9; });
+    await page.locator('.zoom-out').click();
+    await until('all again', async () => Math.abs((await shown())[1] - 30) < 0.1);
+    await page.locator('.plot .legend button').first().click();
+    mock.answer = was;
+    mock.say(time());
   }],
   ['time is paused when a value becomes true of a comparison, once each time', async ({ page, mock }) => {
     const was = mock.answer, pauses = () => asked(mock, 'pause').length;
@@ -475,6 +537,7 @@ const flows = [
     await page.locator('#tab-plots').click();
   }],
   ['time: run, step, reset, speed', async ({ page, mock }) => {
+    const pauses = asked(mock, 'pause').length;
     await page.locator('.world canvas').focus();
     for (const [key, name] of [[' ', 'run'], ['.', 'step'], ['Shift+R', 'reset_world']]) {
       await page.keyboard.press(key === ' ' ? 'Space' : key);
@@ -483,7 +546,7 @@ const flows = [
     mock.say(time({ paused: false }));
     await until('pause is offered', () => page.locator('#run[aria-label=Pause]').count());
     await page.locator('#run').click();
-    await until('pause', () => asked(mock, 'pause').length === 1);
+    await until('pause', () => asked(mock, 'pause').length === pauses + 1);
     await page.locator('#speed').fill('4');
     await page.keyboard.press('Enter');
     await until('speed', () => asked(mock, 'speed').at(-1)?.args.rtf === 4);
@@ -591,7 +654,7 @@ const flows = [
     const left = () => page.evaluate(() => Math.min(...[...document.querySelectorAll('.diagram .box')].map((b) => b.getBoundingClientRect().left)));
     await until('all boxes are seen', async () => (await left()) >= 0);
     await page.setViewportSize({ width: 3840, height: 2160 });
-    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) check(await page.locator(`.${panel}-panel`).isVisible(), `${panel} on a wall`);
+    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) await until(`${panel} on a wall`, () => page.locator(`.${panel}-panel`).isVisible());
     await page.context().close();
   }],
   ['read-only: it may look, not act', async ({ browser }) => {

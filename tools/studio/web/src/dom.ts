@@ -41,6 +41,7 @@ export function put(parent: Element, ...children: Child[]): void {
 
 // Line drawings of 16 x 16.
 const icons: { [name: string]: string } = {
+  table: 'M2.5 3h11v10h-11zM2.500 6.500h11M2.500 9.800h11M6.500 3v10',
   grip: 'M6 4v.1M6 8v.1M6 12v.1M10 4v.1M10 8v.1M10 12v.1',
   layout: 'M2.5 3h11v10h-11zM6.500 3v10M6.500 8.500h7',
   run: 'M5 3l8 5-8 5z',

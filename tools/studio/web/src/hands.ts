@@ -1,8 +1,9 @@
 // The mouse on models: a click selects, a double click follows; with a tool in hand they are moved, turned and pushed.
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { pose_of, type Model, type WorldScene } from './glb';
+import { Gizmo } from './gizmo';
 import type { Eye } from './orbit';
-import { act, changed, read_only, select, wire } from './store';
+import { act, changed, read_only, select, selected_model, wire } from './store';
 
 export type Tool = 'look' | 'move' | 'push';
 
@@ -19,7 +20,10 @@ export class Hands {
   private is_placing = false;
   menu: (event: MouseEvent, model: string) => void = () => {};
 
+  readonly gizmo: Gizmo;
+
   constructor(private readonly view: Reach, scene: Scene) {
+    this.gizmo = new Gizmo(view, scene);
     this.arrow.renderOrder = 10;
     this.arrow.visible = false;
     this.arrow.frustumCulled = false;
@@ -48,6 +52,7 @@ export class Hands {
   // True: this press is for a model, and does not turn the eye.
   begin_drag(event: PointerEvent): boolean {
     if (this.tool === 'look' || event.button !== 0 || read_only()) return false;
+    if (this.gizmo.is_under_mouse()) return true;
     const hit = this.hit(event);
     const model = hit && this.view.world!.models.get(hit.model);
     if (!hit || !model?.canonical || model.is_static) return false;
@@ -103,6 +108,12 @@ export class Hands {
     act(`Push ${model}`, 'push', { name: model, force, seconds: 0.2 });
   }
 
+  // Before each picture; `is_now`: not of the past.
+  show_gizmo(is_now: boolean): void {
+    const model = this.view.world?.models.get(selected_model() ?? '');
+    this.gizmo.show(this.tool === 'move' && is_now && model && !model.is_static && !read_only() && !this.drag ? model : null);
+  }
+
   set_tool(tool: Tool): void {
     this.tool = this.tool === tool ? 'look' : tool;
     this.view.canvas.parentElement!.dataset.tool = this.tool;
@@ -115,6 +126,7 @@ export class Hands {
     this.view.canvas.addEventListener('pointermove', (event) => this.go_on(event, false));
     this.view.canvas.addEventListener('pointerup', (event) => {
       if (this.drag) return this.go_on(event, true);
+      if (this.gizmo.is_under_mouse()) return;
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button === 1) return;
       const hit = this.hit(event);
       if (event.button === 2) return void (hit && this.menu(event, hit.model)); // with a drag it moves the eye

@@ -4,6 +4,7 @@ import { Diagram } from './diagram';
 import { ask_text, open_dialog } from './dialog';
 import { Dock } from './dock';
 import { button, h, once_a_frame, put } from './dom';
+import { download } from './download';
 import { Drive } from './drive';
 import { History } from './history';
 import { delete_model, disconnect, Inspector, put_model } from './inspector';
@@ -90,12 +91,6 @@ async function save_picture(): Promise<void> {
   const scale = Math.min(devicePixelRatio, 4096 / Math.max(width, height));
   const result = await act('Save a picture', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
   if (result?.png) download(new Blob([Uint8Array.from(atob(result.png), (c) => c.charCodeAt(0))], { type: 'image/png' }), `${store.world?.name || 'world'}.png`);
-}
-
-function download(content: Blob, name: string): void {
-  const url = URL.createObjectURL(content);
-  h('a', { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
 function next_theme(): void {
@@ -190,7 +185,7 @@ const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'Wo
   h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
-  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
+  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }),
     button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
     button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
     button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),

@@ -339,6 +339,7 @@ export class WorldView {
     camera.updateMatrixWorld();
     place_lights(this.world.look, this.world.lights);
     this.marker.draw(this.eye.mode === 'fixed' ? undefined : this.world.models.get(selected_model() ?? ''));
+    this.hands.show_gizmo(!this.is_past && (this.eye.mode === 'orbit' || this.eye.mode === 'follow' || this.eye.mode === 'top'));
     const spots = this.axes.draw(this.world, selected_model());
     this.daylight.look_from(camera, this.eye.mode !== 'top');
     const began = performance.now();
