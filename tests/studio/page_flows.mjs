@@ -95,6 +95,31 @@ const flows = [
     await until('push', () => asked(mock, 'push').length > 0);
     await page.evaluate(() => { window.studio.world.hands.set_tool('push'); window.studio.world.whole(); });
   }],
+  ['a model is spawned where the mouse says, on what is there, and turned by a drag', async ({ page, mock }) => {
+    await page.evaluate(() => { window.studio.world.top(); window.studio.world.draw(); });
+    const spawned = () => asked(mock, 'spawn').length, count = spawned();
+    const ask = async () => {
+      await page.locator('button[aria-label="Spawn a model"]').click();
+      await page.locator('#spawn-model').fill('cow');
+      await page.locator('#spawn-place').click();
+    };
+    const box = await page.locator('.world canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await ask();
+    await page.keyboard.press('Escape');
+    await ask();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x, y - 40, { steps: 3 });
+    await page.mouse.up();
+    await until('spawned', () => spawned() === count + 1);
+    const { pose } = asked(mock, 'spawn').at(-1).args, target = await page.evaluate(() => window.studio.world.eye.target.toArray());
+    check(Math.hypot(pose[0] - target[0], pose[1] - target[1]) < 0.2, `under the mouse: ${pose}, ${target}`);
+    check(Math.abs(pose[3] - Math.SQRT1_2) < 1e-3 && Math.abs(pose[6] - Math.SQRT1_2) < 1e-3, `towards the north: ${pose}`);
+    await page.mouse.click(x, y);
+    same(spawned(), count + 1, 'once');
+    await page.evaluate(() => window.studio.world.whole());
+  }],
   ['an arrow above the selected model moves it along its axis alone', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');
     await page.evaluate(() => { const { world } = window.studio; world.follow('pioneer2dx'); world.draw(); world.eye.set_mode('orbit'); if (world.hands.tool !== 'move') world.hands.set_tool('move'); world.draw(); world.draw(); });

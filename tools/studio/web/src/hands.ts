@@ -31,6 +31,43 @@ export class Hands {
     this.listen();
   }
 
+  // A press of the mouse says where, on the ground or on what is there, and a drag from it which way; Escape gives up.
+  private placing_of: { take: (at: { position: number[]; yaw: number }) => void; at: Vector3 | null } | null = null;
+  ask_place(take: (at: { position: number[]; yaw: number }) => void): void {
+    this.placing_of = { take, at: null };
+    this.view.canvas.parentElement!.dataset.tool = 'place';
+    this.view.canvas.focus({ preventScroll: true });
+  }
+
+  private end_place(): void {
+    this.placing_of = null;
+    this.arrow.visible = false;
+    this.view.canvas.parentElement!.dataset.tool = this.tool;
+    this.view.redraw();
+  }
+
+  // True: the event was for a place.
+  private place(event: PointerEvent): boolean {
+    const { placing_of: now } = this;
+    if (!now) return false;
+    if (event.type === 'pointerdown') now.at = event.button === 0 ? this.surface(event) : null;
+    if (!now.at) return event.button === 0;
+    const to = this.on_plane(event, now.at.z) ?? now.at, way = to.clone().sub(now.at), has_way = way.length() > 0.1;
+    this.arrow.visible = has_way;
+    this.arrow.geometry.setAttribute('position', new BufferAttribute(new Float32Array([...now.at.toArray(), ...to.toArray()]), 3));
+    this.view.redraw();
+    if (event.type !== 'pointerup') return true;
+    this.end_place();
+    now.take({ position: now.at.toArray(), yaw: has_way ? Math.atan2(way.y, way.x) : 0 });
+    return true;
+  }
+
+  // Of what the mouse is over, the ground of the world too; else of the plane z = 0.
+  private surface(event: PointerEvent): Vector3 | null {
+    const hits = this.view.world ? this.ray(event).intersectObject(this.view.world.root, true) : [];
+    return hits.find(({ object }) => !object.userData.overlay && object instanceof Mesh)?.point ?? this.on_plane(event, 0);
+  }
+
   private ray(event: { clientX: number; clientY: number }): Raycaster {
     const box = this.view.canvas.getBoundingClientRect();
     const ray = new Raycaster();
@@ -51,6 +88,10 @@ export class Hands {
 
   // True: this press is for a model, and does not turn the eye.
   begin_drag(event: PointerEvent): boolean {
+    if (this.placing_of && event.button === 0) {
+      this.view.canvas.setPointerCapture(event.pointerId);
+      return this.place(event);
+    }
     if (this.tool === 'look' || event.button !== 0 || read_only()) return false;
     if (this.gizmo.is_under_mouse()) return true;
     const hit = this.hit(event);
@@ -123,8 +164,14 @@ export class Hands {
   private listen(): void {
     let down: [number, number] | null = null;
     this.view.canvas.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
-    this.view.canvas.addEventListener('pointermove', (event) => this.go_on(event, false));
+    this.view.canvas.addEventListener('pointermove', (event) => { if (!this.placing_of?.at || !this.place(event)) this.go_on(event, false); });
+    this.view.canvas.addEventListener('keydown', (event) => {
+      if (event.key !== 'Escape' || !this.placing_of) return;
+      this.end_place();
+      event.stopPropagation();
+    });
     this.view.canvas.addEventListener('pointerup', (event) => {
+      if (this.place(event)) return;
       if (this.drag) return this.go_on(event, true);
       if (this.gizmo.is_under_mouse()) return;
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button === 1) return;

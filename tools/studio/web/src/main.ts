@@ -116,7 +116,11 @@ const tools: { [name: string]: HTMLButtonElement } = {
   move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
   push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
   picture: button('Save a picture of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
-  spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog()),
+  spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog((what, take) => {
+    show_panel('world', true);
+    act_text.textContent = `Press in the world where ${what} is to be; drag for its direction, Escape gives up`;
+    world.hands.ask_place(take);
+  })),
 };
 
 const camera_box = h('select', { class: 'camera-box', 'aria-label': 'Look through a camera', hidden: true });
