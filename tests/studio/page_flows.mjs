@@ -78,7 +78,7 @@ const flows = [
     await until('none', async () => (await page.evaluate(() => window.studio.world.axes.count)) === 0 && (await page.locator('.labels span.frame').count()) === 0);
   }],
   ['a robot is moved by dragging it', async ({ page, mock }) => {
-    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
+    await page.evaluate(() => { window.studio.select(null); window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     const box = await page.locator('.world canvas').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     await page.mouse.move(x, y);
@@ -419,7 +419,9 @@ const flows = [
   }],
   ['scans and trails of a live run are those of the moment that the time line shows', async ({ page, mock, world }) => {
     const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
-    const fan = (await until('the watch of a fan', () => asked(mock, 'watch').findLast((m) => m.args.topic.includes('laser') && m.args.hz === 15))).args.watch;
+    const fans = () => asked(mock, 'watch').filter((m) => m.args.topic.includes('laser') && m.args.hz === 15), before = fans().length;
+    await page.evaluate(() => { window.studio.world.ranges.clear(); window.studio.world.apply_settings(); });
+    const fan = (await until('the watch of a fan', () => fans()[before])).args.watch; // of this page, whatever others have asked for
     const seen = () => page.evaluate(() => {
       const { world } = window.studio, [fan] = world.ranges.fans.values(), [trail] = world.trails.trails.values(), points = fan.parts[0].geometry.getAttribute('position');
       return { visible: fan.parts[0].visible, first: points ? Math.hypot(points.getX(1), points.getY(1)) : 0, trail: trail?.line.geometry.drawRange.count ?? 0 };
@@ -499,7 +501,7 @@ const flows = [
     await page.locator('.u-over').waitFor();
     const shown = () => page.evaluate(() => { const { min, max } = window.studio.bottom.plots.plots[0].plot.scales.x; return [min, max]; });
     await until('all of it', async () => Math.abs((await shown())[1] - 30) < 0.1);
-    const over = await page.locator('.u-over').boundingBox();
+    const over = await until('the plot', () => page.locator('.u-over').boundingBox());
     await page.mouse.move(over.x + over.width / 2, over.y + 20);
     await until('the value at the cursor', async () => /data\.vx = (29|30|31)/.test(await page.locator('.plot .legend').textContent()));
     await page.mouse.move(over.x + over.width * 0.25, over.y + 20);
@@ -712,7 +714,7 @@ const flows = [
     mock.say(await world_of(glb));
     await has_world(page);
     mock.stop();
-    await until('gone', async () => (await page.locator('.world .card').textContent()).includes('waits'));
+    await until('gone', async () => (await page.locator('.world .card').textContent()).includes('reconnects'));
     await page.context().close();
   }],
   ['it comes back after the server was gone', async ({ browser }) => {

@@ -50,7 +50,7 @@ const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-3;
 const flows = [
   ['the page says what it shows, and for how long', async ({ page }) => {
     check((await page.locator('.top .what').textContent()).includes('run.mcap, 12.0 s recorded'), 'head');
-    check((await page.locator('footer').textContent()).includes('a recording: it shows what was'), 'foot');
+    check((await page.locator('footer').textContent()).includes('recording: read-only'), 'foot');
     check(await page.locator('#live').isHidden(), 'there is no now');
     same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
     same(await page.locator('.diagram .edge').count(), 2, 'connections');

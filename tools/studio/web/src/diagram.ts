@@ -68,7 +68,7 @@ export class Diagram {
     let text = '';
     if (wire.status !== 'open') text = store.system.components.length > 0 ? '' : link_problem();
     else if (hello?.recording) text = store.has_system && system.components.length === 0 ? 'This recording has no components.' : '';
-    else if (system.problem) text = `No name server responds at ${server}. Start one with components${start}. It appears here by itself.`;
+    else if (system.problem) text = `No name server responds at ${server}. Start one with components${start}. It appears here automatically.`;
     else if (store.has_system && system.components.length === 0) text = `The name server at ${server} has no components. Start some${start}, or create them in a manager of the tree.`;
     this.element.classList.toggle('stale', wire.status !== 'open' && wire.status !== 'connecting');
     put(this.notice, text ? h('div', { class: 'card' }, h('p', null, ...with_code(text))) : null);
@@ -452,7 +452,7 @@ export class Diagram {
 
   tools(): HTMLElement[] {
     return [
-      button('Show all of the system', { icon: 'whole', key: '0' }, () => this.show_all()),
+      button('Show the whole system', { icon: 'whole', key: '0' }, () => this.show_all()),
       button('Arrange automatically', { icon: 'arrange' }, () => this.arrange()),
     ];
   }

@@ -31,7 +31,7 @@ export interface Parts {
 type Content = (HTMLElement | string | null | false | HTMLElement[])[];
 
 export class Inspector {
-  readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'What is selected' });
+  readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'Selection' });
   private shown = '';
   private facts_shown = '';
   private stop: (() => void) | null = null;
@@ -113,7 +113,7 @@ export class Inspector {
     if (is_told) this.told = name;
     if (!is_told && (!model || this.told === name)) { // actors are in the scene alone
       this.live = null;
-      return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It is not there now.')];
+      return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It does not exist now.')];
     }
     const drive = ifaces.find((i) => i.type === 'position2d' || i.type === 'position3d');
     const pose = h('dl', { class: 'values' });
@@ -134,7 +134,7 @@ export class Inspector {
     ['velocity', 'turning'].forEach((label, i) => pose.append(h('dt', null, label), this.moving[i]));
     const can = !read_only();
     return [
-      this.title(name, model?.is_static ? 'thing' : ifaces.length > 0 ? 'robot' : 'model'),
+      this.title(name, model?.is_static ? 'static model' : ifaces.length > 0 ? 'robot' : 'model'),
       h('div', { class: 'acts' },
         button('Follow with the eye', { icon: 'follow', label: 'Follow', key: 'F' }, () => world.follow(name)),
         drive && can ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive', key: 'G' }, () => this.parts.drive(drive.name)) : null,
@@ -193,7 +193,7 @@ export class Inspector {
 
   private iface(id: string, is_same: boolean): Content | null {
     const iface = store.world?.ifaces.find((i) => iface_id(i) === id);
-    if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It does not exist now.')];
     if (is_same && this.stop) return null;
     const has_picture = iface.type === 'camera' || iface.type === 'rgbd' || iface.type === 'depth';
     const values = h('div');
@@ -203,10 +203,10 @@ export class Inspector {
       this.title(iface.name, iface.type),
       iface.model ? h('p', null, 'of ', link_to(iface.model, { kind: 'model', id: iface.model })) : null,
       h('div', { class: 'acts' },
-        has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface_id(iface))) : null,
+        has_picture ? button('Show its images', { icon: 'camera', label: 'Images' }, () => this.parts.show_image(iface_id(iface))) : null,
         has_picture ? button('Look through it', { icon: 'follow', label: 'Look through' }, () => this.parts.world.look_through(iface.name)) : null,
         iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null,
-        iface.type === 'position2d' && !read_only() ? [button('Let odometry begin here with zero', { label: 'Reset odometry', id: 'reset-odometry' }, () => act(`Reset the odometry of ${iface.name}`, 'reset_odometry', { iface: iface.name })),
+        iface.type === 'position2d' && !read_only() ? [button('Set the odometry to zero', { label: 'Reset odometry', id: 'reset-odometry' }, () => act(`Reset the odometry of ${iface.name}`, 'reset_odometry', { iface: iface.name })),
           ...[true, false].map((on) => button(`Switch the motors ${on ? 'on' : 'off'}`, { label: `Motors ${on ? 'on' : 'off'}`, id: `motors-${on ? 'on' : 'off'}` }, () => act(`Switch the motors of ${iface.name} ${on ? 'on' : 'off'}`, 'set_motors', { iface: iface.name, on },
             () => ({ text: `Switch the motors of ${iface.name} ${on ? 'off' : 'on'}`, name: 'set_motors', args: { iface: iface.name, on: !on } }))))] : null),
       values,
@@ -218,7 +218,7 @@ export class Inspector {
   private signal(topic: string, is_same: boolean): Content | null {
     if (is_same && this.stop) return null;
     const signal = store.signals.find((x) => x.topic === topic);
-    if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It does not exist now.')];
     const values = h('div', null, h('p', { class: 'hint' }, 'Waiting for a sample …'));
     const rate = h('p', { class: 'hint rate' });
     if (signal.kind !== 'image' && !store.hello?.recording) {
@@ -228,7 +228,7 @@ export class Inspector {
           h('dt', null, type === 'text' ? null : button(`Plot ${path}`, { icon: 'plot', class: 'plain small' }, () => this.parts.plot(topic, path)), path), h('dd', null, '–')])));
       }, () => {});
     }
-    if (signal.kind === 'image') put(values, button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
+    if (signal.kind === 'image') put(values, button('Show its images', { icon: 'camera', label: 'Images' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
     else {
       this.stop = watch({ topic, hz: 5 }, (sample) => {
         rate.textContent = [sample.rate === undefined ? '' : `${Number(sample.rate.toPrecision(3))} a second`, sample.latency === undefined ? '' : `${(sample.latency * 1000).toFixed(1)} ms after its stamp`].filter(Boolean).join(', ');
@@ -274,21 +274,21 @@ export class Inspector {
 
   private component(path: string): Content {
     const one = component(path);
-    if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It does not exist now.')];
     const detail = store.details.get(path);
     const can = !read_only();
     const does = (text: string, name: string, enabled: boolean, danger = false) => button(`${text} ${one.instance}`, { label: text, disabled: !enabled, class: danger ? 'danger' : undefined, id: `act-${name}` }, () => state_act(one, text, name));
     const model = model_of(path);
     return [
       this.title(one.instance, one.instance.replace(/\d+$/, '') === one.type ? '' : one.type, state_mark(one.state)),
-      h('p', { class: `state ${state_class(one.state)}` }, `is ${state_words[one.state] ?? one.state}`, model ? ', carries ' : '', model ? link_to(model, { kind: 'model', id: model }) : null),
+      h('p', { class: `state ${state_class(one.state)}` }, `is ${state_words[one.state] ?? one.state}`, model ? ', bridges ' : '', model ? link_to(model, { kind: 'model', id: model }) : null),
       one.problem ? h('p', { class: 'problem' }, one.problem) : null,
       one.state === 'Error' ? h('p', { class: 'hint' }, 'Reset takes it from the error state to inactive; its log says what was wrong.') : null,
       can ? h('div', { class: 'acts' },
         does('Activate', 'activate', one.state === 'Inactive'),
         does('Deactivate', 'deactivate', one.state === 'Active'),
         does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true),
-        one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Let ${one.instance} take part in simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
+        one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Add ${one.instance} to simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
         button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
@@ -349,7 +349,7 @@ export class Inspector {
       if (!done && field) {
         field.setAttribute('aria-invalid', 'true'); // what is typed stays, to be mended
         const can_force = !force && wire.status === 'open';
-        if (can_force) field.after(button(`Set ${value.name} to ${text}, although the component does not want it`, { label: 'Set all the same', id: `${id}-force`, class: 'danger' }, () => change(text, true)));
+        if (can_force) field.after(button(`Set ${value.name} to ${text}, although the component rejected it`, { label: 'Set anyway', id: `${id}-force`, class: 'danger' }, () => change(text, true)));
       }
       await refresh_details(path);
     };
@@ -359,7 +359,7 @@ export class Inspector {
 
   private port(id: string): Content {
     const port = port_of(id), path = component_of_port(id);
-    if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It does not exist now.')];
     const signal = signal_of_port(id);
     const detail = store.details.get(path)?.ports.find((p) => p.name === port.name);
     return [
@@ -380,7 +380,7 @@ export class Inspector {
 
   private connection(id: string): Content {
     const one = connection(id);
-    if (!one) return [this.title('Connection', ''), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!one) return [this.title('Connection', ''), h('p', { class: 'hint' }, 'It does not exist now.')];
     return [
       this.title(one.name || 'Connection', 'connection'),
       h('ul', { class: 'list' }, one.ports.map((p) => h('li', null, link_to(`${component(component_of_port(p))?.instance ?? short_path(component_of_port(p))}:${name_of_port(p)}`, { kind: 'port', id: p }))),
@@ -392,7 +392,7 @@ export class Inspector {
 
   private manager(path: string, is_same: boolean): Content | null {
     if (is_same && this.stop) return null;
-    const body = h('div', null, h('p', { class: 'hint' }, 'Asking …'));
+    const body = h('div', null, h('p', { class: 'hint' }, 'Loading …'));
     let asked = 0;
     const refresh = async () => {
       const number = ++asked;

@@ -67,7 +67,7 @@ const top_bar = h('header', { class: 'top' },
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
   button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
-  button('Copy a link to this view, with the right to act', { icon: 'link', id: 'copy-link' }, () => copy_link()),
+  button('Copy a link to this view (contains the access token)', { icon: 'link', id: 'copy-link' }, () => copy_link()),
   button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
   button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
 
@@ -89,7 +89,7 @@ async function save_profile(): Promise<void> {
 async function save_picture(): Promise<void> {
   const { width, height, ...eye } = world.eye_pose();
   const scale = Math.min(devicePixelRatio, 4096 / Math.max(width, height));
-  const result = await act('Save a picture', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
+  const result = await act('Save an image', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
   if (result?.png) download(new Blob([Uint8Array.from(atob(result.png), (c) => c.charCodeAt(0))], { type: 'image/png' }), `${store.world?.name || 'world'}.png`);
 }
 
@@ -103,19 +103,19 @@ function next_theme(): void {
 // ---- the world's tools ----
 
 const tools: { [name: string]: HTMLButtonElement } = {
-  whole: button('All of the world', { icon: 'whole', key: 'O' }, () => world.whole()),
-  top: button('From above', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
+  whole: button('Whole world', { icon: 'whole', key: 'O' }, () => world.whole()),
+  top: button('Top view', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
   follow: button('Follow the selected robot', { icon: 'follow', key: 'F' }, () => follow()),
   lasers: button('Laser fans', { icon: 'laser', key: 'L', pressed: settings.lasers }, () => toggle('lasers')),
   sonars: button('Sonar cones', { icon: 'sonar', key: 'S', pressed: settings.sonars }, () => toggle('sonars')),
   trails: button('Trails', { icon: 'trail', key: 'H', pressed: settings.trails }, () => toggle('trails')),
   names: button('Names', { icon: 'names', key: 'N', pressed: settings.names }, () => toggle('names')),
-  collisions: button('Shapes that collide', { icon: 'shapes', key: 'B', pressed: settings.collisions }, () => toggle('collisions')),
+  collisions: button('Collision shapes', { icon: 'shapes', key: 'B', pressed: settings.collisions }, () => toggle('collisions')),
   contacts: button('Contacts of the selected model', { icon: 'contact', key: 'K', pressed: settings.contacts }, () => toggle('contacts')),
-  frames: button('Frames of the selected model, or of all that moves', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
+  frames: button('Frames of the selected model, or of all moving models', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
   move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
   push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
-  picture: button('Save a picture of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
+  picture: button('Save an image of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
   spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog((what, take) => {
     show_panel('world', true);
     act_text.textContent = `Press in the world where ${what} is to be; drag for its direction, Escape gives up`;
@@ -172,14 +172,14 @@ function copy_link(): void {
 
 async function copy(text: string): Promise<void> {
   if (!is_pasteable(text)) {
-    act_text.textContent = 'This is not copied: a terminal would obey what is in it';
+    act_text.textContent = 'Not copied: the text has characters that a terminal interprets';
     return;
   }
   try {
     await navigator.clipboard.writeText(text);
     act_text.textContent = 'Copied';
   } catch {
-    act_text.textContent = 'The browser does not let this page copy: select the text';
+    act_text.textContent = 'The browser rejected the copy: select the text';
   }
 }
 
@@ -192,7 +192,7 @@ const system_panel = h('section', { class: 'panel system-panel', 'aria-label': '
   h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }),
     button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
     button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
-    button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
+    button('Delete the name server entries of components that exited', { icon: 'broom', id: 'forget-dead' }, () => act('Delete dead name server entries', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
 const inspector_panel = h('section', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, h('div', { class: 'bar grip-place' }, h('h2', null, 'Inspector')), inspector.element);
@@ -232,11 +232,11 @@ function show_head(): void {
   const { status } = wire;
   const whole = recording();
   world_name.textContent = whole ? `${whole.file}, ${(whole.to - whole.from).toFixed(1)} s recorded` : store.world?.present ? store.world.name : '';
-  const text = status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  const text = status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'wrong token: open the new URL' : status === 'lost' ? 'rtm-studio exited; reconnecting' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; its readable part is shown' : '') : store.system.problem ? 'no name server' : store.world && !store.world.present ? 'no simulator' : '';
   link_state.textContent = text;
   link_state.title = whole?.damage ?? '';
   link_state.classList.toggle('bad', text !== '');
-  status_bar.querySelector('.read-only')!.textContent = whole ? 'a recording: it shows what was' : read_only() ? 'read-only: this page may look, not act' : '';
+  status_bar.querySelector('.read-only')!.textContent = whole ? 'recording: read-only' : read_only() ? 'read-only: changes are rejected' : '';
   page.classList.toggle('read-only', read_only());
   const counts = system_panel.querySelector('.counts')!;
   const errors = store.system.components.filter((c) => c.state === 'Error').length;
@@ -254,15 +254,15 @@ function show_tools(): void {
   for (const name of overlays) tools[name].setAttribute('aria-pressed', String(settings[name]));
   for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.hands.tool === name));
   const cameras = world.cameras();
-  if ([...camera_box.options].slice(1).map((o) => o.value).join('\n') !== cameras.join('\n')) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
+  if ([...camera_box.options].slice(1).map((o) => o.value).join('\n') !== cameras.join('\n')) put(camera_box, h('option', { value: '' }, 'free view'), cameras.map((c) => h('option', { value: c }, c)));
   camera_box.hidden = cameras.length === 0;
   camera_box.value = world.eye.mode === 'sensor' ? world.eye.what : '';
 }
 
 const keys: [string, string][] = [
-  ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
-  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'cut the selected connection, delete the selected model'],
-  ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
+  ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'whole world'], ['T', 'top view'], ['F', 'follow the robot'],
+  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, collision shapes, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'cut the selected connection, delete the selected model'],
+  ['Ctrl+Z', 'undo'], ['Escape', 'clear the selection'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
 ];
 
 function show_keys(): void {

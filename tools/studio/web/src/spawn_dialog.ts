@@ -13,7 +13,7 @@ export function spawn_dialog(place: (what: string, take: (at: { position: number
   const show = () => {
     const words = names.includes(model.value) ? '' : model.value.trim().toLowerCase();
     const found = names.filter((n) => n.toLowerCase().includes(words));
-    put(list, found.length === 0 ? h('li', { class: 'more' }, names.length === 0 ? 'The model path of the simulator has none: see its option --resource-path' : 'None is called so') : found.slice(0, 300).map((n) => h('li', { class: n === model.value ? 'chosen' : undefined }, h('button', { type: 'button', class: 'link', onclick: () => { model.value = n; show(); } }, n))));
+    put(list, found.length === 0 ? h('li', { class: 'more' }, names.length === 0 ? 'The model path of the simulator has none: see its option --resource-path' : 'No model matches') : found.slice(0, 300).map((n) => h('li', { class: n === model.value ? 'chosen' : undefined }, h('button', { type: 'button', class: 'link', onclick: () => { model.value = n; show(); } }, n))));
   };
   model.addEventListener('input', show);
   wire.request('models').then(({ result }) => {

@@ -54,9 +54,9 @@ export function select(selection: Selection | null): void {
 
 // Why nothing comes, in words.
 export function link_problem(): string {
-  if (wire.status === 'no token') return 'Open the URL that rtm-studio printed: it has the token without which nothing is shown.';
-  if (wire.status === 'forbidden') return 'rtm-studio was started anew and has another token. Open the URL that it printed.';
-  return wire.status === 'lost' ? 'rtm-studio is gone. This page waits and comes back with it.' : wire.status === 'connecting' ? 'Connecting …' : '';
+  if (wire.status === 'no token') return 'Open the URL that rtm-studio printed. It contains the access token.';
+  if (wire.status === 'forbidden') return 'rtm-studio was restarted and has a new token. Open the URL that it printed.';
+  return wire.status === 'lost' ? 'rtm-studio exited. This page reconnects when it runs again.' : wire.status === 'connecting' ? 'Connecting …' : '';
 }
 
 export const is_selected = (kind: Kind, id: string): boolean => store.selection?.kind === kind && store.selection.id === id;

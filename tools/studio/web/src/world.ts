@@ -57,7 +57,7 @@ export class WorldView {
       this.renderer.shadowMap.type = PCFSoftShadowMap;
       this.renderer.shadowMap.autoUpdate = false;
     } catch {
-      this.say('This browser draws no 3D (WebGL 2 is off). Everything else works; `simctl screenshot` shows the world.');
+      this.say('This browser has no WebGL 2, so the world is not drawn. Everything else works; `simctl screenshot` shows the world.');
     }
     new ResizeObserver(() => this.resize()).observe(this.element);
     on(['world', 'status', 'hello'], () => this.follow_server());
@@ -88,12 +88,12 @@ export class WorldView {
     const { world } = store;
     this.element.classList.toggle('stale', (wire.status !== 'open' && wire.status !== 'connecting') || (world !== null && !world.present));
     if (!this.renderer) return;
-    if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' This is what was last seen.' : ''}`);
+    if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' The last known state is shown.' : ''}`);
     if (!world || !world.present) {
       this.failed_version = -1;
-      const why = world?.problem || 'No simulator runs.';
-      if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording can be looked at.'}`);
-      return this.say(`${capital(why)} Start one${store.hello?.start ? `: \`${store.hello.start.simulator}\`` : ''}. It appears here by itself.`);
+      const why = world?.problem || 'No simulator is running.';
+      if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording is available.'}`);
+      return this.say(`${capital(why)} Start one${store.hello?.start ? `: \`${store.hello.start.simulator}\`` : ''}. It appears here automatically.`);
     }
     if (this.world?.version === world.version && this.world_key === this.key_of()) return this.say('');
     this.load(world.version);
