@@ -116,6 +116,7 @@ const flows = [
     const { pose } = asked(mock, 'spawn').at(-1).args, target = await page.evaluate(() => window.studio.world.eye.target.toArray());
     check(Math.hypot(pose[0] - target[0], pose[1] - target[1]) < 0.2, `under the mouse: ${pose}, ${target}`);
     check(Math.abs(pose[3] - Math.SQRT1_2) < 1e-3 && Math.abs(pose[6] - Math.SQRT1_2) < 1e-3, `towards the north: ${pose}`);
+    await until('it is selected', () => page.evaluate(() => window.studio.store.selection?.id === 'cow'));
     await page.mouse.click(x, y);
     same(spawned(), count + 1, 'once');
     await page.evaluate(() => window.studio.world.whole());

@@ -121,6 +121,23 @@ const flows = [
     check(await page.locator('.inspector .grid input').first().isDisabled(), 'disabled');
     same(await page.locator('#act-activate').count(), 0, 'buttons');
   }],
+  ['the command that replays a component is shown, and its outputs are equal', async ({ page, rig, file }) => {
+    await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
+    await page.locator('#replay').click();
+    const command = await page.locator('.status .command').textContent();
+    same(command, `rtse replay ${file} --into LaserObstacleAvoid0 --compare`, 'the command');
+    await rig.call(...command.split(' '), '--module-path', rig.lib);
+  }],
+  ['the next time at which a value becomes true of a comparison is gone to', async ({ page }) => {
+    await scrub(page, 0);
+    await choose(page, 'signal', '/LaserObstacleAvoid0/velocity');
+    await page.locator('#pause-when').click();
+    await page.locator('#break-member').selectOption('data.vx');
+    await page.locator('#break-compare').selectOption('>');
+    await page.locator('#break-value').fill('0.1');
+    await page.locator('dialog[open] button.main').click();
+    await until('a later time', async () => (await moment(page)) > 0 && (await page.locator('.status .act').textContent()).includes('data.vx > 0.1 at'));
+  }],
   ['a plot shows the whole recording, and a click on it chooses a moment', async ({ page }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/LaserObstacleAvoid0/velocity' }));
     await page.locator('.inspector button[aria-label="Plot data.vx"]').click();
