@@ -18,4 +18,5 @@ set_tests_properties(worlds.are_what_their_scripts_write PROPERTIES LABELS world
 rtmsim_test(pace_test server/pace_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(world_hashes_test server/world_hashes_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(wild_run_test server/wild_run_test.cpp LIBRARIES simserver LABELS sim world)
+rtmsim_test(deleted_models_test server/deleted_models_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(pose_watch_test server/pose_watch_test.cpp LIBRARIES simserver LABELS sim)

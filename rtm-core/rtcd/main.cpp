@@ -35,7 +35,11 @@ struct Description {
     app.add_option("-p")->description("Listen on this port of the loopback interface")->type_name("PORT");
     app.add_flag("-d")->description("Be the master manager: listen on the port of corba.master_manager");
     app.add_flag("-a")->description("Start no CORBA object for the manager");
-    app.add_flag("--with-naming")->description("Start omniNames if the first of corba.nameservers does not respond; stop it at the end");
+    app.add_flag("--with-naming")
+        ->description(
+            "Start omniNames if the first of corba.nameservers does not respond; stop it at the end. Without MODULE the program waits for "
+            "others "
+            "to create components");
     app.footer(
         "Exit code: 0 ended on request, 1 failed, 2 wrong command line\n"
         "SIGTERM ends the program. So do SIGINT and SIGHUP, unless they were ignored at its start, as with nohup");
@@ -80,6 +84,15 @@ bool take(std::vector<char*>& arguments, std::string_view option) {
   return true;
 }
 
+// A name server without components waits for others to create them, and stays when the last one is deleted. An -o of the user's counts.
+void stay(std::vector<char*>& arguments) {
+  static char option[] = "-o", empty[] = "manager.shutdown_auto:NO", deleted[] = "manager.shutdown_on_nortcs:NO";
+  arguments.insert(arguments.begin() + 1, {option, empty, option, deleted});
+  std::cerr
+      << "rtcd: no components on the command line: waiting for others to create them (rtse mgr create, rtm-studio); Ctrl+C or SIGTERM "
+         "ends the program and its name server\n";
+}
+
 // Whoever may call the components may look for them.
 bool is_open(const coil::Properties& properties) {
   const auto open_to = base::to_lower(properties.getProperty("corba.open_to"));
@@ -101,14 +114,14 @@ int host(int argc, char** argv) {
     return base::parse_command_line(description.app, "rtcd", has_value ? 3 : 2, words).value_or(0);
   }
   const bool with_naming = take(arguments, "--with-naming");
-  const int count = static_cast<int>(arguments.size());
   const auto parsed = rt::parse_manager_arguments(std::vector<std::string>(arguments.begin() + 1, arguments.end()));
   if (!parsed) return fail(2, parsed.error().message);
 
   std::unique_ptr<NameService> name_service;
   if (with_naming) {
+    if (parsed->rest.empty()) stay(arguments);
     RTC::ManagerConfig config;
-    if (!config.init(count, arguments.data(), true)) return fail(config.exitCode(), config.error());
+    if (!config.init(static_cast<int>(arguments.size()), arguments.data(), true)) return fail(config.exitCode(), config.error());
     coil::Properties properties;
     config.configure(properties);
     const auto servers = base::split_list(properties.getProperty("corba.nameservers"));
@@ -117,6 +130,7 @@ int host(int argc, char** argv) {
     name_service = std::move(*started);
   }
 
+  const int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
   auto* manager = RTC::Manager::init(count, arguments.data(), {.strict_arguments = true, .bind_manager = true, .modules = parsed->rest});
   if (!manager->activateManager()) {

@@ -141,6 +141,8 @@ struct ServerLoop::Handler {
       return refused(shm::RequestStatus::bad_request,
                      "name of a model must have at most " + std::to_string(shm::max_name_length) + " bytes");
     }
+    constexpr std::string_view deleted = "deleted://";
+    if (request.is_path && request.sdf.starts_with(deleted)) return restore(request.sdf.substr(deleted.size()));
     // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
     if (!loop.spawn_desk_) loop.spawn_desk_ = std::make_unique<SpawnDesk>([board = &loop.board_] { board->wake(); });
@@ -148,9 +150,21 @@ struct ServerLoop::Handler {
                             simulation.world().model_path, simulation.pictures().contents()});
     return {};
   }
+  // As models that have been read: between two steps, under its old name.
+  shm::Reply restore(const std::string& name) {
+    const ModelDef* model = loop.deleted_.find(name);
+    if (model == nullptr)
+      return refused(shm::RequestStatus::not_found, "no deleted model " + base::in_quotes(name) + " since the last reset");
+    LoadedModel loaded;
+    loaded.model = *model;
+    loop.loaded_.push_back({{ticket, std::move(loaded), false, {}, nullptr}, Clock::now()});
+    loop.board_.wake();
+    return {};
+  }
   shm::Reply operator()(const shm::DeleteRequest& request) {
     const auto model = physics.find(request.model);
     if (!model) return no_model(request.model);
+    loop.deleted_.keep(physics, *model);
     simulation.remove(*model);
     return {};
   }

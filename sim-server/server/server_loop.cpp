@@ -289,6 +289,7 @@ void ServerLoop::reset(bool poses_only) {
     iface_.set_resets(simulation_.resets());
     barrier_->rewind(simulation_.time(), simulation_.resets());
     contacts_told_.clear();
+    deleted_.clear();
     is_fresh_moment_ = true;
     pace_.restart_measurement(Clock::now(), simulation_.time());
     poses_.restart();

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "server/deleted_models.h"
 #include "server/describe.h"
 #include "server/memory_log.h"
 #include "server/mode.h"
@@ -123,6 +124,7 @@ class ServerLoop {
     std::chrono::steady_clock::time_point since;
   };
   std::vector<Loaded> loaded_;  // models that wait for the end of a tick
+  DeletedModels deleted_;       // since the last reset
   std::map<ModelId, std::uint64_t> contacts_told_;
   std::uint64_t last_hash_ = 0, last_hash_steps_ = 0;
   std::uint32_t missing_ = 0;  // participants

@@ -344,6 +344,24 @@ TEST_F(Rtcd, brings_a_naming_service_along_and_takes_it_away_again) {
   }
 }
 
+// It was started for others to create components in. A host without --with-naming, started later, ends.
+TEST_F(Rtcd, a_naming_service_without_components_stays_until_it_is_told_to_end) {
+  const int port = support::free_port();
+  const auto words = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {program, "-i", "-f", "none.conf", "-o", "corba.nameservers:127.0.0.1:" + std::to_string(port), "-o",
+                               "manager.auto_shutdown_duration:0.2"});
+    return more;
+  };
+  support::Process rtcd(words({"--with-naming"}));
+  ASSERT_TRUE(rtcd.wait_for_output("waiting for others to create them")) << rtcd.output();
+  ASSERT_TRUE(eventually([&] { return support::is_listening(port); })) << rtcd.output();
+  support::Process other(words({}));
+  EXPECT_EQ(other.wait(), 0) << other.output();
+  EXPECT_TRUE(support::is_listening(port));
+  rtcd.signal(SIGTERM);
+  EXPECT_EQ(rtcd.wait(), 0) << rtcd.output();
+}
+
 // Everything that it has made: omniNames, sockets, folders.
 TEST_F(Rtcd, leaves_nothing_behind_whatever_ends_it) {
   struct Case {

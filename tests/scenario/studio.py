@@ -546,6 +546,20 @@ def recording():
     studio.lives()
 
 
+# Where nothing runs, the lines that the page shows start a world and a system when they are pasted.
+def hints():
+    studio = Studio()
+    viewer = studio.viewer()
+    start = viewer.event("hello")["start"]
+    assert viewer.event("world")["present"] is False
+    rig.start("sh", "-c", f"exec {start['simulator']}")
+    viewer.event("world", lambda m: m["present"] and m["server_id"] == int(rig.server_id))
+    rig.start("sh", "-c", f"exec {start['components']}")
+    viewer.event("system", lambda m: sum(not c["problem"] for c in m["components"]) == 3)
+    viewer.do("run")
+    viewer.event("time", lambda m: m["sim_time"] > 0.1)
+
+
 # A saved system with its world, started paused, and gone with the studio.
 def started():
     studio = Studio(f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf")

@@ -58,7 +58,7 @@ const flows = [
     const field = page.locator('.inspector label:has-text("max_turn") + * input[type=number]');
     await field.fill('999');
     await page.keyboard.press('Tab');
-    await page.locator('.inspector button', { hasText: 'Set all the same' }).click();
+    await page.locator('.inspector button', { hasText: 'Set anyway' }).click();
     await until('by force', () => asked(mock, 'set_configuration').some((m) => m.args.force && m.args.values.max_turn === '999'));
     mock.answer = usual;
     await choose(page, 'component', avoid);

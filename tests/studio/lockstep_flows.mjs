@@ -51,7 +51,7 @@ const flows = [
       const studio = await rig.studio();
       const page = await open(browser, studio.url);
       await is_ready(page);
-      await until('who takes part', async () => (await page.locator('.waits').textContent()).includes('one takes part'));
+      await until('who takes part', async () => (await page.locator('.waits').textContent()).includes('1 participant'));
       await page.locator('#step-what').selectOption(name);
       const time = async () => JSON.parse(await rig.simctl('--json', 'stats')).sim_time;
       for (let i = 0; i < 3; ++i) {

@@ -42,6 +42,12 @@ const flows = [
     check((await page.locator('.inspector h2').textContent()) === 'pioneer2dx', 'the inspector shows it');
     check((await page.locator('.tree li.related').count()) >= 1, 'its signals are marked');
   }],
+  ['all tools of the world are within its panel', async ({ page }) => {
+    const bar = await page.locator('.world-panel > .bar').boundingBox();
+    const out = await page.locator('.world-panel > .bar > *').evaluateAll((all, box) => all.map((e) => [e.getAttribute('aria-label') ?? e.textContent, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0 && (r.right > box.x + box.width + 0.5 || r.bottom > box.y + box.height + 0.5)).map(([name]) => name), bar);
+    same(out, [], 'cut off');
+    check(bar.height < 40, `one row: ${bar.height}`);
+  }],
   ['eyes: from above, follow, all', async ({ page }) => {
     await page.locator('.world canvas').focus();
     await page.keyboard.press('t');
@@ -72,7 +78,7 @@ const flows = [
     await until('none', async () => (await page.evaluate(() => window.studio.world.axes.count)) === 0 && (await page.locator('.labels span.frame').count()) === 0);
   }],
   ['a robot is moved by dragging it', async ({ page, mock }) => {
-    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
+    await page.evaluate(() => { window.studio.select(null); window.studio.world.follow('pioneer2dx'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     const box = await page.locator('.world canvas').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     await page.mouse.move(x, y);
@@ -88,6 +94,54 @@ const flows = [
     await page.mouse.up();
     await until('push', () => asked(mock, 'push').length > 0);
     await page.evaluate(() => { window.studio.world.hands.set_tool('push'); window.studio.world.whole(); });
+  }],
+  ['a model is spawned where the mouse says, on what is there, and turned by a drag', async ({ page, mock }) => {
+    await page.evaluate(() => { window.studio.world.top(); window.studio.world.draw(); });
+    const spawned = () => asked(mock, 'spawn').length, count = spawned();
+    const ask = async () => {
+      await page.locator('button[aria-label="Spawn a model"]').click();
+      await page.locator('#spawn-model').fill('cow');
+      await page.locator('#spawn-place').click();
+    };
+    const box = await page.locator('.world canvas').boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await ask();
+    await page.keyboard.press('Escape');
+    await ask();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x, y - 40, { steps: 3 });
+    await page.mouse.up();
+    await until('spawned', () => spawned() === count + 1);
+    const { pose } = asked(mock, 'spawn').at(-1).args, target = await page.evaluate(() => window.studio.world.eye.target.toArray());
+    check(Math.hypot(pose[0] - target[0], pose[1] - target[1]) < 0.2, `under the mouse: ${pose}, ${target}`);
+    check(Math.abs(pose[3] - Math.SQRT1_2) < 1e-3 && Math.abs(pose[6] - Math.SQRT1_2) < 1e-3, `towards the north: ${pose}`);
+    await until('it is selected', () => page.evaluate(() => window.studio.store.selection?.id === 'cow'));
+    await page.mouse.click(x, y);
+    same(spawned(), count + 1, 'once');
+    await page.evaluate(() => window.studio.world.whole());
+  }],
+  ['an arrow above the selected model moves it along its axis alone', async ({ page, mock }) => {
+    await choose(page, 'model', 'pioneer2dx');
+    await page.evaluate(() => { const { world } = window.studio; world.follow('pioneer2dx'); world.draw(); world.eye.set_mode('orbit'); if (world.hands.tool !== 'move') world.hands.set_tool('move'); world.draw(); world.draw(); });
+    const before = await page.evaluate(() => window.studio.world.hands.gizmo.pose());
+    for (const [axis, i] of [['Z', 2], ['Y', 1]]) {
+      const [x, y] = await page.evaluate((a) => window.studio.world.hands.gizmo.handle(a), axis);
+      const count = await page.evaluate(() => window.studio.store.acts.length);
+      await page.mouse.move(x, y, { steps: 2 });
+      await until(`${axis} is under the mouse`, () => page.evaluate(() => window.studio.world.hands.gizmo.is_under_mouse()));
+      await page.mouse.down();
+      await page.mouse.move(x + (axis === 'Z' ? 0 : 30), y - 30, { steps: 4 });
+      await page.mouse.up();
+      await until('an act', () => page.evaluate((n) => window.studio.store.acts.length > n, count));
+      const { pose } = asked(mock, 'set_pose').at(-1).args;
+      check(Math.abs(pose[i] - before[i]) > 0.01, `${axis}: ${pose} after ${before}`);
+      check([0, 1, 2].every((k) => k === i || Math.abs(pose[k] - before[k]) < 1e-6), `along ${axis} alone: ${pose}, before ${before}`);
+      await page.evaluate(() => window.studio.world.draw());
+    }
+    await page.keyboard.press('Control+z');
+    await until('back', () => asked(mock, 'set_pose').at(-1).args.pose?.every((v, k) => Math.abs(v - before[k]) < 1e-6));
+    await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
   }],
   ['keys drive the robot, and stop it when they are let go', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');
@@ -194,7 +248,7 @@ const flows = [
   }],
   ['the world or the system alone fill the middle', async ({ page }) => {
     const width = (name) => page.locator(name).evaluate((element) => element.getBoundingClientRect().width);
-    const middle = await width('.middle');
+    const middle = (await width('.world-panel')) + (await width('.system-panel'));
     for (const [key, other] of [['2', '.system-panel'], ['3', '.world-panel']]) {
       await page.keyboard.press('Escape');
       await page.locator('.world canvas').focus().catch(() => {});
@@ -241,29 +295,85 @@ const flows = [
     await until('answered', () => page.evaluate(() => window.studio.wire.open.size === 0 && window.studio.store.acts.at(-1).text.startsWith('Spawn')));
     check(Math.abs(spawned.args.pose[6] - Math.SQRT1_2) < 1e-9, JSON.stringify(spawned.args));
   }],
-  ['a model is deleted after a question, and undo means no act before it', async ({ page, mock }) => {
-    const count = asked(mock, 'delete_model').length;
-    await choose(page, 'model', 'pioneer2dx');
-    await page.locator('.inspector .danger', { hasText: 'Delete' }).click();
-    same(asked(mock, 'delete_model').length, count, 'nothing before the answer');
-    check((await page.locator('dialog[open]').textContent()).includes('pioneer2dx'), 'it says which');
-    await page.locator('dialog[open] button.main').click();
-    await until('deleted', () => asked(mock, 'delete_model').length === count + 1);
-    await until('no undo', () => page.locator('#undo').isDisabled());
+  ['angles of signals are shown in degrees, in the inspector and in plots', async ({ page, mock }) => {
+    const was = mock.answer;
+    mock.answer = (message) => {
+      if (message.name === 'watch' && message.args.members) setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: [1], v: [[Math.PI / 2]] }, false), 20);
+      else if (message.name === 'watch') setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: [1], value: { data: { position: { x: 1.5 }, heading: Math.PI / 2, va: -Math.PI } } }, false), 20);
+      return was(message);
+    };
+    await choose(page, 'signal', '/demo/RTCLaser0/range');
+    await until('values', async () => (await page.locator('.inspector dl.values dd').allTextContents()).join(' ') === '1.5 90° -180°/s');
+    await page.locator('.inspector button[aria-label="Plot data.heading"]').click();
+    await until('a line', async () => (await page.locator('.plot .legend').textContent()).includes('data.heading [°]'));
+    await until('its value', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].values.at(-1) === 90));
+    await page.locator('.plot .legend button').first().click();
+    mock.answer = was;
+  }],
+  ['a model is deleted by the button or the key, and undo restores it before it undoes what came before', async ({ page, mock }) => {
+    await page.evaluate(() => window.studio.act('Earlier', 'set_pose', {}, () => ({ text: 'Undo what was earlier', name: 'set_pose', args: { model: 'earlier' } })));
+    for (const way of ['button', 'key']) {
+      const count = asked(mock, 'delete_model').length;
+      await choose(page, 'model', 'pioneer2dx');
+      if (way === 'button') await page.locator('.inspector .danger', { hasText: 'Delete' }).click();
+      else await page.keyboard.press('Delete');
+      await until('deleted', () => asked(mock, 'delete_model').length === count + 1);
+      await page.keyboard.press('Control+z');
+      await until('restored', () => asked(mock, 'restore_model').at(count)?.args.model === 'pioneer2dx');
+    }
+    await page.keyboard.press('Control+z');
+    await until('what came before', () => asked(mock, 'set_pose').at(-1).args.model === 'earlier');
+  }],
+  ['a wire offers by its context menu what can be done with it', async ({ page, mock }) => {
+    const count = asked(mock, 'disconnect').length;
+    const wire = await page.locator('.edge[data-connection="a"] .line').boundingBox();
+    const menu = page.locator('.menu[role=menu]');
+    await page.mouse.click(wire.x + wire.width / 2, wire.y + wire.height / 2, { button: 'right' });
+    await menu.waitFor();
+    same(await page.evaluate(() => window.studio.store.selection), { kind: 'connection', id: 'a' }, 'it is selected');
+    same(await menu.locator('button').allTextContents(), ['DisconnectDelete', 'Show the values of range', 'Plot range', 'Select RTCLaser0:range', 'Select LaserObstacleAvoid0:range'], 'entries');
+    await page.keyboard.press('Escape');
+    await menu.waitFor({ state: 'detached' });
+    await page.keyboard.press('Shift+F10');
+    await menu.waitFor();
+    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowUp');
+    await page.keyboard.press('Enter');
+    await until('cut', () => asked(mock, 'disconnect').length === count + 1);
+    check((await menu.count()) === 0, 'the menu is closed');
+  }],
+  ['ports, components and models have context menus, and a press elsewhere closes them', async ({ page, mock }) => {
+    const menu = page.locator('.menu[role=menu]');
+    await page.locator(`[data-port="${avoid}:range"] > path`).click({ button: 'right' });
+    check((await menu.locator('button').allTextContents()).includes('Write …'), 'of an InPort');
+    await page.locator(`[data-path="${laser}"] .name`).click({ button: 'right', force: true, position: { x: 3, y: 3 } });
+    const count = asked(mock, 'deactivate').length;
+    await page.locator('.menu[aria-label="Component RTCLaser0"] button', { hasText: 'Deactivate' }).click();
+    await until('deactivated', () => asked(mock, 'deactivate').at(count)?.args.path === laser);
+    await page.evaluate(() => { window.studio.world.follow('pioneer2dx'); window.studio.world.draw(); });
+    const box = await page.locator('.world canvas').boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2, { button: 'right' });
+    await page.locator('.menu[aria-label="Model pioneer2dx"]').waitFor();
+    await page.mouse.click(box.x + 5, box.y + 5);
+    await menu.waitFor({ state: 'detached' });
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down({ button: 'right' });
+    await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 3 });
+    await page.mouse.up({ button: 'right' });
+    same(await menu.count(), 0, 'a drag with the right button moves the eye');
+    await page.evaluate(() => window.studio.world.whole());
   }],
   ['settings of a component fit into a narrow inspector', async ({ page, mock }) => {
     const was = mock.answer;
     mock.answer = (message) => (message.name === 'component' && message.args.path === avoid ? { result: { ...detail(avoid), sets: [{ id: 'default', active: true, values: [
       { name: 'a_parameter_with_a_name_that_is_long', value: '1', type: 'double', widget: 'slider.0.1', constraint: '0<=x<=180' }, { name: 'mode', value: 'the_first_of_the_choices', type: 'string', widget: 'radio', constraint: '(the_first_of_the_choices_there_are_here,another_choice_with_a_long_name_that_does_not_end)' },
       { name: 'order', value: 'a', type: 'string', widget: 'ordered_list', constraint: '(a_rather_long_word_of_an_ordered_list_that_does_not_end_soon,b)' }, { name: 'text', value: 'x'.repeat(90), type: 'string', widget: 'text' }, { name: 'spin', value: '3', type: 'int', widget: 'spin', constraint: '0<=x<=9' }] }] } } : was(message));
-    await page.evaluate(() => { window.studio.settings.sizes.inspector = 220; window.studio.store.details.clear(); });
-    await page.keyboard.press('4');
-    await page.keyboard.press('4');
+    await page.evaluate(() => { window.studio.dock.resize('inspector', 220); window.studio.store.details.clear(); });
     await choose(page, 'component', avoid);
     await until('its settings', async () => (await page.locator('.inspector').textContent()).includes('a_parameter_with'));
     const wide = await page.evaluate(() => { const box = document.querySelector('.inspector').getBoundingClientRect(); return [...document.querySelectorAll('.inspector *')].filter((e) => { const { width, right } = e.getBoundingClientRect(); return width > 0 && right > box.right + 1; }).map((e) => `${e.tagName} ${e.className} ${e.id}`); });
     same(wide, [], 'too wide');
-    await page.evaluate(() => { window.studio.settings.sizes.inspector = 300; });
+    await page.evaluate(() => { window.studio.dock.resize('inspector', 300); });
     mock.answer = was;
   }],
   ['the bars of a telephone have one row each', async ({ browser, url }) => {
@@ -308,6 +418,37 @@ const flows = [
     await changes(world);
     mock.say(time());
   }],
+  ['scans and trails of a live run are those of the moment that the time line shows', async ({ page, mock, world }) => {
+    const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
+    const fans = () => asked(mock, 'watch').filter((m) => m.args.topic.includes('laser') && m.args.hz === 15), before = fans().length;
+    await page.evaluate(() => { window.studio.world.ranges.clear(); window.studio.world.apply_settings(); });
+    const fan = (await until('the watch of a fan', () => fans()[before])).args.watch; // of this page, whatever others have asked for
+    const seen = () => page.evaluate(() => {
+      const { world } = window.studio, [fan] = world.ranges.fans.values(), [trail] = world.trails.trails.values(), points = fan.parts[0].geometry.getAttribute('position');
+      return { visible: fan.parts[0].visible, first: points ? Math.hypot(points.getX(1), points.getY(1)) : 0, trail: trail?.line.geometry.drawRange.count ?? 0 };
+    });
+    const at = (seconds) => { const frame = poses(world.version, [[index, seconds - 200, 4, 0.1]]); frame.writeBigUInt64LE(BigInt(seconds * 1e9), 8); return frame; };
+    for (let seconds = 201; seconds <= 206; ++seconds) {
+      mock.say(at(seconds), false);
+      mock.say({ op: 'values', watch: fan, t: [seconds], value: { ranges: Array.from({ length: 60 }, () => (seconds - 200) / 2) } }, false);
+      mock.say(time({ sim_time: seconds }), false);
+      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time.sim_time === t, seconds));
+    }
+    const now = await seen();
+    check(Math.abs(now.first - 3) < 1e-5 && now.trail >= 6, JSON.stringify(now));
+    await page.evaluate(() => window.studio.bottom.look(202.5));
+    const then = await seen();
+    check(then.visible && Math.abs(then.first - 1) < 1e-5, `the scan of then: ${JSON.stringify(then)}`);
+    same(now.trail - then.trail, 4, 'points that were still to come');
+    mock.say({ op: 'values', watch: fan, t: [206.2], value: { ranges: Array.from({ length: 60 }, () => 4) } }, false);
+    mock.say(at(207), false);
+    await until('it was told', () => page.evaluate(() => window.studio.world.told_time === 207));
+    check(Math.abs((await seen()).first - 1) < 1e-5 && (await seen()).trail === then.trail, 'what comes meanwhile changes nothing that is shown');
+    await page.evaluate(() => window.studio.bottom.look(null));
+    same((await seen()).trail, now.trail + 1, 'and is there afterwards');
+    check(Math.abs((await seen()).first - 4) < 1e-5, 'the scan of now');
+    mock.say(time());
+  }],
   ['trails end with the world that they were made in', async ({ page, mock, world }) => {
     const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
     for (const x of [3, 3.2, 3.4]) mock.say(poses(world.version, [[index, x, 1, 0.1]]));
@@ -338,7 +479,7 @@ const flows = [
   }],
   ['a signal is dragged into the plots', async ({ page, mock }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/demo/RTCLaser0/range' }));
-    const watch_id = await until('watch', () => asked(mock, 'watch').find((m) => m.args.topic === '/demo/RTCLaser0/range')?.args.watch);
+    const watch_id = await until('watch', () => asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range' && !m.args.members)?.args.watch);
     mock.say({ op: 'values', watch: watch_id, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
     await page.locator('.inspector canvas.polar').waitFor();
     await page.locator('.inspector button[aria-label="Plot config.minAngle"]').click();
@@ -346,8 +487,72 @@ const flows = [
     const plotted = await until('plot watch', () => asked(mock, 'watch').find((m) => m.args.members?.[0] === 'config.minAngle')?.args.watch);
     mock.say({ op: 'values', watch: plotted, t: [12.0, 12.1, 12.2], v: [[1], [2], [3]] });
     await page.locator('.plot canvas').waitFor();
-    await page.locator('.plot .legend button').click();
+    await page.locator('.plot .legend button').first().click();
     await until('gone', async () => (await page.locator('.plot').count()) === 0);
+  }],
+  ['plots are zoomed by a drag and the wheel, show values at the cursor, and are saved as CSV', async ({ page, mock }) => {
+    const was = mock.answer;
+    mock.answer = (message) => {
+      if (message.name === 'watch' && message.args.members?.[0] === 'data.vx') setTimeout(() => mock.say({ op: 'values', watch: message.args.watch, t: Array.from({ length: 60 }, (_, i) => i / 2), v: Array.from({ length: 60 }, (_, i) => [i]) }, false), 20);
+      return was(message);
+    };
+    mock.say(time({ sim_time: 30 }));
+    await page.evaluate(() => window.studio.bottom.plots.add('/demo/RTCLaser0/range', 'data.vx'));
+    await until('its samples', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].values.length === 60));
+    await page.locator('.u-over').waitFor();
+    const shown = () => page.evaluate(() => { const { min, max } = window.studio.bottom.plots.plots[0].plot.scales.x; return [min, max]; });
+    await until('all of it', async () => Math.abs((await shown())[1] - 30) < 0.1);
+    const over = await until('the plot', () => page.locator('.u-over').boundingBox());
+    await page.mouse.move(over.x + over.width / 2, over.y + 20);
+    await until('the value at the cursor', async () => /data\.vx = (29|30|31)/.test(await page.locator('.plot .legend').textContent()));
+    await page.mouse.move(over.x + over.width * 0.25, over.y + 20);
+    await page.mouse.down();
+    await page.mouse.move(over.x + over.width * 0.5, over.y + 25, { steps: 4 });
+    await page.mouse.up();
+    await until('zoomed', async () => Math.abs((await shown())[0] - 7.5) < 0.5 && Math.abs((await shown())[1] - 15) < 0.5);
+    same(await page.locator('#live').getAttribute('aria-pressed'), 'true', 'a drag chooses no moment');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.plot .csv').click()]);
+    const rows = readFileSync(await download.path(), 'utf8').trim().split('\n');
+    same(rows[0], 'time [s],/demo/RTCLaser0/range data.vx', 'head');
+    check(rows.length > 12 && rows.length < 20 && rows.includes('10,20'), rows.join(' '));
+    await page.mouse.move(over.x + over.width * 0.5, over.y + 20);
+    await page.mouse.wheel(0, 200);
+    await until('further away', async () => { const [min, max] = await shown(); return max - min > 9; });
+    await page.locator('.zoom-out').click();
+    await until('all again', async () => Math.abs((await shown())[1] - 30) < 0.1);
+    await page.locator('.plot .legend button').first().click();
+    mock.answer = was;
+    mock.say(time());
+  }],
+  ['time is paused when a value becomes true of a comparison, once each time', async ({ page, mock }) => {
+    const was = mock.answer, pauses = () => asked(mock, 'pause').length;
+    mock.say(time({ paused: false }));
+    await choose(page, 'signal', '/demo/RTCLaser0/range');
+    await page.locator('#pause-when').click();
+    await page.locator('#break-member').selectOption('data.vx');
+    await page.locator('#break-compare').selectOption('>');
+    await page.locator('#break-value').fill('0.5');
+    await page.locator('dialog[open] button.main').click();
+    const id = (await until('its watch', () => asked(mock, 'watch').findLast((m) => m.args.members?.[0] === 'data.vx'))).args.watch;
+    const before = pauses();
+    mock.say({ op: 'values', watch: id, t: [1, 2, 3, 4], v: [[0.1], [0.4], [0.6], [0.7]] }, false);
+    await until('paused', () => pauses() === before + 1);
+    await until('it shows that it holds', async () => (await page.locator('.breaks .met').count()) === 1);
+    mock.say({ op: 'values', watch: id, t: [5, 6], v: [[0.1], [0.8]] }, false);
+    await until('paused again', () => pauses() === before + 2);
+    check((await page.locator('.status .act').textContent()).includes('data.vx > 0.5'), 'why');
+    await page.locator('.breaks button').click();
+    await until('no watch', () => asked(mock, 'unwatch').some((m) => m.args.watch === id));
+    await choose(page, 'component', laser);
+    await page.locator('#pause-on-error').click();
+    await until('pressed', async () => (await page.locator('#pause-on-error').getAttribute('aria-pressed')) === 'true');
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Error' }, rates: {} });
+    await until('paused by the error', () => pauses() === before + 3);
+    mock.say({ op: 'states', revision: 1, states: { [laser]: 'Active' }, rates: {} });
+    await page.locator('#pause-on-error').click();
+    await until('none', async () => (await page.locator('.breaks li').count()) === 0);
+    mock.say(time());
+    mock.answer = was;
   }],
   ['logs are filtered', async ({ page, mock }) => {
     await choose(page, 'model', 'pioneer2dx');
@@ -360,6 +565,7 @@ const flows = [
     await page.locator('#tab-plots').click();
   }],
   ['time: run, step, reset, speed', async ({ page, mock }) => {
+    const pauses = asked(mock, 'pause').length;
     await page.locator('.world canvas').focus();
     for (const [key, name] of [[' ', 'run'], ['.', 'step'], ['Shift+R', 'reset_world']]) {
       await page.keyboard.press(key === ' ' ? 'Space' : key);
@@ -368,7 +574,7 @@ const flows = [
     mock.say(time({ paused: false }));
     await until('pause is offered', () => page.locator('#run[aria-label=Pause]').count());
     await page.locator('#run').click();
-    await until('pause', () => asked(mock, 'pause').length === 1);
+    await until('pause', () => asked(mock, 'pause').length === pauses + 1);
     await page.locator('#speed').fill('4');
     await page.keyboard.press('Enter');
     await until('speed', () => asked(mock, 'speed').at(-1)?.args.rtf === 4);
@@ -386,6 +592,52 @@ const flows = [
     await page.locator('.of-tree').focus();
     await page.keyboard.press('ArrowRight');
     check((await page.locator('.tree-panel').boundingBox()).width > before, 'wider');
+  }],
+  ['a panel is dragged by its grip beside another, as a tab, and to an edge', async ({ page }) => {
+    const box = (panel) => page.locator(`.${panel}-panel`).boundingBox();
+    const drag = async (panel, x, y) => {
+      const grip = await page.locator(`.${panel}-panel .grip`).boundingBox();
+      await page.mouse.move(grip.x + 6, grip.y + 6);
+      await page.mouse.down();
+      await page.mouse.move(x, y, { steps: 4 });
+      check(await page.locator('.drop').isVisible(), 'the place is shown');
+      await page.mouse.up();
+    };
+    const tree = await box('tree');
+    await drag('inspector', tree.x + tree.width / 2, tree.y + tree.height - 20);
+    const [above, below, world] = [await box('tree'), await box('inspector'), await box('world')];
+    check(below.y > above.y + above.height - 10 && Math.abs(below.x - above.x) < 2, 'the inspector is below the tree');
+    await drag('system', world.x + world.width / 2, world.y + world.height / 2);
+    check(await page.locator('.system-panel').isVisible() && !(await page.locator('.world-panel').isVisible()), 'the system is in front of the world');
+    await page.locator('.leaf-tabs [data-panel=world]').click();
+    check(await page.locator('.world-panel').isVisible(), 'the world by its tab');
+    await page.keyboard.press('3');
+    check(await page.locator('.system-panel').isVisible(), 'the system by its key');
+    await drag('bottom', 3, 300);
+    check((await box('bottom')).x < 2 && (await box('bottom')).height > 600, 'time at the left edge');
+    await until('kept', () => page.evaluate(() => JSON.parse(localStorage.getItem('rtm-studio')).layout.root.parts[0].shown === 'bottom'));
+  }],
+  ['a layout is saved under a name, and comes back after another one and after a reload', async ({ page }) => {
+    const entry = async (text) => { await page.locator('#layouts').click(); await page.locator('.menu button', { hasText: text }).click(); };
+    await entry('Save this layout');
+    await page.locator('#ask-text').fill('tuning');
+    await page.locator('dialog[open] button.main').click();
+    await entry('Usual layout');
+    check((await page.locator('.bottom-panel').boundingBox()).x < 2 && (await page.locator('.tree-panel').boundingBox()).y < 60 && (await page.locator('.bottom-panel').boundingBox()).y > 300, 'the usual one');
+    await until('kept', () => page.evaluate(() => 'tuning' in JSON.parse(localStorage.getItem('rtm-studio')).layouts));
+    await page.evaluate(() => { location.hash = ''; });
+    await page.reload();
+    await is_ready(page);
+    await has_world(page);
+    await entry(/^tuning$/);
+    check((await page.locator('.bottom-panel').boundingBox()).height > 600, 'the saved one');
+    await entry('Delete tuning');
+    await entry('Usual layout');
+    await page.locator('.inspector-panel .grip').focus();
+    await page.keyboard.press('Enter');
+    await page.locator('.menu button', { hasText: 'As a tab of Tree' }).click();
+    check(await page.locator('.inspector-panel').isVisible() && !(await page.locator('.tree-panel').isVisible()), 'by the keyboard, too');
+    await entry('Usual layout');
   }],
   ['a link holds the view', async ({ page, browser }) => {
     await page.evaluate(() => { window.studio.world.top(); window.studio.select({ kind: 'model', id: 'pioneer2dx' }); });
@@ -430,7 +682,7 @@ const flows = [
     const left = () => page.evaluate(() => Math.min(...[...document.querySelectorAll('.diagram .box')].map((b) => b.getBoundingClientRect().left)));
     await until('all boxes are seen', async () => (await left()) >= 0);
     await page.setViewportSize({ width: 3840, height: 2160 });
-    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) check(await page.locator(`.${panel}-panel`).isVisible(), `${panel} on a wall`);
+    for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) await until(`${panel} on a wall`, () => page.locator(`.${panel}-panel`).isVisible());
     await page.context().close();
   }],
   ['read-only: it may look, not act', async ({ browser }) => {
@@ -452,17 +704,18 @@ const flows = [
   ['empty and broken states say what to do', async ({ browser }) => {
     const mock = new Mock({ page: built, glb });
     mock.answer = answer(mock);
-    for (const event of [hello({ name_server: 'localhost:2999' }), { op: 'system', revision: 1, problem: 'no naming service at localhost:2999', components: [], connections: [], managers: [] }, { op: 'world', present: false, problem: 'no simulator of number 0 runs', models: [], ifaces: [], version: 0, links: 0 }]) mock.say(event);
+    for (const event of [hello({ name_server: 'localhost:2999', start: { simulator: 'bin/sim-server worlds/x.sdf', components: 'bin/rtcd --with-naming Laser' } }), { op: 'system', revision: 1, problem: 'no naming service at localhost:2999', components: [], connections: [], managers: [] }, { op: 'world', present: false, problem: 'no simulator of number 0 runs', models: [], ifaces: [], version: 0, links: 0 }]) mock.say(event);
     const url = await mock.start();
     const page = await open(browser, url);
-    await until('world says', async () => (await page.locator('.world .card').textContent()).includes('sim-server worlds/'));
-    check((await page.locator('.diagram .card').textContent()).includes('localhost:2999'), 'the system says where it looks');
+    await until('world says', async () => (await page.locator('.world .card').textContent()).includes('bin/sim-server worlds/x.sdf'));
+    const card = await page.locator('.diagram .card').textContent();
+    check(card.includes('localhost:2999') && card.includes('bin/rtcd --with-naming Laser'), `the system says where it looks and what to start: ${card}`);
     mock.say(demo_system());
     await until('system comes', async () => (await page.locator('.diagram .box').count()) === 3);
     mock.say(await world_of(glb));
     await has_world(page);
     mock.stop();
-    await until('gone', async () => (await page.locator('.world .card').textContent()).includes('waits'));
+    await until('gone', async () => (await page.locator('.world .card').textContent()).includes('reconnects'));
     await page.context().close();
   }],
   ['it comes back after the server was gone', async ({ browser }) => {

@@ -44,6 +44,34 @@ const views = [
   ['worlds/farm.sdf', 'the farm', null, 1.0, 4],
 ];
 
+// The page before anything was clicked.
+const opened = ['the farm is opened with the view of simctl screenshot, within 2/255', async ({ browser, rig }) => {
+  const server = await rig.server('worlds/farm.sdf', '-u');
+  const glb = join(rig.work, 'world.glb'), shot = join(rig.work, 'shot.png');
+  await rig.simctl('export', glb);
+  await rig.simctl('screenshot', shot, '--size', `${width}x${height}`);
+  const mock = new Mock({ page: built, glb });
+  for (const event of [hello(), await world_of(glb), time()]) mock.say(event);
+  const page = await open(browser, await mock.start());
+  await has_world(page);
+  const mine = await page.evaluate(async ([w, h]) => {
+    const { world, settings } = window.studio;
+    Object.assign(settings, { lasers: false, names: false, trails: false });
+    world.apply_settings();
+    world.element.style.cssText = `position:fixed;left:0;top:0;width:${w}px;height:${h}px;z-index:9`;
+    world.resize();
+    world.whole();
+    world.draw(true);
+    return world.canvas.toDataURL('image/png');
+  }, [width, height]);
+  const found = await compared(page, mine, readFileSync(shot));
+  console.log(`      mean difference ${found.mean.toFixed(2)}, ${(100 * found.far).toFixed(2)} % of the pixels differ by more than 32`);
+  await page.context().close();
+  mock.stop();
+  await rig.end(server);
+  check(found.mean <= 2 && found.far < 0.01, `mean difference ${found.mean}`);
+}];
+
 async function set_up(browser) {
   const rig = new Rig(bin, source, lib);
   await rig.claim();
@@ -94,4 +122,4 @@ function to_angles([x, y, z, w]) {
   return [Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x)))), Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))];
 }
 
-run(flows, set_up, async (shared) => shared?.rig.end_all());
+run([...flows, opened], set_up, async (shared) => shared?.rig.end_all());

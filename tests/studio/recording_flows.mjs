@@ -3,7 +3,7 @@ import { execFile } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, relative } from 'node:path';
 import { promisify } from 'node:util';
-import { flows as recorded_flows, moment, near, robot, scrub } from './recorded_steps.mjs';
+import { choose, flows as recorded_flows, moment, near, path_of, robot, scrub } from './recorded_steps.mjs';
 import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
@@ -25,7 +25,7 @@ async function set_up(browser) {
 const flows = [
   ['the page says what it shows, and for how long', async ({ page }) => {
     check((await page.locator('.top .what').textContent()).includes('run.mcap, 12.0 s recorded'), 'head');
-    check((await page.locator('footer').textContent()).includes('a recording: it shows what was'), 'foot');
+    check((await page.locator('footer').textContent()).includes('recording: read-only'), 'foot');
     check(await page.locator('#live').isHidden(), 'there is no now');
     same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
     same(await page.locator('.diagram .edge').count(), 2, 'connections');
@@ -39,6 +39,23 @@ const flows = [
     const range = await page.locator('.scrub').evaluate((slider) => [Number(slider.min), Number(slider.max)]);
     check(range[0] < 0.2 && range[1] > 11.8, `from ${range[0]} to ${range[1]}`);
     await page.context().close();
+  }],
+  ['the command that replays a component is shown, and its outputs are equal', async ({ page, rig, file }) => {
+    await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
+    await page.locator('#replay').click();
+    const command = await page.locator('.status .command').textContent();
+    same(command, `rtse replay ${file} --into LaserObstacleAvoid0 --compare`, 'the command');
+    await rig.call(...command.split(' '), '--module-path', rig.lib);
+  }],
+  ['the next time at which a value becomes true of a comparison is gone to', async ({ page }) => {
+    await scrub(page, 0);
+    await choose(page, 'signal', '/LaserObstacleAvoid0/velocity');
+    await page.locator('#pause-when').click();
+    await page.locator('#break-member').selectOption('data.vx');
+    await page.locator('#break-compare').selectOption('>');
+    await page.locator('#break-value').fill('0.1');
+    await page.locator('dialog[open] button.main').click();
+    await until('a later time', async () => (await moment(page)) > 0 && (await page.locator('.status .act').textContent()).includes('data.vx > 0.1 at'));
   }],
   ['two viewers have two moments', async ({ browser, page, url }) => {
     const other = await open(browser, url);

@@ -354,6 +354,8 @@ const flows = [
     await until('in the world', () => page.evaluate(() => window.studio.world.world.models.has('crate')));
     await page.evaluate(() => { window.studio.select({ kind: 'model', id: 'crate' }); window.studio.world.follow('crate'); window.studio.world.hands.set_tool('move'); window.studio.world.draw(); });
     await until('its pose is shown', async () => (await page.locator('.inspector dl.values dd').allTextContents()).slice(0, 3).join(' ') === '2.000 m -3.000 m 0.000 m');
+    await page.evaluate(() => window.studio.select(null)); // without arrows above it
+    await page.evaluate(() => window.studio.world.draw());
     await pull(page, 60);
     await until('the page knows that it was put', () => page.evaluate(() => window.studio.store.acts.at(-1).undo?.text === 'Put crate back'));
     const put = await place();
@@ -361,7 +363,7 @@ const flows = [
     await page.keyboard.press('Control+z');
     await until('it is back', async () => (await place()).every((value, i) => Math.abs(value - before[i]) < 1e-3));
     await rig.simctl('delete', 'crate');
-    await until('and gone', async () => (await page.locator('.inspector').textContent()).includes('It is not there now'));
+    await until('and gone', async () => (await page.locator('.inspector').textContent()).includes('It does not exist now'));
     await page.evaluate(() => { window.studio.world.hands.set_tool('move'); window.studio.world.whole(); });
     await rig.simctl('run');
   }],
@@ -390,10 +392,19 @@ const flows = [
     await page.locator('.links li', { hasText: 'chassis' }).first().waitFor();
     await until('its velocity', async () => /^-?0\.\d\d .* m\/s$/.test(await page.locator('.inspector dt:text-is("velocity") + dd').textContent()));
     if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'model.png') });
+    await rig.simctl('pause');
+    await rig.simctl('pose', 'second', '3', '3.5', '0.7');
     await page.locator('.inspector button:has-text("Delete")').click();
-    await page.locator('dialog[open] button.main').click();
     await until('gone', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
-    void rig;
+    await page.keyboard.press('Control+z');
+    await until('restored', () => page.evaluate(() => window.studio.world.world.models.has('second')));
+    const { position, yaw } = JSON.parse(await rig.simctl('--json', 'pose', 'second'));
+    check(Math.hypot(position[0] - 3, position[1] - 3.5) < 1e-6 && Math.abs(yaw - 0.7) < 1e-6, `where it was: ${position} ${yaw}`);
+    await until('with its ifaces', () => page.evaluate(() => window.studio.store.world.ifaces.some((i) => i.model === 'second')));
+    await page.evaluate(() => window.studio.select({ kind: 'model', id: 'second' }));
+    await page.locator('.inspector button:has-text("Delete")').click();
+    await until('gone again', () => page.evaluate(() => !window.studio.world.world.models.has('second')));
+    await rig.simctl('run');
   }],
   ['a manager creates a component and deletes it', async ({ page }) => {
     const manager = await until('manager', () => page.evaluate(() => window.studio.store.system.managers[0]?.path));
@@ -556,7 +567,7 @@ const flows = [
     const url = new URL(shared.studio.url);
     await rig.end(shared.studio, 'SIGKILL');
     await until('the page tells', () => page.evaluate(() => window.studio.wire.status === 'lost'));
-    await until('says so', async () => (await page.locator('.link-state').textContent()).includes('gone'));
+    await until('says so', async () => (await page.locator('.link-state').textContent()).includes('exited'));
     // With the same port and the token that this page has.
     shared.studio = await rig.studio('-p', url.port);
     await until('another token: it asks for the new URL', () => page.evaluate(() => window.studio.wire.status !== 'open'));

@@ -152,7 +152,8 @@ void add_control(base::Command& app, Work& work) {
 
   auto* spawn = app.add_subcommand("spawn", "Add a model");
   auto options = option_value<simctl::SpawnOptions>();
-  spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, or SDF text")->required();
+  spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, deleted://NAME (a deleted model as it was), or SDF text")
+      ->required();
   spawn->add_option("--name", options->name, "Name of the model (default: the name in the file, with a number if it is taken)");
   spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad], as separate words or one")
       ->expected(1, 6)

@@ -1,4 +1,5 @@
 #include "studio/studio.h"
+#include "studio/start_hints.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -95,7 +96,9 @@ void Studio::join(std::shared_ptr<Viewer> viewer) {
     for (const auto& [id, channel] : channels_->open_channels()) guest.viewer->send(text_frame(advertise(id, channel)));
     channels_->tend();
   } else {
+    const auto [simulator, components] = start_hints(options_.server_id, options_.name_server);
     guest.viewer->send(text_frame(to_text({{"op", "hello"},
+                                           {"start", {{"simulator", simulator}, {"components", components}}},
                                            {"version", RTMSIM_VERSION},
                                            {"read_only", options_.is_read_only},
                                            {"name_server", options_.name_server},

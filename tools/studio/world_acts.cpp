@@ -232,6 +232,16 @@ Result<Plan> delete_model(const ActContext& context, const Json& args) {
   return plan(context, shm::DeleteRequest{*model}, about("delete", *model));
 }
 
+// The newest deleted model of this name, as it was.
+Result<Plan> restore_model(const ActContext& context, const Json& args) {
+  const auto model = text_of(args, "model");
+  if (!model) return model.error();
+  shm::SpawnRequest request;
+  request.is_path = request.is_confined = true;
+  request.sdf = "deleted://" + *model;
+  return plan(context, request, {"spawn", request.sdf}, [](const shm::Reply& reply) { return Json{{"name", reply.message}}; });
+}
+
 Result<Plan> drop_participant(const ActContext& context, const Json& args) {
   const auto name = text_of(args, "name");
   if (!name) return name.error();
@@ -269,6 +279,7 @@ std::vector<Act> world_acts() {
           {"set_velocity", false, set_velocity},
           {"spawn", false, spawn},
           {"delete_model", false, delete_model},
+          {"restore_model", false, restore_model},
           {"drop_participant", false, drop_participant},
           {"reset_odometry", false, reset_odometry},
           {"set_motors", false, set_motors}};

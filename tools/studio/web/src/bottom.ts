@@ -1,5 +1,6 @@
 // Time: run, pause, step, speed; the line of the last minutes; under it plots, logs, pictures and where a step's time goes.
 import { button, h, icon, once_a_frame, put, unless_pressed, with_code } from './dom';
+import { Breaks } from './breaks';
 import { Contexts } from './contexts';
 import { History } from './history';
 import { Playback, recording } from './playback';
@@ -11,16 +12,17 @@ import { watch_image } from './watches';
 import type { Participant } from './wire';
 
 export class Bottom {
-  readonly transport = h('div', { class: 'transport', role: 'toolbar', 'aria-label': 'Time' });
+  readonly transport = h('div', { class: 'transport grip-place', role: 'toolbar', 'aria-label': 'Time' });
   readonly element = h('div', { class: 'bottom' });
   readonly plots: Plots;
+  readonly breaks: Breaks;
   private readonly clock = h('output', { class: 'clock', 'aria-label': 'Simulated time' }, '–');
   private readonly rate = h('span', { class: 'rate' });
   private readonly waits = h('span', { class: 'waits' });
   private readonly run_button = button('Run', { icon: 'run', key: 'Space', id: 'run' }, () => this.run_or_pause());
   private readonly speed = h('input', { id: 'speed', type: 'number', min: 0, step: 'any', value: 1, class: 'number', title: 'Simulated seconds a second; 0: as fast as possible' });
   private readonly band = h('canvas', { class: 'band', role: 'img', 'aria-label': 'States of components over time' });
-  private readonly scrub = h('input', { type: 'range', class: 'scrub', min: 0, max: 1, step: 'any', value: 1, 'aria-label': 'Moment that is shown' });
+  private readonly scrub = h('input', { type: 'range', class: 'scrub', min: 0, max: 1, step: 'any', value: 1, 'aria-label': 'Shown time' });
   private readonly reset_button: HTMLButtonElement;
   private readonly live = button('Back to now', { label: 'Live', id: 'live', pressed: true }, () => this.look(null));
   private readonly tabs = h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Below the time line' });
@@ -29,7 +31,7 @@ export class Bottom {
   private readonly log_list = h('div', { class: 'log', role: 'log', tabindex: 0, 'aria-label': 'Logs' });
   private readonly offers = h('div', { class: 'offers' });
   private readonly images = h('div', { class: 'images' }, this.offers);
-  private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Where time goes' });
+  private readonly parts = h('div', { class: 'parts', tabindex: 0, role: 'region', 'aria-label': 'Time per part' });
   private readonly contexts: Contexts;
   private shown_images = new Map<string, { stop: () => void; figure: HTMLElement }>();
   private moment: number | null = null;
@@ -40,6 +42,7 @@ export class Bottom {
   private readonly step_box = h('select', { id: 'step-what', 'aria-label': 'What a step is', hidden: true }, h('option', { value: '' }, 'one step'));
 
   constructor(private readonly history: History, private readonly playback: Playback) {
+    this.breaks = new Breaks(playback);
     this.plots = new Plots(() => this.moment ?? store.time?.sim_time ?? 0, (moment) => this.look(moment));
     const can = () => wire.status === 'open' && (recording() !== undefined || (!read_only() && store.world?.present && store.time !== null));
     const step_button = button('Step', { icon: 'step', key: '.', id: 'step' }, () => this.step());
@@ -58,7 +61,7 @@ export class Bottom {
     this.speed.addEventListener('change', set_speed);
     this.speed.addEventListener('keydown', (event) => { if (event.key === 'Enter') set_speed(); });
     const window_box = h('select', { 'aria-label': 'Length of the time line', onchange: () => { this.plots.window = Number(window_box.value); this.plots.draw(); this.draw_band(); } }, [10, 30, 60, 300].map((sec) => h('option', { value: sec, selected: sec === 30 }, sec < 60 ? `${sec} s` : `${sec / 60} min`)));
-    this.transport.append(this.run_button, step_button, this.step_box, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, h('span', { class: 'spring' }), window_box, this.live);
+    this.transport.append(this.run_button, step_button, this.step_box, this.reset_button, this.clock, h('label', { class: 'speed', for: 'speed' }, '×'), this.speed, this.rate, this.waits, this.breaks.element, h('span', { class: 'spring' }), window_box, this.live);
     this.element.append(this.transport, h('div', { class: 'line-of-time' }, this.band, this.scrub), this.tabs, this.body);
     this.scrub.addEventListener('input', () => this.look(Number(this.scrub.value) >= Number(this.scrub.max) - 1e-6 ? null : Number(this.scrub.value)));
     this.log_filter.addEventListener('input', () => this.show_logs());
@@ -158,7 +161,7 @@ export class Bottom {
     this.reset_button.title = `${reset} (Shift+R)`;
     this.reset_button.setAttribute('aria-label', reset);
     const late = (time.participants ?? []).filter((p) => p.late).map((p) => p.name);
-    this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waits for ${time.waiting_for} to join` : late.length > 0 ? `waits for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length === 1 ? 'one takes part' : `${time.participants!.length} take part`}` : '';
+    this.waits.textContent = this.playback.problem ? this.playback.problem : time.waiting_for > 0 ? `waiting for ${time.waiting_for} to join` : late.length > 0 ? `waiting for ${late.join(', ')}` : (time.participants?.length ?? 0) > 0 ? `lock step, ${time.participants!.length === 1 ? '1 participant' : `${time.participants!.length} participants`}` : '';
     this.waits.classList.toggle('late', late.length > 0 || time.waiting_for > 0 || this.playback.problem !== '');
     put(this.run_button, icon(time.paused ? 'run' : 'pause'));
     this.run_button.setAttribute('aria-label', time.paused ? run : 'Pause');
@@ -219,7 +222,7 @@ export class Bottom {
 
   show_tab(tab: typeof settings.tab): void {
     settings.tab = tab;
-    const names: [typeof settings.tab, string, string][] = [['plots', 'Plots', 'plot'], ['logs', 'Logs', 'log'], ['images', 'Pictures', 'camera'], ['step', 'Step', 'step']];
+    const names: [typeof settings.tab, string, string][] = [['plots', 'Plots', 'plot'], ['logs', 'Logs', 'log'], ['images', 'Images', 'camera'], ['step', 'Step', 'step']];
     put(this.tabs, names.map(([id, text, sign]) => h('button', {
       type: 'button', role: 'tab', id: `tab-${id}`, 'aria-selected': String(tab === id), tabindex: tab === id ? 0 : -1, onclick: () => { this.show_tab(id); keep(); },
       onkeydown: (event: KeyboardEvent) => {
@@ -244,8 +247,8 @@ export class Bottom {
     const only = now?.kind === 'component' ? short_path(now.id) : '';
     const lines = store.logs.filter((l) => (!words || `${l.level} ${l.source} ${l.text}`.toLowerCase().includes(words)) && (!only || l.source.includes(only))).slice(-400);
     const at_end = this.log_list.scrollTop + this.log_list.clientHeight > this.log_list.scrollHeight - 8;
-    put(this.log_list, lines.length === 0 ? h('p', { class: 'hint' }, only ? `Nothing from ${only} yet.` : words ? 'Nothing fits the filter.' : 'Nothing has been logged yet.') : lines.map((l) => h('div', { class: `level-${l.level.toLowerCase()}` },
-      h('span', { class: 'when' }, l.time === undefined ? '' : l.time > 1e9 ? new Date(l.time * 1000).toTimeString().slice(0, 8) : h('button', { type: 'button', class: 'link', title: 'Show this moment', onclick: () => this.look(l.time!) }, `${l.time.toFixed(3)} s`)), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
+    put(this.log_list, lines.length === 0 ? h('p', { class: 'hint' }, only ? `${only} has logged nothing yet.` : words ? 'No line matches the filter.' : 'Nothing has been logged yet.') : lines.map((l) => h('div', { class: `level-${l.level.toLowerCase()}` },
+      h('span', { class: 'when' }, l.time === undefined ? '' : l.time > 1e9 ? new Date(l.time * 1000).toTimeString().slice(0, 8) : h('button', { type: 'button', class: 'link', title: 'Show this time', onclick: () => this.look(l.time!) }, `${l.time.toFixed(3)} s`)), h('span', { class: 'level' }, l.level), h('span', { class: 'source' }, short_path(l.source)), h('span', { class: 'text' }, l.text))));
     if (at_end) this.log_list.scrollTop = this.log_list.scrollHeight;
   }
 
@@ -254,10 +257,10 @@ export class Bottom {
     const parts = time?.parts ?? [];
     const all = Math.max(1e-9, parts.reduce((sum, p) => sum + (p.name === 'pace' ? 0 : p.total_ms), 0)); // what it waits for real time is no work
     const contexts = this.contexts.table();
-    put(this.parts, parts.length === 0 && !contexts ? h('p', { class: 'hint' }, recording() ? 'A recording does not say where the time of a step went.' : 'No simulator: nothing takes time.') : h('div', { class: 'columns' },
-      parts.length === 0 ? null : h('table', null, h('caption', null, 'Where a step\'s time goes'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, p.name === 'pace' ? 'rest' : [bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`]))))), contexts,
-      (time?.participants?.length ?? 0) > 0 ? h('table', null, h('caption', null, 'Who takes part in lock step'), h('thead', null, h('tr', null, ['name', 'phase', 'rate', 'ticks', 'missed', 'mean', 'worst'].map((t) => h('th', { scope: 'col' }, t)), h('td'))), h('tbody', null, time!.participants!.map((p) => h('tr', { class: p.late ? 'late' : undefined }, h('th', { scope: 'row' }, p.name), h('td', null, p.phase), h('td', null, `${p.rate} Hz`), h('td', null, p.ticks), h('td', null, p.missed), h('td', null, `${p.mean_us.toFixed(0)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`),
-        h('td', null, p.late ? button(`Let time go on without ${p.name}`, { label: 'Drop' }, () => act(`Drop ${p.name}`, 'drop_participant', { name: p.name })) : null))))) : null));
+    put(this.parts, parts.length === 0 && !contexts ? h('p', { class: 'hint' }, recording() ? 'A recording has no step times.' : 'No simulator is running.') : h('div', { class: 'columns' },
+      parts.length === 0 ? null : h('table', null, h('caption', null, 'Time per physics step'), h('thead', null, h('tr', null, ['part', 'calls', 'mean', 'worst', 'share'].map((t) => h('th', { scope: 'col' }, t)))), h('tbody', null, parts.map((p) => h('tr', null, h('th', { scope: 'row' }, p.name), h('td', null, p.calls), h('td', null, `${((p.total_ms * 1000) / Math.max(1, p.calls)).toFixed(1)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`), h('td', null, p.name === 'pace' ? 'rest' : [bar(p.total_ms / all), `${((100 * p.total_ms) / all).toFixed(0)} %`]))))), contexts,
+      (time?.participants?.length ?? 0) > 0 ? h('table', null, h('caption', null, 'Lock-step participants'), h('thead', null, h('tr', null, ['name', 'phase', 'rate', 'ticks', 'missed', 'mean', 'worst'].map((t) => h('th', { scope: 'col' }, t)), h('td'))), h('tbody', null, time!.participants!.map((p) => h('tr', { class: p.late ? 'late' : undefined }, h('th', { scope: 'row' }, p.name), h('td', null, p.phase), h('td', null, `${p.rate} Hz`), h('td', null, p.ticks), h('td', null, p.missed), h('td', null, `${p.mean_us.toFixed(0)} µs`), h('td', null, `${p.max_us.toFixed(0)} µs`),
+        h('td', null, p.late ? button(`Remove ${p.name} from the lock step`, { label: 'Drop' }, () => act(`Drop ${p.name}`, 'drop_participant', { name: p.name })) : null))))) : null));
   }
 
   // ---- pictures ----
@@ -267,9 +270,9 @@ export class Bottom {
     const cameras = store.world?.ifaces.filter((i) => /camera|rgbd|depth/.test(i.type)) ?? [];
     // A world that is away, or on its way, does not say that a camera has gone.
     if (store.world?.present) for (const name of this.shown_images.keys()) if (/^(camera|rgbd|depth):/.test(name) && !cameras.some((c) => iface_id(c) === name)) this.close_image(name);
-    const none = recording() ? 'This recording has no pictures.' : store.world?.present ? 'This world has no camera. `worlds/farm.sdf` has one, and so has the model `helicopter`, which can be spawned.' : 'No simulator runs: nothing is seen.';
+    const none = recording() ? 'This recording has no images.' : store.world?.present ? 'This world has no camera. `worlds/farm.sdf` has one, and so has the model `helicopter`, which can be spawned.' : 'No simulator is running.';
     put(this.offers, cameras.length === 0 && this.shown_images.size === 0 ? h('p', { class: 'hint' }, ...with_code(none))
-      : cameras.filter((c) => !this.shown_images.has(iface_id(c))).map((c) => button(`Show the pictures of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c)))));
+      : cameras.filter((c) => !this.shown_images.has(iface_id(c))).map((c) => button(`Show the images of ${c.name}${c.type === 'depth' ? ', depth' : ''}`, { icon: 'camera', label: camera_label(iface_id(c)) }, () => this.show_image(iface_id(c)))));
   }
 
   private close_image(iface: string): void {
@@ -289,7 +292,7 @@ export class Bottom {
       this.close_image(iface);
       this.offer_images();
     };
-    const figure = h('figure', null, image, h('figcaption', null, camera_label(iface), ' ', when, button(`Close the picture of ${camera_label(iface)}`, { icon: 'close', class: 'plain small' }, end)));
+    const figure = h('figure', null, image, h('figcaption', null, camera_label(iface), ' ', when, button(`Close the image of ${camera_label(iface)}`, { icon: 'close', class: 'plain small' }, end)));
     this.offers.before(figure);
     let url = '';
     const stop = watch_image(iface, { hz: 10 }, (jpeg, time) => {

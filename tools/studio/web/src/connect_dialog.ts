@@ -59,7 +59,7 @@ export function connect_dialog(from: string, to?: string): void {
     const number = ++choices;
     name.value = `${name_of_port(from)}_${name_of_port(choice.value || from)}`;
     problem.textContent = '';
-    put(fields, h('p', { class: 'hint' }, 'Asking the ports …'));
+    put(fields, h('p', { class: 'hint' }, 'Loading the properties …'));
     try {
       const { result } = await wire.request('connection_options', { ports: ports() });
       if (number !== choices) return;

@@ -2,8 +2,8 @@
 import { button, h, once_a_frame, put, s, unless_pressed, with_code } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { arrange, Place } from './diagram_layout';
+import { component_menu, port_menu, wire_menu } from './menus';
 import { keep, settings } from './settings';
-import { shell_word } from './shell';
 import { hertz, state_class, state_shape, state_words } from './states';
 import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
@@ -31,6 +31,7 @@ export class Diagram {
 
   private redraw = once_a_frame(() => unless_pressed(this.canvas, () => this.build()));
   frames = 0;
+  plot: (topic: string) => void = () => {}; // where the first number of a signal goes
 
   constructor() {
     this.plane.append(this.lines, this.boxes, this.ghost);
@@ -63,12 +64,12 @@ export class Diagram {
   private notice_state(): void {
     const { system, hello } = store;
     const server = hello?.name_server ?? 'localhost:2809';
-    const port = server.split(':')[1] ?? '2809';
+    const start = hello?.start ? `: \`${hello.start.components}\`` : '';
     let text = '';
     if (wire.status !== 'open') text = store.system.components.length > 0 ? '' : link_problem();
     else if (hello?.recording) text = store.has_system && system.components.length === 0 ? 'This recording has no components.' : '';
-    else if (system.problem) text = `No naming service answers at ${server}. Start one with components: \`rtcd --with-naming -o ${shell_word(`corba.nameservers:localhost:${port}`)} RTCLaser\`. It appears here by itself.`;
-    else if (store.has_system && system.components.length === 0) text = `The naming service at ${server} knows no components. Start some: \`rtcd RTCLaser RTCPosition2d LaserObstacleAvoid\`, or create them in a manager of the tree.`;
+    else if (system.problem) text = `No name server responds at ${server}. Start one with components${start}. It appears here automatically.`;
+    else if (store.has_system && system.components.length === 0) text = `The name server at ${server} has no components. Start some${start}, or create them in a manager of the tree.`;
     this.element.classList.toggle('stale', wire.status !== 'open' && wire.status !== 'connecting');
     put(this.notice, text ? h('div', { class: 'card' }, h('p', null, ...with_code(text))) : null);
   }
@@ -370,6 +371,18 @@ export class Diagram {
       this.zoom(Math.exp(-Math.max(-200, Math.min(200, event.deltaY)) * 0.0015), event.clientX - box.left, event.clientY - box.top);
     }, { passive: false });
     this.canvas.addEventListener('keydown', (event) => this.key(event));
+    this.canvas.addEventListener('contextmenu', (event) => this.offer(event, target_of));
+  }
+
+  // Of what is under the mouse; by the keyboard of what is selected.
+  private offer(event: MouseEvent, target_of: (event: Event, attribute: string) => string): void {
+    const now = event.target === this.canvas && event.button !== 2 ? store.selection : null;
+    const chosen = (kind: string) => (now?.kind === kind ? now.id : '');
+    const port = target_of(event, 'data-port') || chosen('port'), path = target_of(event, 'data-path') || chosen('component'), edge = target_of(event, 'data-connection') || chosen('connection');
+    if (port) port_menu(event, port, this.plot);
+    else if (path) component_menu(event, path);
+    else if (edge) wire_menu(event, edge, this.plot);
+    else event.preventDefault();
   }
 
   private stretch(port: string, event: PointerEvent): void {
@@ -439,7 +452,7 @@ export class Diagram {
 
   tools(): HTMLElement[] {
     return [
-      button('Show all of the system', { icon: 'whole', key: '0' }, () => this.show_all()),
+      button('Show the whole system', { icon: 'whole', key: '0' }, () => this.show_all()),
       button('Arrange automatically', { icon: 'arrange' }, () => this.arrange()),
     ];
   }

@@ -41,6 +41,9 @@ export function put(parent: Element, ...children: Child[]): void {
 
 // Line drawings of 16 x 16.
 const icons: { [name: string]: string } = {
+  table: 'M2.5 3h11v10h-11zM2.500 6.500h11M2.500 9.800h11M6.500 3v10',
+  grip: 'M6 4v.1M6 8v.1M6 12v.1M10 4v.1M10 8v.1M10 12v.1',
+  layout: 'M2.5 3h11v10h-11zM6.500 3v10M6.500 8.500h7',
   run: 'M5 3l8 5-8 5z',
   stop: 'M3.5 3.5h9v9h-9z',
   move: 'M8 2v12M2 8h12M6.3 3.7L8 2l1.7 1.7M6.3 12.3L8 14l1.7-1.7M3.7 6.3L2 8l1.7 1.7M12.3 6.3L14 8l-1.7 1.7',

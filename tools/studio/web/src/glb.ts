@@ -1,6 +1,6 @@
 // Reads what `simctl export` writes: glTF 2.0 binary with one scene. z stays up; poses of links are in the world.
 import {
-  Bone, BufferAttribute, BufferGeometry, Group, LinearMipmapLinearFilter, LinearSRGBColorSpace, Matrix4, Mesh, Object3D, Quaternion, RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
+  Bone, Box3, BufferAttribute, BufferGeometry, Group, LinearMipmapLinearFilter, LinearSRGBColorSpace, Matrix4, Mesh, Object3D, Quaternion, RepeatWrapping, Skeleton, SkinnedMesh, Sphere, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import { Look, make_material, SceneLight, Surface } from './material';
 
@@ -103,8 +103,17 @@ class Reader {
     const names: { [gltf: string]: string } = { POSITION: 'position', NORMAL: 'normal', TEXCOORD_0: 'uv', JOINTS_0: 'skinIndex', WEIGHTS_0: 'skinWeight' };
     for (const [gltf, accessor] of Object.entries(primitive.attributes)) geometry.setAttribute(names[gltf], this.attribute(accessor as number));
     geometry.setIndex(this.attribute(primitive.indices));
+    bound(geometry);
     return geometry;
   }
+}
+
+// Parts of one mesh share their vertices: the bounds of a part are those of the vertices that it uses.
+function bound(geometry: BufferGeometry): void {
+  const points = geometry.getAttribute('position'), index = geometry.getIndex()!, at = new Vector3();
+  geometry.boundingBox = new Box3();
+  for (let i = 0; i < index.count; ++i) geometry.boundingBox.expandByPoint(at.fromBufferAttribute(points, index.getX(i)));
+  geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
 }
 
 function place(object: Object3D, node: any): void {
@@ -162,7 +171,6 @@ export async function read_world(octets: ArrayBuffer): Promise<WorldScene> {
     const matrices = reader.array(skin.inverseBindMatrices);
     const bones = skin.joints.map((joint: number) => nodes[joint] as Bone);
     const inverses = bones.map((_: Bone, i: number) => new Matrix4().fromArray(matrices, 16 * i));
-    (nodes[index] as SkinnedMesh).bindMode = 'detached';
     (nodes[index] as SkinnedMesh).bind(new Skeleton(bones, inverses), new Matrix4());
     nodes[index].frustumCulled = false;
   });

@@ -1,8 +1,9 @@
 // The mouse on models: a click selects, a double click follows; with a tool in hand they are moved, turned and pushed.
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { pose_of, type Model, type WorldScene } from './glb';
+import { Gizmo } from './gizmo';
 import type { Eye } from './orbit';
-import { act, changed, read_only, select, wire } from './store';
+import { act, changed, read_only, select, selected_model, wire } from './store';
 
 export type Tool = 'look' | 'move' | 'push';
 
@@ -17,13 +18,54 @@ export class Hands {
   private drag: Drag | null = null;
   private placing: Promise<void> = Promise.resolve();
   private is_placing = false;
+  menu: (event: MouseEvent, model: string) => void = () => {};
+
+  readonly gizmo: Gizmo;
 
   constructor(private readonly view: Reach, scene: Scene) {
+    this.gizmo = new Gizmo(view, scene);
     this.arrow.renderOrder = 10;
     this.arrow.visible = false;
     this.arrow.frustumCulled = false;
     scene.add(this.arrow);
     this.listen();
+  }
+
+  // A press of the mouse says where, on the ground or on what is there, and a drag from it which way; Escape gives up.
+  private placing_of: { take: (at: { position: number[]; yaw: number }) => void; at: Vector3 | null } | null = null;
+  ask_place(take: (at: { position: number[]; yaw: number }) => void): void {
+    this.placing_of = { take, at: null };
+    this.view.canvas.parentElement!.dataset.tool = 'place';
+    this.view.canvas.focus({ preventScroll: true });
+  }
+
+  private end_place(): void {
+    this.placing_of = null;
+    this.arrow.visible = false;
+    this.view.canvas.parentElement!.dataset.tool = this.tool;
+    this.view.redraw();
+  }
+
+  // True: the event was for a place.
+  private place(event: PointerEvent): boolean {
+    const { placing_of: now } = this;
+    if (!now) return false;
+    if (event.type === 'pointerdown') now.at = event.button === 0 ? this.surface(event) : null;
+    if (!now.at) return event.button === 0;
+    const to = this.on_plane(event, now.at.z) ?? now.at, way = to.clone().sub(now.at), has_way = way.length() > 0.1;
+    this.arrow.visible = has_way;
+    this.arrow.geometry.setAttribute('position', new BufferAttribute(new Float32Array([...now.at.toArray(), ...to.toArray()]), 3));
+    this.view.redraw();
+    if (event.type !== 'pointerup') return true;
+    this.end_place();
+    now.take({ position: now.at.toArray(), yaw: has_way ? Math.atan2(way.y, way.x) : 0 });
+    return true;
+  }
+
+  // Of what the mouse is over, the ground of the world too; else of the plane z = 0.
+  private surface(event: PointerEvent): Vector3 | null {
+    const hits = this.view.world ? this.ray(event).intersectObject(this.view.world.root, true) : [];
+    return hits.find(({ object }) => !object.userData.overlay && object instanceof Mesh)?.point ?? this.on_plane(event, 0);
   }
 
   private ray(event: { clientX: number; clientY: number }): Raycaster {
@@ -46,7 +88,12 @@ export class Hands {
 
   // True: this press is for a model, and does not turn the eye.
   begin_drag(event: PointerEvent): boolean {
+    if (this.placing_of && event.button === 0) {
+      this.view.canvas.setPointerCapture(event.pointerId);
+      return this.place(event);
+    }
     if (this.tool === 'look' || event.button !== 0 || read_only()) return false;
+    if (this.gizmo.is_under_mouse()) return true;
     const hit = this.hit(event);
     const model = hit && this.view.world!.models.get(hit.model);
     if (!hit || !model?.canonical || model.is_static) return false;
@@ -102,6 +149,12 @@ export class Hands {
     act(`Push ${model}`, 'push', { name: model, force, seconds: 0.2 });
   }
 
+  // Before each picture; `is_now`: not of the past.
+  show_gizmo(is_now: boolean): void {
+    const model = this.view.world?.models.get(selected_model() ?? '');
+    this.gizmo.show(this.tool === 'move' && is_now && model && !model.is_static && !read_only() && !this.drag ? model : null);
+  }
+
   set_tool(tool: Tool): void {
     this.tool = this.tool === tool ? 'look' : tool;
     this.view.canvas.parentElement!.dataset.tool = this.tool;
@@ -111,11 +164,19 @@ export class Hands {
   private listen(): void {
     let down: [number, number] | null = null;
     this.view.canvas.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
-    this.view.canvas.addEventListener('pointermove', (event) => this.go_on(event, false));
+    this.view.canvas.addEventListener('pointermove', (event) => { if (!this.placing_of?.at || !this.place(event)) this.go_on(event, false); });
+    this.view.canvas.addEventListener('keydown', (event) => {
+      if (event.key !== 'Escape' || !this.placing_of) return;
+      this.end_place();
+      event.stopPropagation();
+    });
     this.view.canvas.addEventListener('pointerup', (event) => {
+      if (this.place(event)) return;
       if (this.drag) return this.go_on(event, true);
-      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button !== 0) return;
+      if (this.gizmo.is_under_mouse()) return;
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button === 1) return;
       const hit = this.hit(event);
+      if (event.button === 2) return void (hit && this.menu(event, hit.model)); // with a drag it moves the eye
       select(hit ? { kind: 'model', id: hit.model } : null);
     });
     this.view.canvas.addEventListener('pointercancel', () => {

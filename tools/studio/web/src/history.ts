@@ -79,7 +79,7 @@ export class History {
     if (time === null) return this.world.show_past(null);
     let best = this.moments[0];
     for (const moment of this.moments) if (moment.time <= time) best = moment;
-    this.world.show_past(best?.places ?? null, best?.names);
+    this.world.show_past(best?.places ?? null, best?.names, time);
   }
 
   private states_at(time: number): Map<string, State> {

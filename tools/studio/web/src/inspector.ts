@@ -1,17 +1,19 @@
 // What is selected, in full, and what can be done with it.
 import { Euler } from 'three';
-import { in_degrees, in_radians } from './angles';
+import { angle_unit, in_degrees, in_radians, shown_value } from './angles';
 import { button, h, put, unless_pressed } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram';
-import { ask_text, open_dialog } from './dialog';
+import { ask_text } from './dialog';
 import { pose_of } from './glb';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  act, component, component_of_port, components_of, connection, connections_of, forget_undo, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
+  act, changed, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
+import { shell_line } from './shell';
+import { signal_of_port } from './signal_names';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
 import { watch } from './watches';
@@ -22,12 +24,15 @@ export interface Parts {
   drive: (iface: string) => void;
   plot: (topic: string, member: string) => void;
   show_image: (iface: string) => void;
+  pause_when: (topic: string, members: string[]) => void;
+  pauses_on_error: (path: string) => boolean;
+  pause_on_error: (path: string) => void; // or not any more
 }
 
 type Content = (HTMLElement | string | null | false | HTMLElement[])[];
 
 export class Inspector {
-  readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'What is selected' });
+  readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'Selection' });
   private shown = '';
   private facts_shown = '';
   private stop: (() => void) | null = null;
@@ -79,7 +84,7 @@ export class Inspector {
     const path = now.kind === 'port' ? component_of_port(now.id) : now.id;
     const model = store.world?.models.find((m) => m.name === now.id);
     return JSON.stringify([
-      more, component(path), store.details.get(path), connection(now.id), store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)), model,
+      more, now.kind === 'component' && this.parts.pauses_on_error(path), component(path), store.details.get(path), connection(now.id), store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)), model,
       now.kind === 'model' || now.kind === 'iface' ? [store.world?.ifaces.filter((i) => i.model === now.id || iface_id(i) === now.id), components_of(now.id).map((p) => component(p)?.state), this.parts.world.world?.models.has(now.id)] : 0,
       store.signals.find((s) => s.topic === now.id || s.component === path),
     ]);
@@ -109,7 +114,7 @@ export class Inspector {
     if (is_told) this.told = name;
     if (!is_told && (!model || this.told === name)) { // actors are in the scene alone
       this.live = null;
-      return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It is not there now.')];
+      return [this.title(name, 'model'), h('p', { class: 'hint' }, 'It does not exist now.')];
     }
     const drive = ifaces.find((i) => i.type === 'position2d' || i.type === 'position3d');
     const pose = h('dl', { class: 'values' });
@@ -130,14 +135,14 @@ export class Inspector {
     ['velocity', 'turning'].forEach((label, i) => pose.append(h('dt', null, label), this.moving[i]));
     const can = !read_only();
     return [
-      this.title(name, model?.is_static ? 'thing' : ifaces.length > 0 ? 'robot' : 'model'),
+      this.title(name, model?.is_static ? 'static model' : ifaces.length > 0 ? 'robot' : 'model'),
       h('div', { class: 'acts' },
         button('Follow with the eye', { icon: 'follow', label: 'Follow', key: 'F' }, () => world.follow(name)),
         drive && can ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive', key: 'G' }, () => this.parts.drive(drive.name)) : null,
-        can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => this.put_model(name)) : null,
+        can && !model?.is_static ? button('Set the pose', { label: 'Put …' }, () => put_model(world, name)) : null,
         can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
         can && !model?.is_static ? button('Set its velocity', { label: 'Set moving …' }, () => this.set_moving(name)) : null,
-        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => this.delete_model(name)) : null),
+        can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => delete_model(name)) : null),
       h('h3', null, 'Pose'), pose,
       ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
       h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
@@ -173,31 +178,11 @@ export class Inspector {
     }
   }
 
-  private put_model(name: string): void {
-    const model = this.parts.world.world?.models.get(name);
-    const pose = model?.canonical ? pose_of(model) : null;
-    const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
-    const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
-    ask_text(`Put ${name}`, 'X Y YAW [m, m, °]', [...start.slice(0, 2).map((v) => v.toFixed(3)), in_degrees(start[2]).toFixed(1)].join(' '), 'Put', (text) => {
-      const [x, y, yaw, ...more] = text.split(/[\s,]+/).map(Number);
-      const planar = [x, y, in_radians(yaw), ...more];
-      if (planar.length === 3 && planar.every(Number.isFinite)) {
-        act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
-      }
-    });
-  }
-
   private push_model(name: string): void {
     ask_text(`Push ${name}`, 'FX FY FZ [N] for 0.2 s', '50 0 0', 'Push', (text) => {
       const force = text.split(/[\s,]+/).map(Number);
       if (force.length === 3 && force.every(Number.isFinite)) act(`Push ${name}`, 'push', { name, force, seconds: 0.2 });
     });
-  }
-
-  // Nothing brings it back as it was, so undo means no act before it either.
-  private delete_model(name: string): void {
-    open_dialog(`Delete ${name}`, h('p', null, `${name} and its sensors and drives are removed from the world. This cannot be undone, nor can what was done before it.`), 'Delete',
-      () => act(`Delete ${name}`, 'delete_model', { model: name }).then((result) => { if (result) forget_undo(); }));
   }
 
   private set_moving(name: string): void {
@@ -209,7 +194,7 @@ export class Inspector {
 
   private iface(id: string, is_same: boolean): Content | null {
     const iface = store.world?.ifaces.find((i) => iface_id(i) === id);
-    if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!iface) return [this.title(id.split(':').slice(1).join(':'), 'iface'), h('p', { class: 'hint' }, 'It does not exist now.')];
     if (is_same && this.stop) return null;
     const has_picture = iface.type === 'camera' || iface.type === 'rgbd' || iface.type === 'depth';
     const values = h('div');
@@ -219,22 +204,22 @@ export class Inspector {
       this.title(iface.name, iface.type),
       iface.model ? h('p', null, 'of ', link_to(iface.model, { kind: 'model', id: iface.model })) : null,
       h('div', { class: 'acts' },
-        has_picture ? button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(iface_id(iface))) : null,
+        has_picture ? button('Show its images', { icon: 'camera', label: 'Images' }, () => this.parts.show_image(iface_id(iface))) : null,
         has_picture ? button('Look through it', { icon: 'follow', label: 'Look through' }, () => this.parts.world.look_through(iface.name)) : null,
         iface.type.startsWith('position') && !read_only() ? button('Drive by keys or stick', { icon: 'drive', label: 'Drive' }, () => this.parts.drive(iface.name)) : null,
-        iface.type === 'position2d' && !read_only() ? [button('Let odometry begin here with zero', { label: 'Reset odometry', id: 'reset-odometry' }, () => act(`Reset the odometry of ${iface.name}`, 'reset_odometry', { iface: iface.name })),
+        iface.type === 'position2d' && !read_only() ? [button('Set the odometry to zero', { label: 'Reset odometry', id: 'reset-odometry' }, () => act(`Reset the odometry of ${iface.name}`, 'reset_odometry', { iface: iface.name })),
           ...[true, false].map((on) => button(`Switch the motors ${on ? 'on' : 'off'}`, { label: `Motors ${on ? 'on' : 'off'}`, id: `motors-${on ? 'on' : 'off'}` }, () => act(`Switch the motors of ${iface.name} ${on ? 'on' : 'off'}`, 'set_motors', { iface: iface.name, on },
             () => ({ text: `Switch the motors of ${iface.name} ${on ? 'off' : 'on'}`, name: 'set_motors', args: { iface: iface.name, on: !on } }))))] : null),
       values,
       iface.info && Object.keys(iface.info).length > 0 ? h('h3', null, 'Constants') : null,
-      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, format(value)])),
+      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, measure(key, value, iface.type)])),
     ];
   }
 
   private signal(topic: string, is_same: boolean): Content | null {
     if (is_same && this.stop) return null;
     const signal = store.signals.find((x) => x.topic === topic);
-    if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!signal) return [this.title(topic, 'signal'), h('p', { class: 'hint' }, 'It does not exist now.')];
     const values = h('div', null, h('p', { class: 'hint' }, 'Waiting for a sample …'));
     const rate = h('p', { class: 'hint rate' });
     if (signal.kind !== 'image' && !store.hello?.recording) {
@@ -244,7 +229,7 @@ export class Inspector {
           h('dt', null, type === 'text' ? null : button(`Plot ${path}`, { icon: 'plot', class: 'plain small' }, () => this.parts.plot(topic, path)), path), h('dd', null, '–')])));
       }, () => {});
     }
-    if (signal.kind === 'image') put(values, button('Show its pictures', { icon: 'camera', label: 'Pictures' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
+    if (signal.kind === 'image') put(values, button('Show its images', { icon: 'camera', label: 'Images' }, () => this.parts.show_image(image_iface(signal.topic) ?? signal.topic)));
     else {
       this.stop = watch({ topic, hz: 5 }, (sample) => {
         rate.textContent = [sample.rate === undefined ? '' : `${Number(sample.rate.toPrecision(3))} a second`, sample.latency === undefined ? '' : `${(sample.latency * 1000).toFixed(1)} ms after its stamp`].filter(Boolean).join(', ');
@@ -256,8 +241,14 @@ export class Inspector {
       h('p', { class: 'hint' }, topic, signal.kind === 'port' ? `, ${short_type(signal.type)}` : ''),
       signal.model ? h('p', null, 'of ', link_to(signal.model, { kind: 'model', id: signal.model })) : null,
       signal.component ? h('p', null, 'of ', link_to(short_path(signal.component), { kind: 'component', id: signal.component })) : null,
+      signal.kind === 'image' || (read_only() && !store.hello?.recording) ? null : h('div', { class: 'acts' }, button('Pause when a value of it becomes true of a comparison', { label: store.hello?.recording ? 'Go to …' : 'Pause when …', id: 'pause-when' }, () => this.ask_break(topic))),
       rate, values,
     ];
+  }
+
+  private async ask_break(topic: string): Promise<void> {
+    const { result } = await wire.request('members', { topic }).catch(() => ({ result: null }));
+    this.parts.pause_when(topic, ((result?.members ?? []) as { path: string; type: string }[]).filter((m) => m.type === 'number').map((m) => m.path));
   }
 
   // The newest sample: each number can go into a plot; long arrays as polar plot.
@@ -274,7 +265,8 @@ export class Inspector {
         all.length > 60 ? h('p', { class: 'hint' }, `and ${all.length - 60} more`) : null);
     }
     const cells = into.querySelectorAll('dd');
-    all.slice(0, 60).forEach(([, value], i) => { if (cells[i]) cells[i].textContent = format(value); });
+    const type = iface_type(topic);
+    all.slice(0, 60).forEach(([key, value], i) => { if (cells[i]) cells[i].textContent = measure(key, value, type); });
     const canvas = into.querySelector('canvas');
     if (scan && canvas) polar(canvas, scan, sample.value as { [key: string]: unknown });
   }
@@ -283,23 +275,25 @@ export class Inspector {
 
   private component(path: string): Content {
     const one = component(path);
-    if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!one) return [this.title(short_path(path), 'component'), h('p', { class: 'hint' }, 'It does not exist now.')];
     const detail = store.details.get(path);
     const can = !read_only();
     const does = (text: string, name: string, enabled: boolean, danger = false) => button(`${text} ${one.instance}`, { label: text, disabled: !enabled, class: danger ? 'danger' : undefined, id: `act-${name}` }, () => state_act(one, text, name));
     const model = model_of(path);
     return [
       this.title(one.instance, one.instance.replace(/\d+$/, '') === one.type ? '' : one.type, state_mark(one.state)),
-      h('p', { class: `state ${state_class(one.state)}` }, `is ${state_words[one.state] ?? one.state}`, model ? ', carries ' : '', model ? link_to(model, { kind: 'model', id: model }) : null),
+      h('p', { class: `state ${state_class(one.state)}` }, `is ${state_words[one.state] ?? one.state}`, model ? ', bridges ' : '', model ? link_to(model, { kind: 'model', id: model }) : null),
       one.problem ? h('p', { class: 'problem' }, one.problem) : null,
       one.state === 'Error' ? h('p', { class: 'hint' }, 'Reset takes it from the error state to inactive; its log says what was wrong.') : null,
       can ? h('div', { class: 'acts' },
         does('Activate', 'activate', one.state === 'Inactive'),
         does('Deactivate', 'deactivate', one.state === 'Active'),
         does('Reset', 'reset', one.state === 'Error'), does('Exit', 'exit', true, true),
-        one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Let ${one.instance} take part in simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
+        one.in_simulated_time ? does('Leave', 'leave_time', true) : button(`Add ${one.instance} to simulated time`, { label: 'Join …', id: 'act-join_time' }, () => join_dialog(one)),
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
+        button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
+      store.hello?.recording ? h('div', { class: 'acts' }, button('Show the command that sends the recorded inputs to this component and compares its outputs', { label: 'Replay …', id: 'replay' }, () => show_replay(one.instance))) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
       one.ports.length > 0 ? h('h3', null, 'Ports') : null,
@@ -357,7 +351,7 @@ export class Inspector {
       if (!done && field) {
         field.setAttribute('aria-invalid', 'true'); // what is typed stays, to be mended
         const can_force = !force && wire.status === 'open';
-        if (can_force) field.after(button(`Set ${value.name} to ${text}, although the component does not want it`, { label: 'Set all the same', id: `${id}-force`, class: 'danger' }, () => change(text, true)));
+        if (can_force) field.after(button(`Set ${value.name} to ${text}, although the component rejected it`, { label: 'Set anyway', id: `${id}-force`, class: 'danger' }, () => change(text, true)));
       }
       await refresh_details(path);
     };
@@ -367,8 +361,8 @@ export class Inspector {
 
   private port(id: string): Content {
     const port = port_of(id), path = component_of_port(id);
-    if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It is not there now.')];
-    const signal = store.signals.find((x) => x.kind === 'port' && (x.topic === id || (x.component === path && x.topic.endsWith(`/${port.name}`)) || x.topic.endsWith(`${component(path)?.instance}/${port.name}`)));
+    if (!port) return [this.title(name_of_port(id), 'port'), h('p', { class: 'hint' }, 'It does not exist now.')];
+    const signal = signal_of_port(id);
     const detail = store.details.get(path)?.ports.find((p) => p.name === port.name);
     return [
       this.title(port.name, { in: 'InPort', out: 'OutPort', service: 'service port' }[port.kind]),
@@ -388,7 +382,7 @@ export class Inspector {
 
   private connection(id: string): Content {
     const one = connection(id);
-    if (!one) return [this.title('Connection', ''), h('p', { class: 'hint' }, 'It is not there now.')];
+    if (!one) return [this.title('Connection', ''), h('p', { class: 'hint' }, 'It does not exist now.')];
     return [
       this.title(one.name || 'Connection', 'connection'),
       h('ul', { class: 'list' }, one.ports.map((p) => h('li', null, link_to(`${component(component_of_port(p))?.instance ?? short_path(component_of_port(p))}:${name_of_port(p)}`, { kind: 'port', id: p }))),
@@ -400,7 +394,7 @@ export class Inspector {
 
   private manager(path: string, is_same: boolean): Content | null {
     if (is_same && this.stop) return null;
-    const body = h('div', null, h('p', { class: 'hint' }, 'Asking …'));
+    const body = h('div', null, h('p', { class: 'hint' }, 'Loading …'));
     let asked = 0;
     const refresh = async () => {
       const number = ++asked;
@@ -440,7 +434,33 @@ export class Inspector {
   }
 }
 
-function disconnect_all(all: { id: string }[]): void {
+export function put_model(world: WorldView, name: string): void {
+  const model = world.world?.models.get(name);
+  const pose = model?.canonical ? pose_of(model) : null;
+  const start = pose ? [pose.position.x, pose.position.y, new Euler().setFromQuaternion(pose.quaternion, 'ZYX').z] : [0, 0, 0];
+  const from = pose ? [...pose.position.toArray(), pose.quaternion.w, pose.quaternion.x, pose.quaternion.y, pose.quaternion.z] : null;
+  ask_text(`Put ${name}`, 'X Y YAW [m, m, °]', [...start.slice(0, 2).map((v) => v.toFixed(3)), in_degrees(start[2]).toFixed(1)].join(' '), 'Put', (text) => {
+    const [x, y, yaw, ...more] = text.split(/[\s,]+/).map(Number);
+    const planar = [x, y, in_radians(yaw), ...more];
+    if (planar.length === 3 && planar.every(Number.isFinite)) {
+      act(`Put ${name}`, 'set_pose', { model: name, planar }, () => ({ text: `Put ${name} back`, name: 'set_pose', args: from ? { model: name, pose: from } : { model: name, planar: start } }));
+    }
+  });
+}
+
+// Undo restores it as it was.
+export function delete_model(name: string): void {
+  if (!read_only()) act(`Delete ${name}`, 'delete_model', { model: name }, () => ({ text: `Restore ${name}`, name: 'restore_model', args: { model: name } }));
+}
+
+// Nothing runs beside a recording: what replays a component is a command, which the status line shows for copying.
+function show_replay(instance: string): void {
+  const file = store.world?.file || store.hello!.recording!.file;
+  store.acts.push({ text: `Replay ${instance} from the recording with:`, command: shell_line(['rtse', 'replay', file, '--into', instance, '--compare']) });
+  changed('acts');
+}
+
+export function disconnect_all(all: { id: string }[]): void {
   const group = {};
   for (const { id } of all) disconnect(id, group);
 }
@@ -488,6 +508,11 @@ function format(value: unknown): string {
   if (Number.isInteger(value)) return String(value);
   return Math.abs(value) < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(6)));
 }
+
+// With its unit where that is known.
+const measure = (key: string, value: unknown, type: string): string => (typeof value === 'number' ? `${format(shown_value(key, value, type))}${angle_unit(key, type)}` : format(value));
+
+export const iface_type = (topic: string): string => store.signals.find((s) => s.topic === topic && s.kind === 'iface')?.type ?? '';
 
 export function image_iface(topic: string): string | undefined {
   const found = store.world?.ifaces.find((i) => /camera|rgbd|depth/.test(i.type) && topic === `/sim/${i.type}/${i.name.replaceAll('::', '/')}`) ?? store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type));

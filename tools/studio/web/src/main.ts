@@ -1,11 +1,16 @@
 // The page: panels round the world and the system, and the keys.
 import { Bottom } from './bottom';
 import { Diagram } from './diagram';
-import { open_dialog } from './dialog';
+import { ask_text, open_dialog } from './dialog';
+import { Dock } from './dock';
 import { button, h, once_a_frame, put } from './dom';
+import { download } from './download';
 import { Drive } from './drive';
 import { History } from './history';
-import { disconnect, Inspector } from './inspector';
+import { delete_model, disconnect, Inspector, put_model } from './inspector';
+import type { Panel } from './layout';
+import { model_menu } from './menus';
+import { first_member } from './plots';
 import { is_pasteable, shell_line, shell_word } from './shell';
 import { apply_theme, keep, linked, settings, to_link } from './settings';
 import { act, changed, component, link_problem, on, read_only, select, selected_model, state_act, store, undo_last, wire } from './store';
@@ -19,8 +24,6 @@ import { with_token } from './token';
 import { Tree } from './tree';
 import { WorldView } from './world';
 
-type Panel = keyof typeof settings.panels;
-
 const world = new WorldView();
 const diagram = new Diagram();
 const tree = new Tree();
@@ -28,14 +31,20 @@ const drive = new Drive();
 const history_of_run = new History(world);
 const playback = new Playback(() => world.trails.forget());
 const bottom = new Bottom(history_of_run, playback);
+function plot(topic: string, member: string): void {
+  show_panel('bottom', true);
+  bottom.show_tab('plots');
+  bottom.plots.add(topic, member);
+}
+diagram.plot = (topic) => first_member(topic).then((line) => line && plot(line.topic, line.member));
+world.hands.menu = (event, name) => model_menu(event, name, { follow: () => world.follow(name), put: () => put_model(world, name) });
 const inspector = new Inspector({
   world,
   drive: (iface) => drive.begin(iface),
-  plot: (topic, member) => {
-    show_panel('bottom', true);
-    bottom.show_tab('plots');
-    bottom.plots.add(topic, member);
-  },
+  plot,
+  pause_when: (topic, members) => bottom.breaks.ask(topic, members),
+  pauses_on_error: (path) => bottom.breaks.has_state(path),
+  pause_on_error: (path) => bottom.breaks.toggle_state(path),
   show_image: (iface) => {
     show_panel('bottom', true);
     bottom.show_image(iface);
@@ -52,14 +61,15 @@ const panel_names: [Panel, string, string][] = [['tree', 'Tree', 'tree'], ['worl
 const top_bar = h('header', { class: 'top' },
   h('h1', null, 'rtm-studio'), world_name, link_state, h('span', { class: 'spring' }),
   h('div', { class: 'toggles', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name, sign], i) => {
-    const toggle = button(`${name} panel`, { icon: sign, key: String(i + 1), pressed: true }, () => show_panel(panel, !settings.panels[panel]));
+    const toggle = button(`${name} panel`, { icon: sign, key: String(i + 1), pressed: true }, () => show_panel(panel, !dock.is_front(panel)));
     toggles.set(panel, toggle);
     return toggle;
   })),
+  button('Layouts of the panels', { icon: 'layout', id: 'layouts' }, (event) => dock.offer_layouts(event, (save) => ask_text('Save this layout', 'Name', '', 'Save', save))),
   button('Save the system as RTSProfile', { icon: 'save', id: 'save' }, () => save_profile()),
   button('Open an RTSProfile', { icon: 'open', id: 'open' }, () => profile_input.click()),
   button('Open a recording', { icon: 'record', key: 'R', id: 'open-recording' }, () => recordings_dialog()),
-  button('Copy a link to this view, with the right to act', { icon: 'link', id: 'copy-link' }, () => copy_link()),
+  button('Copy a link to this view (contains the access token)', { icon: 'link', id: 'copy-link' }, () => copy_link()),
   button('Light or dark', { icon: 'theme', id: 'theme' }, () => next_theme()),
   button('Keys', { icon: 'help', key: '?', id: 'help' }, () => show_keys()));
 
@@ -81,14 +91,8 @@ async function save_profile(): Promise<void> {
 async function save_picture(): Promise<void> {
   const { width, height, ...eye } = world.eye_pose();
   const scale = Math.min(devicePixelRatio, 4096 / Math.max(width, height));
-  const result = await act('Save a picture', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
+  const result = await act('Save an image', 'screenshot', { ...eye, width: Math.round(width * scale), height: Math.round(height * scale), collisions: settings.collisions });
   if (result?.png) download(new Blob([Uint8Array.from(atob(result.png), (c) => c.charCodeAt(0))], { type: 'image/png' }), `${store.world?.name || 'world'}.png`);
-}
-
-function download(content: Blob, name: string): void {
-  const url = URL.createObjectURL(content);
-  h('a', { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
 function next_theme(): void {
@@ -101,20 +105,24 @@ function next_theme(): void {
 // ---- the world's tools ----
 
 const tools: { [name: string]: HTMLButtonElement } = {
-  whole: button('All of the world', { icon: 'whole', key: 'O' }, () => world.whole()),
-  top: button('From above', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
+  whole: button('Whole world', { icon: 'whole', key: 'O' }, () => world.whole()),
+  top: button('Top view', { icon: 'top', key: 'T' }, () => (world.eye.mode === 'top' ? world.whole() : world.top())),
   follow: button('Follow the selected robot', { icon: 'follow', key: 'F' }, () => follow()),
   lasers: button('Laser fans', { icon: 'laser', key: 'L', pressed: settings.lasers }, () => toggle('lasers')),
   sonars: button('Sonar cones', { icon: 'sonar', key: 'S', pressed: settings.sonars }, () => toggle('sonars')),
   trails: button('Trails', { icon: 'trail', key: 'H', pressed: settings.trails }, () => toggle('trails')),
   names: button('Names', { icon: 'names', key: 'N', pressed: settings.names }, () => toggle('names')),
-  collisions: button('Shapes that collide', { icon: 'shapes', key: 'B', pressed: settings.collisions }, () => toggle('collisions')),
+  collisions: button('Collision shapes', { icon: 'shapes', key: 'B', pressed: settings.collisions }, () => toggle('collisions')),
   contacts: button('Contacts of the selected model', { icon: 'contact', key: 'K', pressed: settings.contacts }, () => toggle('contacts')),
-  frames: button('Frames of the selected model, or of all that moves', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
+  frames: button('Frames of the selected model, or of all moving models', { icon: 'frames', key: 'X', pressed: settings.frames }, () => toggle('frames')),
   move: button('Move models by dragging; with Ctrl they turn', { icon: 'move', key: 'M', pressed: false }, () => world.hands.set_tool('move')),
   push: button('Push models by dragging', { icon: 'push', key: 'P', pressed: false }, () => world.hands.set_tool('push')),
-  picture: button('Save a picture of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
-  spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog()),
+  picture: button('Save an image of this view, drawn by the simulator', { icon: 'camera' }, () => save_picture()),
+  spawn: button('Spawn a model', { icon: 'plus', key: 'Insert' }, () => spawn_dialog((what, take) => {
+    show_panel('world', true);
+    act_text.textContent = `Press in the world where ${what} is to be; drag for its direction, Escape gives up`;
+    world.hands.ask_place(take);
+  })),
 };
 
 const camera_box = h('select', { class: 'camera-box', 'aria-label': 'Look through a camera', hidden: true });
@@ -166,34 +174,34 @@ function copy_link(): void {
 
 async function copy(text: string): Promise<void> {
   if (!is_pasteable(text)) {
-    act_text.textContent = 'This is not copied: a terminal would obey what is in it';
+    act_text.textContent = 'Not copied: the text has characters that a terminal interprets';
     return;
   }
   try {
     await navigator.clipboard.writeText(text);
     act_text.textContent = 'Copied';
   } catch {
-    act_text.textContent = 'The browser does not let this page copy: select the text';
+    act_text.textContent = 'The browser rejected the copy: select the text';
   }
 }
 
 // ---- panels ----
 
 const world_panel = h('section', { class: 'panel world-panel', 'aria-label': 'World' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
+  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'World' }, h('h2', null, 'World'), tools.whole, tools.top, tools.follow, camera_box, h('span', { class: 'gap' }), tools.lasers, tools.sonars, tools.trails, tools.names, tools.collisions, tools.contacts, tools.frames, h('span', { class: 'spring' }), tools.picture, tools.move, tools.push, tools.spawn),
   world.element, drive.element);
 const system_panel = h('section', { class: 'panel system-panel', 'aria-label': 'System' },
-  h('div', { class: 'bar', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }), h('span', { class: 'spring' }),
+  h('div', { class: 'bar grip-place', role: 'toolbar', 'aria-label': 'System' }, h('h2', null, 'System'), h('span', { class: 'counts' }),
     button('Activate every inactive component', { icon: 'run', label: 'All', name: 'Activate all', id: 'activate-all' }, () => all_components('Inactive', 'activate', 'Activate')),
     button('Deactivate every active component', { icon: 'stop', label: 'All', name: 'Deactivate all', id: 'deactivate-all' }, () => all_components('Active', 'deactivate', 'Deactivate')),
-    button('Forget all names whose components are gone', { icon: 'broom', id: 'forget-dead' }, () => act('Forget the names of what is gone', 'forget_dead', {})), diagram.tools()),
+    button('Delete the name server entries of components that exited', { icon: 'broom', id: 'forget-dead' }, () => act('Delete dead name server entries', 'forget_dead', {})), diagram.tools()),
   diagram.element);
 const tree_panel = h('nav', { class: 'panel tree-panel', 'aria-label': 'Everything by name' }, tree.element);
-const inspector_panel = h('aside', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, inspector.element);
+const inspector_panel = h('section', { class: 'panel inspector-panel', 'aria-label': 'Inspector' }, h('div', { class: 'bar grip-place' }, h('h2', null, 'Inspector')), inspector.element);
 const bottom_panel = h('section', { class: 'panel bottom-panel', 'aria-label': 'Time' }, bottom.element);
-const middle = h('main', { class: 'middle' }, world_panel, splitter('split', 'x'), system_panel);
 const tab_bar = h('div', { class: 'panel-tabs', role: 'toolbar', 'aria-label': 'Panels' }, panel_names.map(([panel, name]) => h('button', { type: 'button', 'data-panel': panel, onclick: () => show_only(panel) }, name.split(' ')[0])));
-const page = h('div', { class: 'page' }, top_bar, tree_panel, edge('tree', 'x'), middle, edge('inspector', 'x'), inspector_panel, edge('bottom', 'y'), bottom_panel, tab_bar, status_bar);
+const dock = new Dock({ tree: tree_panel, world: world_panel, system: system_panel, inspector: inspector_panel, bottom: bottom_panel });
+const page = h('div', { class: 'page' }, top_bar, dock.element, tab_bar, status_bar);
 
 async function all_components(state: string, name: string, word: string): Promise<void> {
   const group = {};
@@ -201,69 +209,22 @@ async function all_components(state: string, name: string, word: string): Promis
   await Promise.all(store.system.components.filter((c) => c.state === state).map((one) => state_act(one, word, name, group)));
 }
 
-// Between panels, where a landmark of its own says what it is.
-function edge(what: 'tree' | 'inspector' | 'bottom', axis: 'x' | 'y'): HTMLElement {
-  return h('div', { class: 'edge-of-panel', role: 'region', 'aria-label': `Size of ${what}` }, splitter(what, axis));
-}
-
-function splitter(what: keyof typeof settings.sizes, axis: 'x' | 'y'): HTMLElement {
-  const names = { split: 'World and system', tree: 'Tree', inspector: 'Inspector', bottom: 'Time and plots' };
-  const handle = h('div', { class: `splitter ${axis} of-${what}`, role: 'separator', tabindex: 0, 'aria-orientation': axis === 'x' ? 'vertical' : 'horizontal', 'aria-label': `Size: ${names[what]}`, 'aria-valuenow': 50, 'aria-valuemin': 0, 'aria-valuemax': 100 });
-  const change = (by: number) => {
-    const { sizes } = settings;
-    if (what === 'split') sizes.split = Math.min(0.9, Math.max(0.1, sizes.split + by / Math.max(1, middle.clientWidth)));
-    else sizes[what] = Math.min(axis === 'x' ? innerWidth * 0.45 : innerHeight * 0.7, Math.max(axis === 'x' ? 140 : 96, sizes[what] + (what === 'tree' ? by : -by)));
-    lay_out();
-    keep();
-  };
-  let last = 0;
-  handle.addEventListener('pointerdown', (event) => {
-    last = axis === 'x' ? event.clientX : event.clientY;
-    handle.setPointerCapture(event.pointerId);
-  });
-  handle.addEventListener('pointermove', (event) => {
-    if (!handle.hasPointerCapture(event.pointerId)) return;
-    const now = axis === 'x' ? event.clientX : event.clientY;
-    change(now - last);
-    last = now;
-  });
-  handle.addEventListener('keydown', (event) => {
-    const by = { ArrowLeft: -20, ArrowUp: -20, ArrowRight: 20, ArrowDown: 20 }[event.key];
-    if (by === undefined) return;
-    change(by);
-    event.preventDefault();
-    event.stopPropagation();
-  });
-  return handle;
-}
-
 function lay_out(): void {
-  const { panels, sizes } = settings;
-  page.style.setProperty('--tree', `${sizes.tree}px`);
-  page.style.setProperty('--inspector', `${sizes.inspector}px`);
-  page.style.setProperty('--bottom', `${sizes.bottom}px`);
-  page.style.setProperty('--split', String(sizes.split));
-  page.style.setProperty('--rest', String(1 - sizes.split));
-  for (const [panel] of panel_names) {
-    page.classList.toggle(`no-${panel}`, !panels[panel]);
-    toggles.get(panel)!.setAttribute('aria-pressed', String(panels[panel]));
-  }
-  page.querySelectorAll<HTMLElement>('.splitter').forEach((handle) => {
-    const what = ['tree', 'inspector', 'bottom', 'split'].find((w) => handle.classList.contains(`of-${w}`))!;
-    const share = what === 'split' ? sizes.split : what === 'bottom' ? sizes.bottom / innerHeight : sizes[what as 'tree'] / innerWidth;
-    handle.setAttribute('aria-valuenow', String(Math.round(100 * Math.min(1, share))));
-  });
+  dock.lay_out();
+  for (const [panel] of panel_names) toggles.get(panel)!.setAttribute('aria-pressed', String(settings.panels[panel]));
 }
 
 function show_panel(panel: Panel, on_: boolean): void {
   settings.panels[panel] = on_;
+  if (on_) dock.raise(panel);
   lay_out();
   keep();
 }
 
 // On narrow screens one panel at a time.
 function show_only(panel: Panel): void {
-  page.dataset.only = panel;
+  page.dataset.only = dock.only = panel;
+  dock.lay_out();
   for (const tab of tab_bar.querySelectorAll('button')) tab.setAttribute('aria-pressed', String(tab.dataset.panel === panel));
 }
 
@@ -273,11 +234,11 @@ function show_head(): void {
   const { status } = wire;
   const whole = recording();
   world_name.textContent = whole ? `${whole.file}, ${(whole.to - whole.from).toFixed(1)} s recorded` : store.world?.present ? store.world.name : '';
-  const text = wire.damage ? link_problem() : status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'another token: open the new URL' : status === 'lost' ? 'rtm-studio is gone; waiting for it' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; what could be read is shown' : '') : store.system.problem ? 'no naming service' : store.world && !store.world.present ? 'no simulator' : '';
+  const text = wire.damage ? link_problem() : status === 'no token' ? 'no token: open the URL that rtm-studio printed' : status === 'forbidden' ? 'wrong token: open the new URL' : status === 'lost' ? 'rtm-studio exited; reconnecting' : status === 'connecting' ? 'connecting' : whole ? (whole.damage ? 'the file is damaged; its readable part is shown' : '') : store.system.problem ? 'no name server' : store.world && !store.world.present ? 'no simulator' : '';
   link_state.textContent = text;
   link_state.title = whole?.damage ?? '';
   link_state.classList.toggle('bad', text !== '');
-  status_bar.querySelector('.read-only')!.textContent = whole ? 'a recording: it shows what was' : read_only() ? 'read-only: this page may look, not act' : '';
+  status_bar.querySelector('.read-only')!.textContent = whole ? 'recording: read-only' : read_only() ? 'read-only: changes are rejected' : '';
   page.classList.toggle('read-only', read_only());
   page.classList.toggle('of-run', has_run());
   const counts = system_panel.querySelector('.counts')!;
@@ -297,19 +258,25 @@ function show_tools(): void {
   for (const name of overlays) tools[name].setAttribute('aria-pressed', String(settings[name]));
   for (const name of ['move', 'push'] as const) tools[name].setAttribute('aria-pressed', String(world.hands.tool === name));
   const cameras = world.cameras();
-  if ([...camera_box.options].slice(1).map((o) => o.value).join('\n') !== cameras.join('\n')) put(camera_box, h('option', { value: '' }, 'own eye'), cameras.map((c) => h('option', { value: c }, c)));
+  if ([...camera_box.options].slice(1).map((o) => o.value).join('\n') !== cameras.join('\n')) put(camera_box, h('option', { value: '' }, 'free view'), cameras.map((c) => h('option', { value: c }, c)));
   camera_box.hidden = cameras.length === 0;
   camera_box.value = world.eye.mode === 'sensor' ? world.eye.what : '';
 }
 
 const keys: [string, string][] = [
-  ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'all of the world'], ['T', 'from above'], ['F', 'follow the robot'],
-  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, shapes that collide, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'disconnect'],
-  ['Ctrl+Z', 'undo'], ['Escape', 'select nothing'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
+  ['Space', 'run or pause'], ['.', 'one step'], [',', 'of a recording: one step back'], ['Shift+R', 'reset world and time; of a recording: to its beginning'], ['/', 'search'], ['1 – 5', 'panels'], ['O', 'whole world'], ['T', 'top view'], ['F', 'follow the robot'],
+  ['L, S, H', 'laser fans, sonar cones, trails'], ['N, B, K, X', 'names, collision shapes, contacts, frames'], ['M, P', 'move, push by dragging'], ['Insert', 'spawn a model'], ['G', 'drive the robot (arrows or W A S D)'], ['A, D, E', 'activate, deactivate, reset the selected component'], ['C', 'connect the selected port'], ['Delete', 'cut the selected connection, delete the selected model'],
+  ['Ctrl+Z', 'undo'], ['Escape', 'clear the selection'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
 ];
 
 function show_keys(): void {
   open_dialog('Keys', h('dl', { class: 'keys' }, keys.map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)])), 'Close');
+}
+
+function delete_selected(): void {
+  const now = store.selection;
+  if (now?.kind === 'connection') disconnect(now.id);
+  if (now?.kind === 'model') delete_model(now.id);
 }
 
 document.addEventListener('keydown', (event) => {
@@ -329,9 +296,9 @@ document.addEventListener('keydown', (event) => {
     ' ': () => bottom.run_or_pause(), '.': () => bottom.step(), ',': () => bottom.step(-1), R: () => bottom.reset(), '/': () => { show_panel('tree', true); tree.search.focus(); tree.search.select(); }, '?': show_keys,
     o: () => world.whole(), t: () => tools.top.click(), f: follow, l: () => toggle('lasers'), n: () => toggle('names'), k: () => toggle('contacts'), s: () => toggle('sonars'), h: () => toggle('trails'), b: () => toggle('collisions'), x: () => toggle('frames'), Insert: () => tools.spawn.click(), m: () => world.hands.set_tool('move'), p: () => world.hands.set_tool('push'), g: () => drive.toggle(), r: () => { if (!has_run()) recordings_dialog(); },
     a: on_chosen('activate', 'Activate'), d: on_chosen('deactivate', 'Deactivate'), e: on_chosen('reset', 'Reset'),
-    c: () => document.getElementById('connect')?.click(), Delete: () => { if (store.selection?.kind === 'connection') disconnect(store.selection.id); }, Escape: () => select(null),
+    c: () => document.getElementById('connect')?.click(), Delete: delete_selected, Escape: () => select(null),
   };
-  panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !settings.panels[panel]); }; });
+  panel_names.forEach(([panel], i) => { table[String(i + 1)] = () => { show_only(panel); show_panel(panel, !dock.is_front(panel)); }; });
   // Space on a button presses it.
   if (event.key === ' ' && target.matches('button,[role=treeitem],summary')) return;
   const work = table[event.key];
@@ -343,8 +310,8 @@ document.addEventListener('keydown', (event) => {
 // ---- the link ----
 
 const write_link = once_a_frame(() => {
-  const { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames } = settings;
-  const link = to_link({ settings: { panels, sizes, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
+  const { panels, layout, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames } = settings;
+  const link = to_link({ settings: { panels, layout, tab, plots, lasers, sonars, names, trails, collisions, contacts, frames }, eye: world.eye.state(), selection: store.selection, moment: recording() ? playback.moment : undefined });
   history.replaceState(null, '', link);
 });
 let link_timer = 0;
@@ -373,4 +340,4 @@ if (typeof linked.moment === 'number') playback.moment = linked.moment;
 wire.connect();
 
 // For tests, and for whoever looks with the browser's console.
-Object.assign(window, { studio: { world, diagram, store, wire, settings, select, act, playback, bottom, shell_word, shell_line } });
+Object.assign(window, { studio: { dock, world, diagram, store, wire, settings, select, act, playback, bottom, shell_word, shell_line } });

@@ -1,7 +1,10 @@
-// Signals over simulated time, a few lines a plot. Signals come by drag from the tree, by the inspector or by search.
+// Signals over simulated time, a few lines a plot. Signals come by drag from the tree, by the inspector or by search. A drag over a plot or
+// the wheel zooms all of them; the cursor shows values in the legends.
 import uPlot from 'uplot';
 import { button, h, put } from './dom';
-import { flatten } from './inspector';
+import { download } from './download';
+import { angle_unit, shown_value } from './angles';
+import { flatten, iface_type } from './inspector';
 import { recording } from './playback';
 import { keep, settings } from './settings';
 import { on, store, wire } from './store';
@@ -9,9 +12,16 @@ import { signal_name } from './tree';
 import { watch } from './watches';
 import { palette } from './palette';
 
-interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string }
+interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string; at?: HTMLElement }
 const most_points = 12000;
 const recorded_points = 6000; // of a line, of all of a recording or of the part that is looked at
+
+// Angles in degrees.
+const number_of = ({ topic, member }: Line, value: unknown): number | null => (typeof value === 'number' ? shown_value(member, value, iface_type(topic)) as number : typeof value === 'boolean' ? Number(value) : null);
+function name_of({ topic, member }: Line): string {
+  const unit = angle_unit(member, iface_type(topic));
+  return unit ? `${member} [${unit}]` : member;
+}
 
 class Plot {
   readonly element = h('div', { class: 'plot' });
@@ -20,7 +30,7 @@ class Plot {
   private lines: Line[] = [];
   private plot: uPlot | null = null;
 
-  constructor(private readonly entry: { series: { topic: string; member: string }[] }, private readonly remove: () => void, private readonly choose: (time: number) => void) {
+  constructor(private readonly entry: { series: { topic: string; member: string }[] }, private readonly remove: () => void, private readonly choose: (time: number) => void, private readonly zoom: (range: [number, number] | null) => void) {
     this.element.append(this.legend, this.body);
     for (const { topic, member } of entry.series) this.begin(topic, member);
     this.element.addEventListener('dragover', (event) => event.preventDefault());
@@ -31,9 +41,23 @@ class Plot {
     });
     this.body.addEventListener('click', (event) => {
       const over = this.body.querySelector('.u-over')?.getBoundingClientRect();
+      if (this.has_dragged) return;
       if (this.plot && over && event.clientX >= over.left && event.clientX <= over.right) this.choose(this.plot.posToVal(event.clientX - over.left, 'x'));
     });
+    this.body.addEventListener('pointerdown', () => { this.has_dragged = false; }, true);
+    this.body.addEventListener('dblclick', () => this.zoom(null));
+    this.body.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     new ResizeObserver(() => this.make()).observe(this.body);
+  }
+  private has_dragged = false; // then the click chooses no moment
+
+  // About the time under the mouse.
+  private wheel(event: WheelEvent): void {
+    const over = this.body.querySelector('.u-over')?.getBoundingClientRect(), { min, max } = this.plot?.scales.x ?? {};
+    if (!over || min === undefined || max === undefined) return;
+    event.preventDefault();
+    const factor = Math.exp(Math.max(-200, Math.min(200, event.deltaY)) * 0.002), at = this.plot!.posToVal(event.clientX - over.left, 'x');
+    this.zoom([at - (at - min!) * factor, at + (max! - at) * factor]);
   }
 
   has(topic: string, member: string): boolean {
@@ -60,7 +84,7 @@ class Plot {
         if (last !== undefined && time < last) line.times.length = line.values.length = 0; // reset
         const value = values.v?.[i]?.[0];
         line.times.push(time);
-        line.values.push(typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null);
+        line.values.push(number_of(line, value));
       });
       if (line.times.length > most_points) {
         line.times.splice(0, 2000);
@@ -78,7 +102,7 @@ class Plot {
       for (let from = whole.from; from < whole.to && this.lines.includes(line);) {
         const { result } = await wire.request('series', { topic: line.topic, members: [line.member], from, to: whole.to, points: recorded_points });
         line.times.push(...result.t);
-        line.values.push(...result.v.map(([value]: [unknown]) => (typeof value === 'number' ? value : typeof value === 'boolean' ? Number(value) : null)));
+        line.values.push(...result.v.map(([value]: [unknown]) => number_of(line, value)));
         line.error = result.left_out > 0 ? `(${result.t.length} of ${result.t.length + result.left_out} samples)` : '';
         if (!(result.until > from)) break;
         from = result.until >= whole.to ? whole.to : result.until;
@@ -101,10 +125,11 @@ class Plot {
   private show_legend(): void {
     put(this.legend, this.lines.map((line, i) => {
       const sign = h('i');
+      line.at = h('span', { class: 'at' });
       sign.style.background = palette[i % palette.length];
-      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${line.member}`, line.error ? h('em', null, ` ${line.error}`) : null,
+      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${name_of(line)}`, line.at, line.error ? h('em', null, ` ${line.error}`) : null,
         button(`Remove ${line.member}`, { icon: 'close', class: 'plain small' }, () => this.drop(i)));
-    }));
+    }), this.time, h('span', { class: 'spring' }), button('Save the plot as CSV', { icon: 'table', class: 'plain small csv' }, () => download(new Blob([this.csv()], { type: 'text/csv' }), 'plot.csv')));
   }
 
   private drop(i: number): void {
@@ -141,13 +166,44 @@ class Plot {
     const [line, dim] = [style.getPropertyValue('--line'), style.getPropertyValue('--dim')];
     const axis = { stroke: dim, grid: { stroke: line, width: 1 }, ticks: { stroke: line, size: 4 }, font: '11px system-ui' };
     this.plot = new uPlot({
-      width, height, pxAlign: 0, legend: { show: false }, cursor: { sync: { key: 'studio' }, drag: { setScale: false } },
+      width, height, pxAlign: 0, legend: { show: false }, cursor: { sync: { key: 'studio' }, drag: { setScale: false, x: true, y: false, dist: 6 } },
       scales: { x: { time: false }, y: { range: (_, low, high) => around(low, high) } },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${t}`) }, { ...axis, size: 46 }],
       series: [{}, ...this.lines.map((_, i) => ({ stroke: palette[i % palette.length], width: 1.5, spanGaps: true, points: { show: false } }))],
-      hooks: { draw: [(plot) => this.mark_moment(plot)] },
+      hooks: { draw: [(plot) => this.mark_moment(plot)], setSelect: [(plot) => this.select(plot)], setCursor: [(plot) => this.show_values(plot)] },
     }, this.data(-Infinity, Infinity), this.body);
   }
+
+  private select(plot: uPlot): void {
+    const { left, width } = plot.select;
+    if (width < 6) return;
+    this.has_dragged = true;
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.zoom([plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x')]);
+  }
+
+  // Of each line the newest value that is not after the cursor.
+  private show_values(plot: uPlot): void {
+    const { idx } = plot.cursor;
+    this.time.textContent = idx === null || idx === undefined || plot.data[0][idx] === undefined ? '' : `${plot.data[0][idx].toFixed(3)} s`;
+    this.lines.forEach((line, i) => {
+      let at = this.time.textContent === '' ? -1 : idx!;
+      while (at >= 0 && typeof plot.data[i + 1]?.[at] !== 'number') --at;
+      if (line.at) line.at.textContent = at < 0 ? '' : ` = ${Number((plot.data[i + 1][at] as number).toPrecision(6))}`;
+    });
+  }
+
+  // All that the plot has of its lines, or the part that is looked at.
+  csv(): string {
+    const { min, max } = this.plot?.scales.x ?? {};
+    const [times, ...columns] = this.data(this.is_zoomed ? min ?? -Infinity : -Infinity, this.is_zoomed ? max ?? Infinity : Infinity);
+    const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+    const rows = [['time [s]', ...this.lines.map((line) => `${line.topic} ${name_of(line)}`)].map(quoted).join(',')];
+    for (let i = 0; i < times.length; ++i) rows.push([times[i], ...columns.map((c) => c[i] ?? '')].join(','));
+    return `${rows.join('\n')}\n`;
+  }
+  is_zoomed = false;
+  private readonly time = h('span', { class: 'at' });
 
   private moment: number | null = null;
   private mark_moment(plot: uPlot): void {
@@ -159,8 +215,9 @@ class Plot {
   }
 
   // `moment`: a line marks it, where it is not the end of the plot.
-  draw(from: number, to: number, moment: number | null): void {
+  draw(from: number, to: number, moment: number | null, is_zoomed = false): void {
     this.moment = moment;
+    this.is_zoomed = is_zoomed;
     if (!this.plot || this.plot.series.length !== this.lines.length + 1) return;
     this.plot.setData(this.data(from, to), false);
     this.plot.batch(() => {
@@ -174,8 +231,17 @@ export class Plots {
   private readonly hint = h('div', { class: 'notice' }, h('div', { class: 'card' }, h('p', null, 'Drag a signal here from the tree, or press the curve beside a value in the inspector.')));
   private plots: Plot[] = [];
   window = 30; // [s]
+  private range: [number, number] | null = null; // that is looked at; null: as the time line has it
+  private readonly back = button('Show all of the plots again', { label: 'Zoom out', class: 'zoom-out' }, () => this.zoom(null));
+
+  private zoom(range: [number, number] | null): void {
+    this.range = range && range[1] - range[0] > 1e-6 ? range : null;
+    this.back.hidden = this.range === null;
+    this.draw();
+  }
 
   constructor(private readonly end: () => number, private readonly choose: (time: number) => void) {
+    this.back.hidden = true;
     for (const entry of settings.plots) this.open(entry);
     this.show();
     this.element.addEventListener('dragover', (event) => event.preventDefault());
@@ -186,7 +252,10 @@ export class Plots {
     on('settings', () => this.plots.forEach((p) => p.make()));
     let was_recording = false;
     on('hello', () => {
-      if (was_recording || recording()) this.plots.forEach((p) => p.again());
+      if (was_recording || recording()) {
+        this.zoom(null);
+        this.plots.forEach((p) => p.again());
+      }
       was_recording = recording() !== undefined;
     });
     setInterval(() => this.draw(), 66);
@@ -195,6 +264,10 @@ export class Plots {
   draw(): void {
     if (this.element.offsetParent === null) return;
     const whole = recording(), moment = this.end();
+    if (this.range) {
+      for (const plot of this.plots) plot.draw(...this.range, moment, true);
+      return;
+    }
     if (!whole) {
       for (const plot of this.plots) plot.draw(moment - this.window, moment, null);
       return;
@@ -220,12 +293,12 @@ export class Plots {
       settings.plots.splice(settings.plots.indexOf(entry), 1);
       keep();
       this.show();
-    }, this.choose);
+    }, this.choose, (range) => this.zoom(range));
     this.plots.push(plot);
   }
 
   private show(): void {
-    put(this.element, this.plots.length > 0 ? this.plots.map((p) => p.element) : this.hint);
+    put(this.element, this.plots.length > 0 ? [...this.plots.map((p) => p.element), this.back] : this.hint);
   }
 }
 

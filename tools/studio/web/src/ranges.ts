@@ -1,4 +1,5 @@
-// What range finders measure, laid over the world: the fan of a laser, a cone for each sonar of a ring.
+// What range finders measure, laid over the world: the fan of a laser, a cone for each sonar of a ring. Of a live run the last minutes are
+// kept, for the moment of the time line that is shown.
 import { BufferAttribute, BufferGeometry, ConeGeometry, DoubleSide, Line, LineBasicMaterial, Mesh, MeshBasicMaterial } from 'three';
 import type { Sensor, WorldScene } from './glb';
 import { palette } from './palette';
@@ -7,16 +8,21 @@ import { iface_id, store } from './store';
 import type { Values } from './wire';
 import { watch } from './watches';
 
-interface Fan { parts: (Mesh | Line)[]; iface: string; stop: () => void; sensors: Sensor[] }
+interface Measured { time: number; values: Values; octets: number }
+interface Fan { parts: (Mesh | Line)[]; iface: string; stop: () => void; sensors: Sensor[]; measured: Measured[]; now: Values | null; draw: (values: Values) => void }
 
 const most_fans = 24;
+const period = 0.1, longest = 300, oldest = 1; // [s] between those that are kept; a moment has none older than `oldest`
+const most_octets = 32e6; // of all fans
 
 // Along x, one metre long and one wide at its end: scaled by what is measured.
 const cone = new ConeGeometry(1, 1, 24, 1, true).rotateZ(Math.PI / 2).translate(0.5, 0, 0);
 
 export class Ranges {
   readonly fans = new Map<string, Fan>();
-  private is_past = false;
+  private readonly kept = new Map<string, Measured[]>(); // by fan, also while a scene is read anew
+  private moment: number | null = null; // null: now
+  private octets = 0;
 
   constructor(private readonly redraw: () => void) {}
 
@@ -30,10 +36,48 @@ export class Ranges {
     });
   }
 
-  // What they measure is of now.
-  hide_in_the_past(is_past: boolean): void {
-    this.is_past = is_past;
-    for (const fan of this.fans.values()) for (const part of fan.parts) part.visible = !is_past;
+  // Null: now.
+  show_at(moment: number | null): void {
+    this.moment = moment;
+    for (const fan of this.fans.values()) this.show_fan(fan);
+    this.redraw();
+  }
+
+  private show_fan(fan: Fan): void {
+    const values = this.moment === null ? fan.now : fan.measured.findLast((m) => m.time <= this.moment! + 1e-9 && m.time > this.moment! - oldest)?.values;
+    for (const part of fan.parts) part.visible = Boolean(values);
+    if (values) fan.draw(values);
+  }
+
+  private take(fan: Fan, values: Values): void {
+    if (!values.value) return;
+    fan.now = values;
+    if (!store.hello?.recording) this.keep(fan, values);
+    if (this.moment === null) this.show_fan(fan);
+  }
+
+  private keep(fan: Fan, values: Values): void {
+    const time = values.t[values.t.length - 1], newest = fan.measured[fan.measured.length - 1]?.time ?? -Infinity;
+    if (time === undefined || (time >= newest && time < newest + period)) return;
+    if (time < newest) this.drop(fan.measured, fan.measured.length); // time was set back
+    const octets = 8 * ((values.value as { ranges?: unknown[] }).ranges?.length ?? 0) + 200;
+    fan.measured.push({ time, values, octets });
+    this.octets += octets;
+    this.drop(fan.measured, fan.measured.findIndex((m) => m.time >= time - longest));
+    while (this.octets > most_octets) {
+      const most = [...this.kept.values()].reduce((a, b) => (a.length > b.length ? a : b));
+      if (most.length === 0) break;
+      this.drop(most, 1);
+    }
+  }
+
+  private drop(measured: Measured[], count: number): void {
+    for (const one of measured.splice(0, Math.max(0, count))) this.octets -= one.octets;
+  }
+
+  // Another run.
+  forget(): void {
+    for (const measured of this.kept.values()) this.drop(measured, measured.length);
   }
 
   clear(): void {
@@ -45,7 +89,7 @@ export class Ranges {
     if (sensors.length === 0 || (type === 'laser' && sensors.length > 1)) return;
     const topic = store.signals.find((s) => s.kind === 'iface' && s.type.includes(type) && s.topic.endsWith('/' + name.replaceAll('::', '/')))?.topic ?? `/sim/${type}/${name.replaceAll('::', '/')}`;
     const fill = new MeshBasicMaterial({ color, transparent: true, opacity: type === 'sonar' ? 0.1 : 0.16, side: DoubleSide, depthWrite: false });
-    const fan: Fan = { parts: [], iface: name, sensors, stop: () => {} };
+    const fan: Fan = { parts: [], iface: name, sensors, stop: () => {}, measured: this.kept.get(`${type}:${name}`) ?? [], now: null, draw: (values) => (type === 'sonar' ? this.ring(fan, values) : this.scan(fan, values)) };
     if (type === 'sonar') fan.parts = sensors.map(() => new Mesh(cone, fill));
     else fan.parts = [new Mesh(new BufferGeometry(), fill), new Line(new BufferGeometry(), new LineBasicMaterial({ color, transparent: true, opacity: 0.85 }))];
     fan.parts.forEach((part, i) => {
@@ -56,7 +100,8 @@ export class Ranges {
       sensors[type === 'sonar' ? i : 0].node.add(part);
     });
     this.fans.set(`${type}:${name}`, fan);
-    fan.stop = watch({ topic, hz: 15 }, (values) => (type === 'sonar' ? this.ring(fan, values) : this.scan(fan, values)));
+    this.kept.set(`${type}:${name}`, fan.measured);
+    fan.stop = watch({ topic, hz: 15 }, (values) => this.take(fan, values));
   }
 
   private ring(fan: Fan, values: Values): void {
@@ -64,7 +109,7 @@ export class Ranges {
     fan.parts.forEach((part, i) => {
       const { range_max: most = 5, radius = 0.5 } = fan.sensors[i] as unknown as { range_max?: number; radius?: number };
       const range = Math.min(ranges[i] ?? 0, most);
-      part.visible = range > 0.01 && !this.is_past;
+      part.visible = range > 0.01;
       part.scale.set(range, (radius / most) * range, (radius / most) * range);
     });
     this.redraw();

@@ -14,9 +14,9 @@ export function join_dialog(one: Component): void {
   const usual = one.contexts.find((c) => c.owned)?.rate;
   const rate = h('input', { id: 'join-rate', type: 'number', step: 'any', min: 0.000001, class: 'number', placeholder: usual ? String(usual) : '' });
   const tick = h('input', { id: 'join-tick', type: 'checkbox' });
-  const body = h('div', { class: 'grid' }, h('label', { for: 'join-phase' }, 'Phase of a tick'), phase, h('label', { for: 'join-turn', title: 'Who reads from others of its phase comes before them' }, 'Turn within the phase'), turn, h('label', { for: 'join-rate' }, 'Ticks a second of simulated time'), rate,
+  const body = h('div', { class: 'grid' }, h('label', { for: 'join-phase' }, 'Phase of a tick'), phase, h('label', { for: 'join-turn', title: 'A reader needs a lower number than its senders' }, 'Call order within the phase'), turn, h('label', { for: 'join-rate' }, 'Ticks a second of simulated time'), rate,
     h('label', { for: 'join-tick', title: 'Only of a component whose own context is ticked from outside' }, 'Tick its own context'), tick);
-  open_dialog(`${one.instance} takes part in simulated time`, body, 'Join', () => {
+  open_dialog(`Add ${one.instance} to simulated time`, body, 'Join', () => {
     const args: { [key: string]: unknown } = { path: one.path, phase: Number(phase.value) };
     if (Number(turn.value) > 0) args.turn = Number(turn.value);
     if (rate.value) args.rate = Number(rate.value);
@@ -28,11 +28,11 @@ export function join_dialog(one: Component): void {
 // Begins with a value of the port's type in which everything is zero.
 export function inject_dialog(port: string, type: string): void {
   const value = h('textarea', { id: 'inject-value', autofocus: true, rows: 8, spellcheck: 'false' });
-  const hint = h('p', { class: 'hint' }, 'Asking for its type …');
+  const hint = h('p', { class: 'hint' }, 'Loading the type …');
   const label = `${short_path(component_of_port(port))}:${name_of_port(port)}`;
   wire.request('members', { topic: port }).then(({ result }) => {
     if (value.value === '') value.value = JSON.stringify(result?.zero ?? {}, null, 1).replace(/\{\n\s+"sec": 0,\n\s+"nsec": 0\n\s+\}/, '{ "sec": 0, "nsec": 0 }');
-    put(hint, 'Members that are left out are zero. What is written goes to this port alone, once.');
+    put(hint, 'Values are those of the data type: angles in radians. Members that are left out are zero. They are written once, to this port alone.');
   }, (error) => put(hint, (error as Error).message));
   open_dialog(`Write to ${label}`, h('div', { class: 'inject' }, h('label', { for: 'inject-value' }, type.replace(/^IDL:|:\d+(\.\d+)?$/g, '')), value, hint), 'Write', () => {
     let text = value.value.trim();

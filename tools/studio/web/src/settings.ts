@@ -5,7 +5,8 @@ export interface Settings {
   theme: 'auto' | 'light' | 'dark';
   lasers: boolean; sonars: boolean; names: boolean; trails: boolean; collisions: boolean; contacts: boolean; frames: boolean;
   panels: { tree: boolean; world: boolean; system: boolean; inspector: boolean; bottom: boolean };
-  sizes: { tree: number; inspector: number; bottom: number; split: number };
+  layout: { root: unknown }; // a Split of layout.ts, when it is checked
+  layouts: { [name: string]: { root: unknown; panels: Settings['panels'] } };
   tab: 'plots' | 'logs' | 'images' | 'step';
   positions: { [path: string]: [number, number] };
   plots: { series: { topic: string; member: string }[] }[];
@@ -14,7 +15,7 @@ export interface Settings {
 const usual: Settings = {
   theme: 'auto', lasers: true, sonars: false, names: true, trails: true, collisions: false, contacts: false, frames: false,
   panels: { tree: true, world: true, system: true, inspector: true, bottom: true },
-  sizes: { tree: 230, inspector: 300, bottom: 220, split: 0.55 },
+  layout: { root: null }, layouts: {},
   tab: 'plots', positions: {}, plots: [],
 };
 

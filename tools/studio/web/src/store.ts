@@ -54,10 +54,10 @@ export function select(selection: Selection | null): void {
 
 // Why nothing comes, in words.
 export function link_problem(): string {
-  if (wire.status === 'no token') return 'Open the URL that rtm-studio printed: it has the token without which nothing is shown.';
-  if (wire.status === 'forbidden') return 'rtm-studio was started anew and has another token. Open the URL that it printed.';
+  if (wire.status === 'no token') return 'Open the URL that rtm-studio printed. It contains the access token.';
+  if (wire.status === 'forbidden') return 'rtm-studio was restarted and has a new token. Open the URL that it printed.';
   if (wire.damage) return `The data of this page are damaged: ${wire.damage}.`;
-  return wire.status === 'lost' ? 'rtm-studio is gone. This page waits and comes back with it.' : wire.status === 'connecting' ? 'Connecting …' : '';
+  return wire.status === 'lost' ? 'rtm-studio exited. This page reconnects when it runs again.' : wire.status === 'connecting' ? 'Connecting …' : '';
 }
 
 export const is_selected = (kind: Kind, id: string): boolean => store.selection?.kind === kind && store.selection.id === id;
@@ -139,12 +139,6 @@ async function carry_out(text: string, name: string, args: object, undo?: (resul
     if (store.acts.length > 200) store.acts.shift();
     changed('acts');
   }
-}
-
-// After what cannot be undone.
-export function forget_undo(): void {
-  for (const one of store.acts) one.undo = undefined;
-  changed('acts');
 }
 
 export async function undo_last(): Promise<void> {

@@ -18,7 +18,7 @@ export class Tree {
   private refresh = once_a_frame(() => unless_pressed(this.list, () => this.build()));
 
   constructor() {
-    this.element.append(h('div', { class: 'search' }, this.search), this.list);
+    this.element.append(h('div', { class: 'search grip-place' }, this.search), this.list);
     on(['system', 'world', 'signals', 'selection', 'details', 'states', 'status'], this.refresh);
     this.search.addEventListener('input', this.refresh);
     this.search.addEventListener('keydown', (event) => {
@@ -45,7 +45,7 @@ export class Tree {
     const related = new Set(model_now ? components_of(model_now) : []);
     return [
       { key: 'robots', label: 'Robots', more: String(robots.length), children: () => robots.map(model) },
-      { key: 'things', label: 'Things', more: String(others.length), closed: true, children: () => others.map(model) },
+      { key: 'things', label: 'Static models', more: String(others.length), closed: true, children: () => others.map(model) },
       {
         key: 'components', label: 'Components', more: String(system.components.length), children: () => system.components.map((c) => ({
           key: `component:${c.path}`, label: c.instance, more: c.type === c.instance.replace(/\d+$/, '') ? '' : c.type, hint: `${c.instance} is ${state_words[shown_state(c)]}`, selection: { kind: 'component', id: c.path },

@@ -31,7 +31,7 @@ export interface Recording {
 }
 // Of a page with a run in it; `at` [s] and `select` (a component or a model): where it opens.
 export interface RunResult { passed?: boolean; why?: string[]; seed?: number; hash?: string; command?: string; at?: number; select?: string; left_out?: string[] }
-export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; recording?: Recording; page?: RunResult }
+export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; start?: { simulator: string; components: string }; recording?: Recording; page?: RunResult }
 // Of a recorded moment: models that the scene of the beginning does not have, with the triangles of their links, and those that are there no more.
 export interface Late { version: number; models: { name: string; links: { name: string; parts: { color: number[]; points: number[] }[] }[] }[]; gone: string[] }
 export interface Values { rate?: number; latency?: number; watch: number; t: number[]; v?: unknown[][]; value?: unknown; error?: string }

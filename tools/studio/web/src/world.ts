@@ -1,5 +1,5 @@
 // The world: drawn here from one export of the simulator, moved by streamed poses.
-import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, Vector3, WebGLRenderer } from 'three';
+import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, SkinnedMesh, Vector3, WebGLRenderer } from 'three';
 import { Contacts } from './contacts';
 import { Daylight } from './daylight';
 import { Frames } from './frames';
@@ -14,7 +14,7 @@ import { Eye, EyeState, to_ours } from './orbit';
 import { Ranges } from './ranges';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
-import { Trails } from './trails';
+import { type Mover, Trails } from './trails';
 import type { Poses } from './wire';
 import { fetch_data } from './token';
 
@@ -57,7 +57,7 @@ export class WorldView {
       this.renderer.shadowMap.type = PCFSoftShadowMap;
       this.renderer.shadowMap.autoUpdate = false;
     } catch {
-      this.say('This browser draws no 3D (WebGL 2 is off). Everything else works; `simctl screenshot` shows the world.');
+      this.say('This browser has no WebGL 2, so the world is not drawn. Everything else works; `simctl screenshot` shows the world.');
     }
     new ResizeObserver(() => this.resize()).observe(this.element);
     on(['world', 'status', 'hello'], () => this.follow_server());
@@ -88,12 +88,12 @@ export class WorldView {
     const { world } = store;
     this.element.classList.toggle('stale', (wire.status !== 'open' && wire.status !== 'connecting') || (world !== null && !world.present));
     if (!this.renderer) return;
-    if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' This is what was last seen.' : ''}`);
+    if (wire.status !== 'open') return this.say(`${link_problem()}${this.world ? ' The last known state is shown.' : ''}`);
     if (!world || !world.present) {
       this.failed_version = -1;
-      const why = world?.problem || 'No simulator runs.';
-      if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording can be looked at.'}`);
-      return this.say(`${capital(why)} Start one: \`sim-server worlds/obstacle_course.sdf${store.hello?.server_id ? ` -s ${store.hello.server_id}` : ''}\`. It appears here by itself.`);
+      const why = world?.problem || 'No simulator is running.';
+      if (store.hello?.recording) return this.say(`${capital(why)} ${world?.is_coming ? '' : 'The rest of the recording is available.'}`);
+      return this.say(`${capital(why)} Start one${store.hello?.start ? `: \`${store.hello.start.simulator}\`` : ''}. It appears here automatically.`);
     }
     if (this.world?.version === world.version && this.world_key === this.key_of()) return this.say('');
     this.load(world.version);
@@ -144,12 +144,17 @@ export class WorldView {
     const is_first = this.world === null;
     if (this.world) this.drop(this.world);
     const run = `${store.hello?.recording?.file}|${store.world?.server_id}|${store.world?.birth}`;
-    if (run !== this.run_key) this.trails.forget();
+    if (run !== this.run_key) {
+      this.trails.forget();
+      this.ranges.forget();
+    }
     this.run_key = run;
     this.trails.keep(new Set(world.models.keys()));
     this.world = world;
     this.is_past = false;
     this.present = null;
+    this.ranges.show_at(null);
+    this.trails.show(null);
     this.scene.add(world.root);
     this.scene.background = linear(world.look.background);
     this.measure();
@@ -189,7 +194,9 @@ export class WorldView {
     this.bounds.makeEmpty();
     this.world!.root.updateMatrixWorld(true);
     this.world!.root.traverse((part) => {
-      if (part instanceof Mesh && !part.userData.ground) this.bounds.expandByObject(part);
+      if (!(part instanceof Mesh) || part.userData.ground) return;
+      if (part instanceof SkinnedMesh) part.computeBoundingBox(); // with its bones where they are
+      this.bounds.union(new Box3().copy(part instanceof SkinnedMesh ? part.boundingBox! : part.geometry.boundingBox!).applyMatrix4(part.matrixWorld));
     });
     if (this.bounds.isEmpty()) this.bounds.set(new Vector3(-3, -3, 0), new Vector3(3, 3, 1));
   }
@@ -199,11 +206,13 @@ export class WorldView {
   // The newest of each link that the server has told, by what stands where in which frame: a scene may come long after they did.
   private told = new Map<number, { view: DataView; at: number }>();
   private told_version = -1;
+  private told_time = 0; // [s]
   is_past = false;
   private present: Float32Array | null = null;
   private take(poses: Poses): void {
     if (poses.all || poses.version !== this.told_version) this.told.clear();
     this.told_version = poses.version;
+    this.told_time = poses.time;
     const { view } = poses;
     const is_shown = this.world?.version === poses.version;
     for (let i = 0, at = 24; i < poses.count; ++i, at += 24) {
@@ -247,19 +256,21 @@ export class WorldView {
   }
 
   // Seven numbers a link: what was, of links with these names. Null: what is.
-  show_past(was: Float32Array | null, names = this.link_names()): void {
+  // `moment`: when that was [s].
+  show_past(was: Float32Array | null, names = this.link_names(), moment: number | null = null): void {
     const links = this.world?.links ?? [];
     const places = was && this.in_order(was, names);
     if (places && !this.is_past) this.present = this.places();
     const shown = places ?? this.present;
     this.is_past = places !== null;
+    this.ranges.show_at(this.is_past ? moment : null);
+    this.trails.show(this.is_past ? moment : null);
     if (!places) this.present = null;
     if (!shown || shown.length !== links.length * 7) return;
     links.forEach((link, i) => {
       link.position.fromArray(shown, 7 * i);
       link.quaternion.fromArray(shown, 7 * i + 3);
     });
-    this.ranges.hide_in_the_past(this.is_past);
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -277,8 +288,8 @@ export class WorldView {
   }
 
   private after_places(): void {
+    this.trails.lengthen(this.movers_now(), this.told_time);
     if (this.is_past) return;
-    this.trails.lengthen(this.movers());
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -296,6 +307,15 @@ export class WorldView {
   private movers(): Model[] {
     const models = new Set(store.world?.ifaces.filter((i) => i.type.startsWith('position')).map((i) => i.model));
     return [...(this.world?.models.values() ?? [])].filter((m) => models.has(m.name));
+  }
+
+  // Also while the past is shown.
+  private movers_now(): Mover[] {
+    const { present } = this, links = this.world?.links ?? [];
+    return this.movers().filter((m) => m.canonical).map(({ name, canonical }) => {
+      const at = present ? links.indexOf(canonical!) : -1;
+      return { name, position: present && at >= 0 ? new Vector3().fromArray(present, 7 * at) : canonical!.position };
+    });
   }
 
   private resize(): void {
@@ -319,6 +339,7 @@ export class WorldView {
     camera.updateMatrixWorld();
     place_lights(this.world.look, this.world.lights);
     this.marker.draw(this.eye.mode === 'fixed' ? undefined : this.world.models.get(selected_model() ?? ''));
+    this.hands.show_gizmo(!this.is_past && (this.eye.mode === 'orbit' || this.eye.mode === 'follow' || this.eye.mode === 'top'));
     const spots = this.axes.draw(this.world, selected_model());
     this.daylight.look_from(camera, this.eye.mode !== 'top');
     const began = performance.now();
@@ -354,21 +375,21 @@ export class WorldView {
 
   // ---- views ----
 
-  // Obliquely from the south-west, as near as all corners fit into the picture.
+  // Obliquely from the south-west, as near as all corners fit into the picture: the view of `simctl screenshot`.
   whole(): void {
     const middle = this.bounds.getCenter(new Vector3());
     const aspect = this.element.clientWidth / Math.max(1, this.element.clientHeight);
     const direction = new Vector3(-0.35, -0.8, 0.62).normalize();
     const right = new Vector3(0, 0, 1).cross(direction).normalize(), up = direction.clone().cross(right);
-    const wide = Math.tan(0.5) * 0.95, high = (Math.tan(0.5) / aspect) * 0.92;
-    let distance = 1;
+    const wide = Math.tan(0.5) * 0.96, high = (Math.tan(0.5) / aspect) * 0.94;
+    let distance = 0.5;
     for (let corner = 0; corner < 8; ++corner) {
       const at = new Vector3(corner & 1 ? this.bounds.max.x : this.bounds.min.x, corner & 2 ? this.bounds.max.y : this.bounds.min.y, corner & 4 ? this.bounds.max.z : this.bounds.min.z).sub(middle);
       distance = Math.max(distance, at.dot(direction) + Math.abs(at.dot(right)) / wide, at.dot(direction) + Math.abs(at.dot(up)) / high);
     }
     this.eye.orbit_from(middle.clone().addScaledVector(direction, distance), middle);
     const size = this.bounds.getSize(new Vector3());
-    this.eye.span = Math.max(size.x, size.y * aspect) * 1.06;
+    this.eye.span = Math.max(size.x, size.y * aspect, 1) * 1.06;
   }
 
   top(): void {
