@@ -78,7 +78,10 @@ struct Verdict {
   std::string expectation;
   std::string problem;       // empty: fulfilled
   std::string details = {};  // what a command that failed had said: its last lines
+  std::string failure = {};  // the problem as a sentence of its own, which begins with what failed; empty: EXPECTATION: PROBLEM
 };
+// The line to print of one that is not fulfilled.
+std::string failure_text(const Verdict& verdict);
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
 
 }  // namespace editor

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -33,12 +34,14 @@ constexpr std::chrono::seconds interrupted_limit{60};  // of a run that was inte
 constexpr const char* options_from_input = "--options-from-input";
 
 Json to_json(const RunResult& result) {
-  Json json{{"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
-            {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
-            {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
-            {"wall", result.wall_s},       {"runs", result.runs},          {"expectations", Json::array()}};
+  Json json{{"seed", result.seed},          {"passed", result.is_passed()}, {"problem", result.problem},
+            {"logs", result.logs},          {"notes", result.notes},        {"state_hash", result.state_hash},
+            {"run_hash", result.run_hash},  {"path", result.path_m},        {"simulated", result.simulated_s},
+            {"wall", result.wall_s},        {"runs", result.runs},          {"refused", static_cast<int>(result.refusal)},
+            {"expectations", Json::array()}};
   for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
+    json["expectations"].push_back(
+        {{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}, {"failure", verdict.failure}});
   return json;
 }
 
@@ -52,14 +55,23 @@ RunResult from_json(const Json& json, std::uint64_t seed) {
   result.run_hash = json.value("run_hash", "");
   result.path_m = json.value("path", 0.0);
   result.runs = json.value("runs", 1);
+  const int refusal = json.value("refused", 0);
+  result.refusal = refusal >= 0 && refusal <= 2 ? static_cast<RunResult::Refusal>(refusal) : RunResult::Refusal::none;
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
   for (const auto& entry : json.value("expectations", Json::array()))
-    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", "")});
+    result.verdicts.push_back(
+        {entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", ""), entry.value("failure", "")});
   return result;
 }
 
 double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.runs * result.simulated_s / result.wall_s : 0; }
+
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", length);
+  return text;
+}
 
 void print_heading() {
   std::printf("%10s  %-6s  %11s  %9s  %9s  %-16s  %s\n", "seed", "result", "simulated", "speed", "path", "state", "unmet");
@@ -70,31 +82,43 @@ void print_row(const RunResult& result) {
   for (const auto& verdict : result.verdicts) {
     if (!verdict.problem.empty()) unmet += (unmet.empty() ? "" : ", ") + verdict.expectation;
   }
-  std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %7.2f m  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
-              result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), result.path_m,
+  const auto path = result.problem.empty() ? metres(result.path_m) : "-";
+  std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %9s  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
+              result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), path.c_str(),
               result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : base::printable(unmet).c_str());
+}
+
+void reject(Console& console, const RunResult& result) {
+  if (result.refusal == RunResult::Refusal::expectations) return console.reject({result.problem});
+  console.fail({result.problem});
 }
 
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
 // several.
+// Of what was not run because it was asked for wrongly there is no result.
 void report(Console& console, const RunResult& result, bool is_row) {
+  const bool is_refused = result.refusal != RunResult::Refusal::none;
+  if (is_refused && !console.json()) return reject(console, result);
   if (console.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (is_row) {
     print_row(result);
   } else {
-    std::printf("%s  seed %llu  %s%.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s%s%s\n",
+    // How far the models went is known of a run that came to its end.
+    const auto path = result.problem.empty() ? "  path " + metres(result.path_m) : "";
+    std::printf("%s  seed %llu  %s%.1f s simulated in %.1f s (%.1f x real time)%s  state %s%s%s\n",
                 result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.runs > 1 ? "2 x " : "",
-                result.simulated_s, result.wall_s, times_real_time(result), result.path_m,
+                result.simulated_s, result.wall_s, times_real_time(result), path.c_str(),
                 result.state_hash.empty() ? "-" : result.state_hash.c_str(), result.run_hash.empty() ? "" : "  run ",
                 result.run_hash.c_str());
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
   for (const auto& note : result.notes) console.warn(seed + note);
+  if (is_refused) return reject(console, result);
   if (!result.problem.empty()) console.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) console.fail({seed + verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({seed + failure_text(verdict)});
   }
 }
 
@@ -191,6 +215,8 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
   base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
+  std::atomic<bool> is_refused{false};
+  std::vector<RunResult> results;
   const bool shows = isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
@@ -199,17 +225,22 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
                  seeds.size());
   };
   const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
-  if (!console.json()) print_heading();
-  std::fflush(stdout);
   if (shows) show();
   in_parallel(
       seeds.size(), session.call_timeout(),
       [&](std::size_t i) {
-        if (is_interrupted()) return;
+        if (is_interrupted() || is_refused) return;
         auto result = run_apart(options, seeds[i]);
         const auto mine = telling.take();
+        if (result.refusal != RunResult::Refusal::none) {
+          if (is_refused.exchange(true)) return;  // as each seed would be
+          reject(console, result);
+          results.push_back(std::move(result));
+          return;
+        }
         done.emplace(i, std::move(result));
         if (shows) hide();
+        if (done.size() == 1 && !console.json()) print_heading();
         for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {
           report(console, next->second, true);
           ++reported;
@@ -218,13 +249,13 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
       },
       static_cast<std::size_t>(jobs));
   if (shows) hide();
-  std::vector<RunResult> results;
   std::size_t passed = 0;
   for (auto& [place, result] : done) {
     if (place >= reported) report(console, result, true);  // an earlier one was interrupted
     passed += result.is_passed() ? 1U : 0U;
     results.push_back(std::move(result));
   }
+  if (is_refused) return results;
   if (!console.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
   if (results.size() < seeds.size())
     console.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});
