@@ -74,8 +74,9 @@ struct Barrier::State {
   Control& control() const { return control_of(segment); }
   void pass_moment() const { store(control().moment, ++moment, std::memory_order_release); }  // pairs with the loads in moment_of
   bool is_done(const Member& member) const { return load(slot(member).done, std::memory_order_seq_cst) == member.go; }
-  void tell(BarrierEvent::Kind kind, const Member& member) const {
-    if (options.on_event) options.on_event({kind, member.name, owner_pid(member.owner), member.phase});
+  void tell(BarrierEvent::Kind kind, const Member& member, bool was_in_tick = false) const {
+    if (options.on_event)
+      options.on_event({kind, member.name, owner_pid(member.owner), member.phase, member.period, member.looks_on, was_in_tick});
   }
   void schedule_all();
   void take_in(std::size_t index);
@@ -160,8 +161,9 @@ void Barrier::State::take_in(std::size_t index) {
 bool Barrier::State::remove_if_gone(Member& member) {
   ParticipantSlot& mine = slot(member);
   if (member.watched->is_dead()) {
+    const bool was_in_tick = is_ticking && !is_done(member);
     free_slot(mine, member.owner);
-    tell(BarrierEvent::Kind::died, member);
+    tell(BarrierEvent::Kind::died, member, was_in_tick);
     return true;
   }
   if (load(mine.owner) == member.owner && load(mine.state) == RTMSIM_PARTICIPANT_ACTIVE) return false;
@@ -358,8 +360,14 @@ bool Barrier::State::run_turn(std::span<Member*> group, std::int64_t now, std::u
   // Whoever counts down to one or below wakes the server, which then looks at all `done` words itself: the count is only a hint, so
   // that a participant that died between the two costs nothing but an extra look.
   if (moment % 2 == 0) pass_moment();  // the first turn of its phase
+  // Who has died in an earlier turn of this tick did not die in its own.
+  for (Member* member : group) {
+    if (server.watch().deaths() != seen_deaths && member->watched->is_dead() && remove_if_gone(*member)) member->owner = 0;
+  }
   store(control().pending, static_cast<std::int32_t>(group.size()), std::memory_order_seq_cst);
-  for (Member* member : group) release(*member, now, steps);
+  for (Member* member : group) {
+    if (member->owner != 0) release(*member, now, steps);
+  }
   wake(group);
   return wait_for(group);
 }

@@ -58,6 +58,9 @@ struct BarrierEvent {
   std::string name;
   pid_t pid = 0;
   std::uint32_t phase = 0;
+  std::int64_t period_ns = 0;
+  bool looks_on = false;
+  bool was_in_tick = false;  // died: before it had finished the tick that runs
 };
 
 struct BarrierOptions {

@@ -42,7 +42,7 @@ struct Encoder {
   void operator()(const RunRequest&) {}
   void operator()(const StepRequest& r) {
     raw.body.count = r.steps;
-    raw.body.flags = r.is_paced ? flag_1 : 0;
+    raw.body.flags = (r.is_paced ? flag_1 : 0) | (r.ends_at_death ? flag_2 : 0);
   }
   void operator()(const ResetRequest& r) { raw.body.flags = r.poses_only ? flag_1 : 0; }
   void operator()(const GetPoseRequest& r) { name(r.name); }
@@ -178,7 +178,7 @@ std::optional<Pose> Decoder::pose() const {
 
 base::Result<Request> Decoder::step() const {
   if (body().count < 1 || body().count > max_steps) return fail("steps must be 1 to 1e9, got " + std::to_string(body().count));
-  return Request(StepRequest{body().count, (body().flags & flag_1) != 0});
+  return Request(StepRequest{body().count, (body().flags & flag_1) != 0, (body().flags & flag_2) != 0});
 }
 
 base::Result<Request> Decoder::set_pose() const {

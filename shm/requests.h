@@ -16,6 +16,10 @@ struct RunRequest {};
 struct StepRequest {
   std::int64_t steps = 1;
   bool is_paced = false;  // at the real-time factor, instead of as fast as possible
+  // The steps end with the tick in which the process of a participant dies. The reply has failed then: `count` is the process ID, `text`
+  // the names of its participants that had not finished their tick, one a line, `values` the time of the tick and the longest period
+  // of these [s].
+  bool ends_at_death = false;
 };
 struct ResetRequest {
   bool poses_only = false;

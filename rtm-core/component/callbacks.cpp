@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/sudden_end.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "base/waiting.h"
@@ -95,6 +96,7 @@ ReturnCode_t RTObject_impl::callInTurn(const char* name, bool is_outside, Refusa
   if (is_outside)
     if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
   const InsideCallback inside(*this);
+  const base::CallbackOnStack on_stack(m_profile.instance_name, name);
   // Called by a context of another process: its time is ours.
   std::optional<base::ScopedClock> clock;
   if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));

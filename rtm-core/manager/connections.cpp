@@ -34,6 +34,7 @@ base::Result<void> ManagerImpl::connect(const std::string& text) {
   if (!first) return complain(first.error().message);
   coil::Properties properties;
   for (const auto& [key, setting] : request->properties) properties.setProperty("dataport." + key, setting);
+  if (properties.getProperty("dataport.reconnect").empty()) properties.setProperty("dataport.reconnect", "YES");
   for (const auto& address : request->others) {
     const auto other = find_port(address);
     if (!other) return complain(other.error().message);

@@ -5,7 +5,8 @@
 // contexts are waited for until T after the end has begun, all together (and one second more where it takes that to find all that hang). A
 // callback that the end itself calls (onFinalize, onShutdown) may last T. So a process with components that hang is gone after 2 T + 2 s at
 // most, however many there are; it says which they are, takes its names out of the naming service, answers the calls it is in (1 s) and
-// ends with _Exit. Any other step that gets nowhere for 30 s ends it, too.
+// ends with _Exit. Any other step that gets nowhere for 30 s ends it, too. A callback that calls exit() ends the process at once with that
+// exit code: names are removed, and the other components get no further callback.
 #include <pthread.h>
 
 #include <algorithm>
@@ -177,6 +178,14 @@ void ManagerImpl::give_up(const std::string& step) {
   remove_files();
   flush_streams();
   std::_Exit(EXIT_FAILURE);
+}
+
+// The thread that has called exit() in a callback never returns from it, so there is nothing to wait for.
+void ManagerImpl::end_in_callback(int status) {
+  if (naming) naming->unbindAll();
+  remove_files();
+  flush_streams();
+  std::_Exit(status);
 }
 
 // Waits for the request and does the work of ending: on a thread of its own because anybody may ask, also a component or the ORB.

@@ -178,6 +178,7 @@ class ManagerImpl {
   void complain_about_callbacks() const;
   void answer_last_calls();
   [[noreturn]] void give_up(const std::string& step);
+  [[noreturn]] void end_in_callback(int status);
   static void flush_streams();  // of the C library; in a second, or not
   void look_after_number_of_components();
 

@@ -14,6 +14,7 @@
 #include "core/config_keys.h"
 #include "core/key_limits.h"
 #include "core/remote_rights.h"
+#include "manager/at_once.h"
 #include "manager/manager_impl.h"
 #include "rtm/LocalServiceAdmin.h"
 #include "rtm/Manager.h"
@@ -24,6 +25,7 @@ namespace {
 
 constexpr std::size_t longest_name = std::size_t{64} << 10;
 constexpr std::chrono::seconds creation_timeout{10};
+constexpr std::chrono::seconds deletion_timeout{2};  // of one slave
 constexpr std::chrono::seconds modules_timeout{30};  // each module is read in a process of its own
 
 template <class Sequence, class Element>
@@ -175,16 +177,21 @@ RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) {
   return manager_.unload(pathname);
 }
 
-// What every living slave answers, appended. One that takes the time-out is dropped: nobody waits for it twice.
+// What every living slave answers, appended. All are asked at the same time. One that takes the time-out is dropped: nobody waits for it
+// twice.
 template <class List, class Ask>
 void ManagerServant::append_from_slaves(List& list, Ask ask) {
-  for (const auto& slave : living_slaves()) {
+  const auto slaves = living_slaves();
+  std::vector<std::optional<decltype(ask(slaves.front().in()))>> answers(slaves.size());
+  at_once(slaves.size(), [&](std::size_t i) {
     try {
-      auto theirs = ask(slave.in());
-      for (CORBA::ULong i = 0; i < theirs->length(); ++i) append(list, theirs[i]);
+      answers[i].emplace(ask(slaves[i].in()));
     } catch (const CORBA::Exception& e) {  // gone meanwhile, or hanging
-      if (corba::is_time_out(e)) drop(slave, true);
+      if (corba::is_time_out(e)) drop(slaves[i], true);
     }
+  });
+  for (auto& theirs : answers) {
+    for (CORBA::ULong i = 0; theirs && i < (*theirs)->length(); ++i) append(list, (*theirs)[i]);
   }
 }
 
@@ -235,9 +242,11 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
     return create_at(other, argument);
   }
   const auto slaves = living_slaves();
-  const bool is_own_name = name == manager_.configValue("manager.instance_name");
-  for (const auto& slave : slaves) {
-    if (!name.empty() && !is_own_name && name_of(slave) == name) return create_at(slave, argument);
+  if (!name.empty() && name != manager_.configValue("manager.instance_name")) {
+    std::vector<std::string> names(slaves.size());
+    at_once(slaves.size(), [&](std::size_t i) { names[i] = name_of(slaves[i]); });
+    const auto wanted_slave = std::ranges::find(names, name);
+    if (wanted_slave != names.end()) return create_at(slaves[static_cast<std::size_t>(wanted_slave - names.begin())], argument);
   }
   if (auto* made = manager_.createComponent(argument)) {
     const auto component = manager_.impl_->held_component(made);
@@ -256,8 +265,11 @@ RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
   if (!may(rt::RemoteRights::components, "the end of component " + base::in_quotes(instance_name))) return RTC::RTC_ERROR;
   const auto code = manager_.deleteComponent(instance_name);
   if (code != RTC::BAD_PARAMETER) return code;
+  const corba::ChainDeadline deadline(deletion_timeout);
   for (const auto& slave : living_slaves()) {
+    if (deadline.is_over()) break;
     try {
+      deadline.limit(slave);
       if (slave->delete_component(instance_name) == RTC::RTC_OK) return RTC::RTC_OK;
     } catch (const CORBA::Exception& e) {  // gone meanwhile, or hanging
       if (corba::is_time_out(e)) drop(slave, true);

@@ -1,15 +1,13 @@
 // The masters and slaves of a manager. Slaves in a circle, which would ask each other without end, are refused, as is what does not answer
 // as a manager. One that hangs is dropped, and may come back after a while.
 #include <algorithm>
-#include <atomic>
-#include <system_error>
-#include <thread>
 
 #include "base/log.h"
 #include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
 #include "core/remote_rights.h"
+#include "manager/at_once.h"
 #include "manager/manager_impl.h"
 #include "rtm/Manager.h"
 #include "rtm/ManagerServant.h"
@@ -22,7 +20,6 @@ constexpr std::chrono::milliseconds ping_timeout{300};  // of a slave that has h
 constexpr std::chrono::seconds shortest_absence{10};    // of a slave that has hung; twice as long each time
 constexpr int most_doublings = 6;
 constexpr std::size_t most_managers = 256;  // of each list
-constexpr std::size_t most_asked_together = 64;
 
 // A manager answers there. Also: a reference by object key (corbaloc) is equivalent to one by IOR only after its first call has been sent
 // on.
@@ -182,28 +179,16 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
     slaves = slaves_;
   }
   std::vector<char> is_living(slaves.size());
-  std::atomic<std::size_t> next{0};
-  const auto ask = [&, asker = corba::asker()] {
-    const corba::ForAsker same(asker);
-    for (auto i = next++; i < slaves.size(); i = next++) {
-      try {
-        corba::set_call_timeout(slaves[i], peer_timeout);
-        is_living[i] = slaves[i]->_non_existent() ? 0 : 1;
-        if (is_living[i] == 0) drop(slaves[i], false);
-      } catch (const CORBA::NO_PERMISSION&) {  // it does not let in for whom we ask
-      } catch (const CORBA::Exception& e) {    // as good as gone
-        drop(slaves[i], corba::is_time_out(e));
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
+  at_once(slaves.size(), [&](std::size_t i) {
     try {
-      while (helpers.size() + 1 < std::min(slaves.size(), most_asked_together)) helpers.emplace_back(ask);
-    } catch (const std::system_error&) {  // with fewer threads it takes longer
+      corba::set_call_timeout(slaves[i], peer_timeout);
+      is_living[i] = slaves[i]->_non_existent() ? 0 : 1;
+      if (is_living[i] == 0) drop(slaves[i], false);
+    } catch (const CORBA::NO_PERMISSION&) {  // it does not let in for whom we ask
+    } catch (const CORBA::Exception& e) {    // as good as gone
+      drop(slaves[i], corba::is_time_out(e));
     }
-    ask();
-  }
+  });
   std::vector<RTM::Manager_var> living;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     if (is_living[i] != 0) living.push_back(slaves[i]);
@@ -255,14 +240,11 @@ void ManagerServant::leave_masters() {
     } catch (const CORBA::Exception&) {  // it has gone before us
     }
   };
-  for (auto& master : masters) {
-    corba::set_call_timeout(master, peer_timeout);
-    quietly([&] { master->remove_slave_manager(reference_); });
-  }
-  for (auto& slave : slaves) {
-    corba::set_call_timeout(slave, peer_timeout);
-    quietly([&] { slave->remove_master_manager(reference_); });
-  }
+  at_once(masters.size() + slaves.size(), [&](std::size_t i) {
+    auto& other = i < masters.size() ? masters[i] : slaves[i - masters.size()];
+    corba::set_call_timeout(other, peer_timeout);
+    quietly([&] { i < masters.size() ? other->remove_slave_manager(reference_) : other->remove_master_manager(reference_); });
+  });
 }
 
 }  // namespace RTM

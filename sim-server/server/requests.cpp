@@ -70,6 +70,8 @@ struct ServerLoop::Handler {
     loop.mode_.make_steps(static_cast<std::uint64_t>(request.steps), request.is_paced);
     loop.start_pace();
     loop.step_ticket_ = ticket;
+    loop.ends_at_death_ = request.ends_at_death;
+    loop.death_.reset();
     return {};
   }
   shm::Reply operator()(const shm::ResetRequest& request) {

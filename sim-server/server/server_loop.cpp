@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "base/log.h"
 #include "reader/asset_reader.h"
@@ -67,6 +68,8 @@ void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
     case Kind::left:
       return say(base::Level::info, "has left");
     case Kind::died:
+      note_death(event);
+      if (death_) return say(base::Level::warn, "died; time stops");
       return say(base::Level::warn, "died; time goes on without it");
     case Kind::hangs:
       return say(base::Level::warn, "has not finished its tick for a second; time waits for it");
@@ -100,6 +103,10 @@ bool ServerLoop::run() {
     if (is_fresh_moment_ && !mode_.stands_still()) {
       is_fresh_moment_ = false;
       if (!finish_moment()) break;
+      if (death_) {
+        end_steps_at_death();
+        continue;
+      }
     }
     if (options_.duration && simulation_.time() >= *options_.duration) {
       (void)barrier_->settle();
@@ -114,6 +121,7 @@ bool ServerLoop::run() {
     }
     step();
     if (!finish_moment()) break;
+    if (death_) end_steps_at_death();
     if (mode_.count_step()) finish_step_request();
     if (step_ticket_ && !board_.is_awaited(*step_ticket_)) end_steps("the client has disconnected");
     keep_pace();
@@ -269,9 +277,27 @@ void ServerLoop::finish_step_request() {
   step_ticket_.reset();
 }
 
-void ServerLoop::end_steps(const std::string& why) {
-  if (!step_ticket_) return;
+void ServerLoop::note_death(const shm::BarrierEvent& event) {
+  if (!step_ticket_ || !ends_at_death_ || event.looks_on) return;
+  if (!death_) death_.emplace(Death{.pid = event.pid});
+  if (death_->pid != event.pid || !event.was_in_tick) return;
+  death_->in_tick.push_back(event.name);
+  death_->period_ns = std::max(death_->period_ns, event.period_ns);
+}
+
+void ServerLoop::end_steps_at_death() {
+  const Death death = *std::exchange(death_, std::nullopt);
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   shm::Reply reply;
+  reply.count = death.pid;
+  for (const auto& name : death.in_tick) reply.text += (reply.text.empty() ? "" : "\n") + name;
+  reply.values[0] = seconds(simulation_.time().count());
+  reply.values[1] = seconds(death.period_ns);
+  end_steps("process " + std::to_string(death.pid) + ", which takes part in the lock step, has died", std::move(reply));
+}
+
+void ServerLoop::end_steps(const std::string& why, shm::Reply reply) {
+  if (!step_ticket_) return;
   reply.status = shm::RequestStatus::failed;
   reply.message = why + ", " + std::to_string(mode_.end_steps()) + " steps before the last";
   board_.reply(*step_ticket_, reply);

@@ -80,7 +80,9 @@ class ServerLoop {
   bool waits_for_spawn() const { return options_.is_lockstep && spawn_desk_ && spawn_desk_->under_way() > 0; }
   std::string late_participants() const;
   // Ends the steps that a client has asked for before they are all done, and tells it why.
-  void end_steps(const std::string& why);
+  void end_steps(const std::string& why, shm::Reply reply = {});
+  void note_death(const shm::BarrierEvent& event);
+  void end_steps_at_death();
   // Sleeps until simulated time may go on; requests are served meanwhile.
   void keep_pace();
   void start_pace();
@@ -112,6 +114,14 @@ class ServerLoop {
   Pace pace_;
   bool is_fresh_moment_ = true;                    // the moment at time 0 has not been published yet
   std::optional<shm::RequestTicket> step_ticket_;  // of the steps that a client has asked for
+  // Of the first process of participants that has died while steps are made that are to end then.
+  struct Death {
+    pid_t pid = 0;
+    std::vector<std::string> in_tick;  // its participants that had not finished their tick
+    std::int64_t period_ns = 0;        // the longest of these
+  };
+  std::optional<Death> death_;
+  bool ends_at_death_ = false;
   struct Postponed {
     shm::RequestBoard::Asked asked;
     std::chrono::steady_clock::time_point since;

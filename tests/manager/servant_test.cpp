@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <mutex>
 
@@ -309,11 +310,18 @@ class HangingSlave final : public POA_RTM::Manager, public PortableServer::RefCo
  public:
   RTC::RTCList* get_components() override {
     ++asked;
+    if (on_asked) on_asked();
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return is_over_; });
     return new RTC::RTCList();
   }
-  RTC::ReturnCode_t remove_master_manager(RTM::Manager_ptr) override { return ++told, RTC::RTC_OK; }
+  RTC::ReturnCode_t remove_master_manager(RTM::Manager_ptr) override {
+    std::unique_lock lock(mutex_);
+    if (hangs_at_the_end) changed_.wait(lock, [&] { return is_over_; });
+    return ++told, RTC::RTC_OK;
+  }
+  std::function<void()> on_asked;
+  bool hangs_at_the_end = false;
   void end() {
     const std::scoped_lock lock(mutex_);
     is_over_ = true;
@@ -387,6 +395,49 @@ TEST_F(Servant, slaves_that_hang_cost_the_time_of_one_and_hide_no_other) {
   EXPECT_EQ(RTC::RTCList_var(master->get_components())->length(), 1u);
   EXPECT_EQ(RTM::ManagerList_var(master->get_slave_managers())->length(), 1u) << "one call has found all that hang";
   for (std::size_t i = 0; i + 1 < slaves.size(); ++i) slaves[i]->signal(SIGCONT);
+}
+
+// Slaves that answer only when all of them have been asked: asked one after another, each would be waited for in vain.
+TEST_F(Servant, slaves_are_asked_at_the_same_time) {
+  const int port = support::free_port();
+  support::Process process(at_port(port, {"-d"}));
+  RTM::Manager_var master = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(master)) << process.output();
+  std::vector<PortableServer::Servant_var<HangingSlave>> slaves;
+  std::atomic<std::size_t> asked{0};
+  orb_->activate();
+  constexpr std::size_t count = 8;
+  for (std::size_t i = 0; i < count; ++i) {
+    slaves.emplace_back(new HangingSlave);
+    slaves.back()->on_asked = [&] {
+      if (++asked == count) {
+        for (auto& slave : slaves) slave->end();
+      }
+    };
+    RTM::Manager_var reference = slaves.back()->_this();
+    ASSERT_EQ(master->add_slave_manager(reference), RTC::RTC_OK);
+  }
+  RTC::RTCList_var components = master->get_components();
+  EXPECT_EQ(asked, count);
+  EXPECT_EQ(RTM::ManagerList_var(master->get_slave_managers())->length(), count) << "none was dropped";
+}
+
+// Each of them would be waited for two seconds; the end of a process may take 30 s in one of its steps.
+TEST_F(Servant, a_master_whose_slaves_hang_ends_as_any_other) {
+  const int port = support::free_port();
+  support::Process process(at_port(port, {"-d"}));
+  RTM::Manager_var master = manager_at(port);
+  ASSERT_FALSE(CORBA::is_nil(master)) << process.output();
+  std::vector<PortableServer::Servant_var<HangingSlave>> slaves;
+  orb_->activate();
+  for (int i = 0; i < 16; ++i) {
+    slaves.emplace_back(new HangingSlave);
+    slaves.back()->hangs_at_the_end = true;
+    RTM::Manager_var reference = slaves.back()->_this();
+    ASSERT_EQ(master->add_slave_manager(reference), RTC::RTC_OK);
+  }
+  EXPECT_EQ(process.stop(), 0) << process.output();
+  for (auto& slave : slaves) slave->end();
 }
 
 TEST_F(Servant, managers_are_no_slaves_in_a_circle_and_nothing_else_is_one) {

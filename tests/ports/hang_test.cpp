@@ -147,6 +147,67 @@ TEST_F(Faults, a_peer_that_hangs_keeps_its_connection_while_nobody_writes) {
   }
 }
 
+// With the usual pause between two looks, which is what people wait for.
+TEST_F(Faults, a_peer_that_has_hung_and_then_dies_is_found_as_soon_as_any_other) {
+  ports::Peer peer;
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+  auto plan = profile({octets.getPortRef(), peer.port("in")});
+  ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
+  stop_process(peer);
+  const auto two_looks = 2 * corba::OrbSettings().peer_check_interval + std::chrono::seconds(1);
+  std::this_thread::sleep_for(two_looks);  // nobody tells that it has been found to hang
+  EXPECT_EQ(octets.connectors().size(), 1u);
+  const auto died = std::chrono::steady_clock::now();
+  peer.process().kill();
+  EXPECT_TRUE(ports::eventually([&] { return octets.connectors().empty(); }));
+  EXPECT_LT(std::chrono::steady_clock::now() - died, 5 * corba::OrbSettings().peer_check_interval) << "it was asked once in 15 looks";
+}
+
+// However many ports of a connection are silent, and wherever they are in it, connecting takes the time of one call.
+TEST_F(Faults, connecting_with_silent_ports_has_one_deadline) {
+  ports::Peer one, other;
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+  const RTC::PortService_var in = one.port("in"), out = one.port("out"), also_in = other.port("in");
+  stop_process(one);
+  stop_process(other);
+  const auto limit = std::chrono::milliseconds(1000);
+  corba::set_port_call_timeout(limit);
+  const std::vector<std::vector<RTC::PortService_ptr>> chains = {
+      {octets.getPortRef(), in}, {in, octets.getPortRef()}, {in, also_in, octets.getPortRef()}, {octets.getPortRef(), in, also_in}};
+  for (const auto& chain : chains) {
+    RTC::ConnectorProfile plan = profile({chain[0]});
+    plan.ports.length(static_cast<CORBA::ULong>(chain.size()));
+    for (CORBA::ULong i = 0; i < plan.ports.length(); ++i) plan.ports[i] = RTC::PortService::_duplicate(chain[i]);
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(octets.connect(plan), RTC::RTC_ERROR);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, 2 * limit) << chain.size() << " ports";
+  }
+  corba::set_port_call_timeout(std::chrono::seconds(10));
+}
+
+// A peer that throws would do so again; only one that hung is connected again.
+TEST_F(Faults, a_connection_that_comes_back_does_not_after_an_exception_of_the_peer) {
+  auto* in_port = new StrangeInPort([]() -> OpenRTM::PortStatus { throw CORBA::UNKNOWN(); });
+  PortableServer::Servant_var<StrangeInPort> in_owner(in_port);
+  OpenRTM::InPortCdr_var object = in_port->_this();
+  auto* port = new StrangePort("dataport.corba_cdr.inport_ior", object);
+  PortableServer::Servant_var<StrangePort> owner(port);
+  RTC::PortService_var reference = port->_this();
+  std::atomic<int> connects{0};
+  port->on_connect = [&] { ++connects; };
+  RTC::TimedOctetSeq value{};
+  RTC::OutPort<RTC::TimedOctetSeq> octets("A0.octets", value);
+  auto plan = profile({octets.getPortRef(), reference}, {{"reconnect", "YES"}});
+  ASSERT_EQ(octets.connect(plan), RTC::RTC_OK);
+  EXPECT_FALSE(octets.write());
+  EXPECT_TRUE(octets.connectors().empty());
+  EXPECT_TRUE(ports::eventually([&] { return port->disconnects == 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // nothing may happen, so there is nothing to wait for
+  EXPECT_EQ(connects, 1);
+}
+
 TEST_F(Faults, leaving_a_peer_that_hangs_takes_a_moment_for_all_its_connections_together) {
   ports::Peer peer;
   RTC::TimedOctetSeq value{};

@@ -20,8 +20,9 @@ class FakeSimulator final : public Simulator {
   std::optional<base::Error> broken;  // what every request returns
   PoseRecord events;                  // that read_events() adds, once
   std::int64_t steps_done = 0;
-  int looks_until_done = 0;  // of await_steps()
-  bool is_stuck = false;     // steps never end, and time stands still
+  int looks_until_done = 0;         // of await_steps()
+  std::optional<LostProcess> lost;  // what await_loss() returns
+  bool is_stuck = false;            // steps never end, and time stands still
 
   const std::string& id() const override { return id_; }
   double step() const override { return 0.001; }
@@ -82,6 +83,7 @@ class FakeSimulator final : public Simulator {
     steps_done += wanted_;
     return true;
   }
+  std::optional<LostProcess> await_loss(std::chrono::milliseconds) override { return lost; }
   base::Result<void> read_events(PoseRecord& record) override {
     if (broken) return *broken;
     for (const auto& [model, list] : events.poses) {

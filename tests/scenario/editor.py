@@ -89,6 +89,41 @@ def hung_is_not_gone():
     rig.rtse("wait", "SinkAll0", "--state", "gone", "--timeout", "60")
 
 
+# A process that was stopped for longer than a call may take has its connections back soon after it goes on, whoever has made them.
+def connections_come_back():
+    short = ("-o", "corba.call_timeout:0.5")
+    up("SourceAll", options=short)
+    host = rig.host("SinkAll", options=short)
+    rig.there("SinkAll0")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "wire")
+    rig.rtse("save", rig.path("both.xml"))
+    rig.rtse("dis", "SourceAll0:long", "SinkAll0:long")
+    rig.rtse("load", rig.path("both.xml"))
+    rig.host("SourceAll?instance_name=Other", options=(*short, "-o", f"manager.components.preconnect:Other.short?port=rtcname://{rig.names}/*/SinkAll0.short"))
+    rig.there("Other")
+    ports = {"SourceAll0:long": "wire", "Other:short": "SinkAll0.short"}
+    for port, name in ports.items():
+        await_(f"the connection of {port}", lambda: name in rig.rtse("cat", "-l", port))
+    rig.rtse("act", "SourceAll0", "Other", "SinkAll0")
+    host.send_signal(signal.SIGSTOP)
+    for port, name in ports.items():
+        await_(f"the loss of {port}", lambda: name not in rig.rtse("cat", "-l", port))
+    host.send_signal(signal.SIGCONT)
+    for port, name in ports.items():
+        await_(f"the connection of {port} again", lambda: name in rig.rtse("cat", "-l", port))
+
+
+# A port that sends nothing is named, with the state of its component.
+def a_silent_port_is_named():
+    up("SourceAll")
+    silent = subprocess.Popen([f"{rig.bin_dir}/rtse", "--ns", rig.names, "print", "SourceAll0:long", "-n", "1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    said = silent.stderr.readline()
+    assert said == "rtse: port SourceAll0.long: no sample in 2 s, print waits; SourceAll0 is Inactive\n", said
+    rig.rtse("act", "SourceAll0")
+    out, err = silent.communicate(timeout=60)
+    assert silent.returncode == 0 and out and err == "", (out, err)
+
+
 # Two ports of which one hangs with its process are disconnected at the other, whichever is named first.
 def disconnect_from_one_that_hangs():
     up("SourceAll")

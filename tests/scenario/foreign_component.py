@@ -2,17 +2,17 @@
 """A component of another make, in a process of its own: an ORB and contexts that share no line with the product (../ports/giop.py). It
 behaves as those of OpenRTM-aist do towards contexts of others, and knows nothing of simulated time.
 
-    foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|afterwards] [--clock PERIOD]
-                         [--late MS@N] [--race clock|thread] [--attach-late MS] [--activate-late MS] [--die attach|activate] [--throw-at N]
+    foreign_component.py NAME [--names HOST:PORT] [--source] [--journal FILE] [--fault KIND@N] [--context periodic|triggered|logical|lazy|afterwards] [--clock PERIOD]
+                         [--late MS@N] [--race clock|thread] [--attach-late MS] [--activate-late MS] [--die attach|activate] [--throw-at N] [--stop-at N]
 
 It is bound as NAME.rtc in the root of the naming service. InPort `in` and OutPort `out` carry RTC::TimedLong: with --source it counts its
 calls, else it sends on what came, plus one. --fault: in its Nth on_execute it sleeps so many ms ("300@5"; "300@*" in each), or does what the
-word says: fail, throw, die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
+word says: fail, throw, raise (with a traceback), stop (by SIGSTOP), die, hang, or meet: it waits until as many components have done so as the files of that name tell ("meet/PATH@5"). The
 journal gets a line "callback handle value" for each call, and "tick seconds value" for each tick of its own context, when that is one that is
 ticked; `afterwards`: one that is ticked, and calls the component on a thread of its own. --late: it answers so many ms after it
 has got its Nth sample; --attach-late, --activate-late: so many after it was asked to join a context, or to
-be active; --die: when it is asked. --throw-at: it throws when it gets its Nth
-sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
+be active; --die: when it is asked. --throw-at, --stop-at: it throws, or is stopped by SIGSTOP, when it
+gets its Nth sample. --race: what it sends depends on the clock of the machine, or it sends on a thread
 of its own, some time later. --clock: it subscribes that to the ClockGenerator, with its period in seconds, and unsubscribes at the end.
 """
 import argparse
@@ -22,6 +22,7 @@ import struct
 import sys
 import threading
 import time
+import traceback
 
 source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, f"{source}/tests/ports")
@@ -53,6 +54,9 @@ class Port(ForeignPort):
         if self.owner.options.throw_at == self.count + 1:
             self.count += 1
             raise SystemException("UNKNOWN")
+        if self.owner.options.stop_at == self.count + 1:
+            self.count += 1
+            os.kill(os.getpid(), signal.SIGSTOP)
         late, _, at = self.owner.options.late.partition("@")
         self.count += 1
         if at == str(self.count):
@@ -141,6 +145,23 @@ class TriggeredContext(OwnContext):
             self.cycle()
 
 
+# As with OpenRTM-aist, a transition is made in a tick; who asks waits half a second for it.
+class LazyContext(TriggeredContext):
+    wanted = None
+
+    def deactivate_component(self, component):
+        if self.state != "ACTIVE_STATE":
+            return "PRECONDITION_NOT_MET"
+        self.wanted = threading.Event()
+        return "RTC_OK" if self.wanted.wait(0.5) else "RTC_ERROR"
+
+    def tick(self):
+        if self.wanted:
+            super().deactivate_component(None)
+            self.wanted.set()
+        super().tick()
+
+
 # As OpenRTM-aist's ExtTrigExecutionContext.
 class AfterwardsContext(TriggeredContext):
     kind = "ExtTrigExecutionContext"
@@ -161,7 +182,7 @@ class Component:
         self.journal = open(options.journal, "a", buffering=1) if options.journal else None
         self.into, self.out = Port(idl, orb, "in", "in", self), Port(idl, orb, "out", "out", self)
         self.servant = Servant(idl, orb, "OpenRTM::DataFlowComponent", self)
-        self.own = {"periodic": OwnContext, "triggered": TriggeredContext, "logical": LogicalContext, "afterwards": AfterwardsContext}[options.context](idl, orb, self, 20.0)
+        self.own = {"periodic": OwnContext, "triggered": TriggeredContext, "logical": LogicalContext, "lazy": LazyContext, "afterwards": AfterwardsContext}[options.context](idl, orb, self, 20.0)
 
     def note(self, callback, handle):
         if self.journal:
@@ -227,8 +248,16 @@ class Component:
     def misbehave(self, kind):
         if kind == "throw":
             raise SystemException("UNKNOWN")
+        if kind == "raise":
+            try:
+                raise ValueError("no scan")
+            except ValueError:
+                traceback.print_exc()  # as the ORBs of Python do
+            raise SystemException("UNKNOWN")
         if kind == "die":
             os.kill(os.getpid(), signal.SIGKILL)
+        if kind == "stop":
+            os.kill(os.getpid(), signal.SIGSTOP)
         if kind == "hang":
             signal.pause() if threading.current_thread() is threading.main_thread() else threading.Event().wait()
         if kind == "fail":
@@ -310,8 +339,9 @@ def main():
     parser.add_argument("--die", default="", choices=["", "attach", "activate"])
     parser.add_argument("--activate-late", type=float, default=0)
     parser.add_argument("--throw-at", type=int, default=0)
+    parser.add_argument("--stop-at", type=int, default=0)
     parser.add_argument("--race", default="", choices=["", "clock", "thread"])
-    parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "afterwards"])
+    parser.add_argument("--context", default="periodic", choices=["periodic", "triggered", "logical", "lazy", "afterwards"])
     parser.add_argument("--clock", type=float, default=0)
     parser.add_argument("--active", action="store_true")
     options = parser.parse_args()

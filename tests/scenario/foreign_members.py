@@ -179,6 +179,8 @@ def started():
         assert [line.split()[1] for line in read.splitlines()] == ["2", "3", "4", "5", "6", "7"], read
         assert [float(line.split()[0]) for line in read.splitlines()] == [0, 0.1, 0.2, 0.3, 0.4, 0.5], read
         assert calls.split("\n")[0] == "on_activated 1000 0" and calls.count("on_execute 1000") == 6, calls
+        # At the end it is deactivated, as components of ours are.
+        assert calls.splitlines()[-1].startswith("on_deactivated 1000"), calls
 
 
 def same_state():
@@ -204,6 +206,12 @@ def faulty():
                 assert "on_aborting 1000" in calls and calls.count("on_error 1000") > 5, (fault, calls)
             if fault == "die@3":
                 assert "killed by signal 9" in err, err
+        code, err, read, calls = r.run(start=r.start("--fault raise@3"))
+        assert code == 1 and re.search(r"Alien is Error \(onExecute at 0.2 s: .*UNKNOWN.*; ValueError: no scan\)", err), (code, err)
+        # Who is stopped is named before those who wait for it.
+        for fault in ("--fault stop@3", "--stop-at 3"):
+            code, err, read, calls = r.run("--hang-timeout", "2", start=r.start(fault))
+            assert code == 1 and re.search(r"^rtse: process of Alien \(pid \d+\) is stopped, by a signal or a debugger; (Alien|From): did not finish its tick at 0.2 s", err, re.M), (fault, code, err)
         # Who hangs while it takes a sample is named beside the one who waits for it.
         code, err, read, calls = r.run("--hang-timeout", "3", start=r.start("--late 100000@3"))
         assert code == 1 and "From: did not finish its tick at 0.2 s" in err and "From.out waits for Alien.in" in err, (code, err)
@@ -306,7 +314,7 @@ def lost_link():
     # Whoever throws when a sample comes loses the connection, as with OpenRTM-aist. A run in which that happens is none that has passed.
     with Run() as r:
         code, err, read, calls = r.run(start=r.start("--throw-at 4"))
-        assert code == 1 and "no connection is lost: From.out to Alien.in: the peer throws UNKNOWN" in err, (code, err)
+        assert code == 1 and "rtse: connection lost: From.out to Alien.in: the peer throws UNKNOWN" in err, (code, err)
         assert [line.split()[1] for line in read.splitlines()] == ["2", "3", "4", "5"], read  # it has taken the fourth, too
 
 
@@ -425,7 +433,7 @@ def ticked_afterwards():
 def ticked():
     # Contexts that are ticked from outside: by the proxy, with the time where they take one, and by OpenHRP's clock, to which they subscribe.
     with Run() as r:
-        for how, options in (("tick", "--context triggered --active"), ("tick", "--context logical --active"), ("clock", "--context triggered --active --clock 0.1")):
+        for how, options in (("tick", "--context triggered --active"), ("tick", "--context logical --active"), ("tick", "--context lazy --active"), ("clock", "--context triggered --active --clock 0.1")):
             system = r.system()
             with open(f"{r.path}/run.yaml", "w") as out:
                 out.write(f"processes:\n  - command: {r.command(options)}\n    components:\n      - {{name: Alien, join: {how}}}\n")
@@ -435,7 +443,8 @@ def ticked():
             values = [line.split()[1] for line in r.read(f"To-{r.count}.txt").splitlines()]
             assert values == ["2", "3", "4", "5", "6", "7"], (how, values)
             journal = [line.split() for line in r.read(f"Alien-{r.count}.journal").splitlines()]
-            ticks = [float(line[1]) for line in journal if line[0] == "tick"]
+            assert journal[-1 if "lazy" not in options else -2][0] == "on_deactivated", journal
+            ticks = [float(line[1]) for line in journal if line[0] == "tick"][:6]
             assert ticks == ([0, 0.1, 0.2, 0.3, 0.4, 0.5] if "logical" in options else [-1] * 6), ticks
             assert [line[1] for line in journal if line[0] == "on_execute"] == ["0"] * 6, journal
 

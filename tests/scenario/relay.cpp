@@ -1,11 +1,12 @@
 // Relay: sends on what it receives, or counts its own ticks when source is 1, and writes "time value" for each value to the file `journal`.
-// Ticks of a chain of relays show how long data is on the way. hang_at, crash_at, nan_at: the tick in which it sleeps for ever, aborts, and
-// sends no number on its third port (0: never).
+// Ticks of a chain of relays show how long data is on the way. hang_at, crash_at, exit_at, kill_at, nan_at: the tick in which it sleeps for
+// ever, aborts, calls exit(3), kills its process, and sends no number on its third port (0: never). crash_active: it aborts in onActivated.
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/DataInPort.h>
 #include <rtm/DataOutPort.h>
 #include <rtm/Manager.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -26,6 +27,9 @@ class Relay : public RTC::DataFlowComponentBase {
     bindParameter("journal", journal_, "");
     bindParameter("hang_at", hang_at_, "0");
     bindParameter("crash_at", crash_at_, "0");
+    bindParameter("exit_at", exit_at_, "0");
+    bindParameter("kill_at", kill_at_, "0");
+    bindParameter("crash_active", crash_active_, "0");
     bindParameter("nan_at", nan_at_, "0");
     bindParameter("stamp", stamp_, "1");
     addOutPort("number", number_out_);
@@ -34,6 +38,7 @@ class Relay : public RTC::DataFlowComponentBase {
 
   RTC::ReturnCode_t onActivated(RTC::UniqueId) override {
     ticks_ = 0;
+    if (crash_active_ != 0) std::abort();
     RTC_INFO(("relay activated"));
     return RTC::RTC_OK;
   }
@@ -42,6 +47,8 @@ class Relay : public RTC::DataFlowComponentBase {
     ++ticks_;
     while (hang_at_ > 0 && ticks_ == hang_at_) pause();
     if (crash_at_ > 0 && ticks_ == crash_at_) std::abort();
+    if (exit_at_ > 0 && ticks_ == exit_at_) std::exit(3);  // NOLINT(concurrency-mt-unsafe): as careless authors do
+    if (kill_at_ > 0 && ticks_ == kill_at_) kill(getpid(), SIGKILL);
     number_.data = ticks_ == nan_at_ ? std::nan("") : 1;
     number_out_.write();
     if (source_ != 0) {
@@ -72,7 +79,7 @@ class Relay : public RTC::DataFlowComponentBase {
   RTC::OutPort<RTC::TimedLong> out_;
   RTC::TimedDouble number_{};
   RTC::OutPort<RTC::TimedDouble> number_out_;
-  int source_ = 0, hang_at_ = 0, crash_at_ = 0, nan_at_ = 0, stamp_ = 1, ticks_ = 0;
+  int source_ = 0, hang_at_ = 0, crash_at_ = 0, exit_at_ = 0, kill_at_ = 0, crash_active_ = 0, nan_at_ = 0, stamp_ = 1, ticks_ = 0;
   std::string journal_;
 };
 
@@ -93,6 +100,9 @@ static const char* const relay_spec[] = {
     "conf.default.journal", "",
     "conf.default.hang_at", "0",
     "conf.default.crash_at", "0",
+    "conf.default.exit_at", "0",
+    "conf.default.kill_at", "0",
+    "conf.default.crash_active", "0",
     "conf.default.nan_at", "0",
     "conf.default.stamp", "1",
     ""};

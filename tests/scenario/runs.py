@@ -105,18 +105,34 @@ def kinds():
         unmet = place.write("unmet.yaml", expectations(
             "path_length: {model: pioneer2dx, max: 0.1}", "reach: {model: pioneer2dx, region: [50, 50, 60, 60]}", "stay: {model: pioneer2dx, region: [50, 50, 60, 60]}",
             "no_contact: {model: pioneer2dx, except: []}", "value: {port: 'LaserObstacleAvoid0:velocity', member: data.vx, min: 5}",
-            "value: {port: 'RTCLaser0:range', member: data.nosuch, min: 0}", "state: {component: RTCLaser0, is: Inactive}", "command: 'echo first of all; echo that is why; exit 3'",
-            "path_length: {model: nobody, min: 1}"))
+            "state: {component: RTCLaser0, is: Inactive}", "command: 'echo first of all; echo that is why; exit 3'"))
         code, out, err = place.run(avoidance, course, "--duration", "5", "--expect", unmet)
         assert code == 1 and out.startswith("FAILED"), (code, out, err)
         verdicts = place.verdicts()
         for beginning, text in {"path_length: {model: pioneer2dx": "expected at most 0.1", "reach": "no nearer than", "stay": "it was at", "no_contact": "it touched ground_plane",
-                                "value: {port: Laser": "expected at least 5", "value: {port: RTCL": "no number data.nosuch; they have", "state": "it is Active",
-                                "command": "exit code 3: that is why", "path_length: {model: nobody": "moving models: pioneer2dx"}.items():
+                                "value: {port: Laser": "expected at least 5", "state": "it is Active", "command": "exit code 3: that is why"}.items():
             assert text in of(verdicts, beginning), (beginning, verdicts)
         details = [failure.text for failure in xml.etree.ElementTree.parse(place.junit).getroot().iter("failure") if failure.text]
         assert details == ["first of all\nthat is why\n"], details
-        assert len(err.splitlines()) == 9 and verdicts["runs for 5 s"] == "" and verdicts["no component ends in an error"] == "", (err, verdicts)
+        assert "\nrtse: model pioneer2dx: its path was " in "\n" + err and "rtse: component RTCLaser0: it is Active (state: {" in err, err
+        assert len(err.splitlines()) == 7 and verdicts["runs for 5 s"] == "" and verdicts["no component ends in an error"] == "", (err, verdicts)
+
+
+# A name that does not exist is found before the run: as a wrong command line, with what there is, and no result.
+def unknown_names():
+    with Place() as place:
+        for line, why in (("path_length: {model: nobody, min: 1}", 'the world has no model "nobody"; it has'), ("no_contact: {model: pioneer2dx, except: [wal]}", 'no model "wal"; it has'),
+                          ("value: {port: 'RTCLaser0:range', member: data.nosuch, min: 0}", "have no number data.nosuch; they have tm, ranges"),
+                          ("value: {port: 'RTCLaser0:ranges', member: data, min: 0}", 'no port "ranges"; it has'), ("value: {port: 'Laser0:range', member: data, min: 0}", 'no component "Laser0"; it has'),
+                          ("state: {component: RTCLaser, is: Active}", 'no component "RTCLaser"; it has RTCLaser0'), ("state: {component: RTCLaser0, is: Running}", "is must be")):
+            file = place.write("e.yaml", expectations(line))
+            for more in ([], ["--seeds", "1..3"]):
+                code, out, err = place.run(avoidance, course, "--duration", "1000000", "--expect", file, *more)
+                assert code == 2 and out == "" and len(err.splitlines()) == 1 and err.startswith("rtse: file ") and why in err, (line, code, out, err)
+                assert any(why in problem for problem in place.verdicts().values()), place.verdicts()
+        # What cannot be run as it is has no result either.
+        code, out, err = place.run(avoidance, course, "--property", "Nobody:a=b")
+        assert code == 1 and out == "" and "Nobody" in err, (code, out, err)
 
 
 # What is not a number is within no bounds.
@@ -139,6 +155,22 @@ def crash():
         assert code == 1 and "0 of 3 seeds passed" in out and "seed 2: host of Relay0 was killed" in err, (code, out, err)
         for seed in (1, 2, 3):
             assert "killed by signal 6" in place.verdicts(seed)["runs for 10 s"]
+
+
+# Of several components in a process the one whose callback ends it is named, with the tick, and simulated time stops there.
+def sudden_ends():
+    with Place() as place:
+        for fault, end in (({"crash_at": 1}, "was killed by signal 6 (Aborted) in onExecute of Guilty at 0 s, in tick 1"),
+                           ({"crash_at": 15}, "was killed by signal 6 (Aborted) in onExecute of Guilty at 1.4 s, in tick 15"),
+                           ({"exit_at": 15}, "ended with exit code 3 in onExecute of Guilty at 1.4 s, in tick 15"),
+                           ({"kill_at": 15}, "was killed by signal 9 (Killed) in the tick of Guilty at 1.4 s, in tick 15"),
+                           ({"crash_active": 1}, "was killed by signal 6 (Aborted) in onActivated of Guilty")):
+            system = place.relays(First={"source": 1}, Guilty=fault, Last={})
+            phases = [word for name, phase in (("First", 0), ("Last", 2)) for word in ("--property", f"{name}:exec_cxt.sim_time.phase={phase}")]
+            code, out, err = place.run(system, empty, "--duration", "1000", *phases)
+            assert code == 1 and f"rtse: host of First, Guilty, Last {end}" in err and "path" not in out, (fault, code, out, err)
+            if "tick 15" in end:
+                assert "  1.4 s simulated" in out, (fault, out)
 
 
 def hang():
@@ -235,7 +267,7 @@ def odds_and_ends():
             assert code == 1 and why in err and "--keep" not in err, (words, code, err)
         e = place.write("e.yaml", expectations("value: {port: 'Relay1:in', member: data, min: 0}"))
         code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
-        assert code == 1 and "Relay1:in: is no OutPort" in err, err
+        assert code == 2 and "Relay1:in: is no OutPort" in err, err
         # What a command says need not be text, and the signals are as they are for a program started by a shell.
         e = place.write("e.yaml", expectations("command: 'head -c 300 /dev/urandom; exit 3'", "command: 'yes | head -n 1; grep -q \"^SigIgn:.*0000000000000000$\" /proc/self/status'"))
         code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
@@ -315,6 +347,14 @@ def hung_naming():
             out, err = process.communicate(timeout=watchdog)
             assert process.returncode == 1 and "\nrtse: name server" in f"\n{err}" and "gone" not in err, (moment, out, err)
             assert not is_running(names), "it is still there"
+        # Also while nothing needs it.
+        process = place.start(avoidance, course, "--duration", "12345", "--realtime", "--hang-timeout", "2")
+        names = child_of(process, "omniNames")
+        while not has_moved(process):
+            time.sleep(0.01)
+        os.kill(names, signal.SIGSTOP)
+        out, err = process.communicate(timeout=watchdog)
+        assert process.returncode == 1 and "\nrtse: name server" in f"\n{err}" and "stopped" in err, (out, err)
 
 
 # How long a start may take can be said, and a long one is told.

@@ -408,6 +408,7 @@ TEST(Faults, a_participant_killed_in_the_middle_of_a_tick_is_dropped_at_once) {
   killer.join();
   EXPECT_EQ(events.back().kind, BarrierEvent::Kind::died);
   EXPECT_EQ(events.back().name, "victim");
+  EXPECT_TRUE(events.back().was_in_tick);
 }
 
 TEST(Faults, a_participant_stopped_and_continued_is_named_and_goes_on) {

@@ -20,6 +20,7 @@ R there_and_back(const R& request) {
 
 TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(there_and_back(StepRequest{17}).steps, 17);
+  EXPECT_TRUE(there_and_back(StepRequest{.steps = 17, .ends_at_death = true}).ends_at_death);
   EXPECT_TRUE(there_and_back(ResetRequest{true}).poses_only);
   const auto pose = there_and_back(SetPoseRequest{"robot", {1, 2, 3, 2, 0, 0, 0}, false});
   EXPECT_EQ(pose.model, "robot");

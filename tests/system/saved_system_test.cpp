@@ -124,6 +124,18 @@ TEST_F(SavedSystemTest, an_error_state_is_left_by_a_reset_and_cannot_be_restored
   EXPECT_THAT(messages(changes), ElementsAre("component /localhost/B0.rtc: state Error cannot be restored, it is Inactive"));
 }
 
+TEST_F(SavedSystemTest, connections_that_are_made_come_back_unless_the_file_says_otherwise) {
+  auto saved = saved_connector();
+  saved.is_data = true;
+  EXPECT_EQ(restored_properties(saved)["dataport.reconnect"], "YES");
+  EXPECT_FALSE(connect_properties(saved).contains("dataport.reconnect"));
+  saved.properties.emplace_back("dataport.reconnect", "NO");
+  EXPECT_EQ(restored_properties(saved)["dataport.reconnect"], "NO");
+  saved.is_data = false;
+  saved.properties.clear();
+  EXPECT_FALSE(restored_properties(saved).contains("dataport.reconnect"));
+}
+
 TEST_F(SavedSystemTest, components_start_in_the_listed_order_and_the_others_after_them) {
   system_.components.push_back(saved("C0"));
   system_.components.back().is_required = false;

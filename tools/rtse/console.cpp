@@ -17,6 +17,11 @@ void Console::fail(const base::Error& error) {
   failed_ = true;
 }
 
+void Console::reject(const base::Error& error) {
+  fail(error);
+  is_rejected_ = true;
+}
+
 void Console::fail(const std::vector<base::Error>& errors) {
   for (const auto& error : errors) fail(error);
 }

@@ -21,15 +21,19 @@ class Console final : public Reporter {
   // Prints the error; the command has failed.
   void fail(const base::Error& error);
   void fail(const std::vector<base::Error>& errors);
+  // The same of what the user has asked for: the exit code is that of a wrong command line.
+  void reject(const base::Error& error);
   // For a failure that is printed in another way.
   void set_failed() { failed_ = true; }
   bool failed() const { return failed_; }
+  int exit_code() const { return is_rejected_ ? 2 : failed_ ? 1 : 0; }
 
   void warn(const std::string& text) override;
 
  private:
   const bool json_;
   bool failed_ = false;
+  bool is_rejected_ = false;
 };
 
 }  // namespace editor

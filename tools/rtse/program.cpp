@@ -65,7 +65,7 @@ int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) 
     Console console(settings.json);
     chosen.work(session, console);
     if (!flush_output()) console.fail({"standard output: cannot be written"});
-    return console.failed() ? 1 : 0;
+    return console.exit_code();
   } catch (const CORBA::Exception& e) {
     std::cerr << "rtse: " << describe(e) << '\n';
   } catch (const std::exception& e) {

@@ -155,6 +155,20 @@ std::string command_problem(const Expectation& e, const Seen& seen) {
   return "it ended with exit code " + std::to_string(*command.exit_code) + (command.text.empty() ? "" : ": " + command.text);
 }
 
+// What an expectation is about.
+std::string subject_of(const Expectation& e) {
+  switch (e.kind) {
+    case Kind::value:
+      return e.port + " " + e.member;
+    case Kind::state:
+      return "component " + e.component;
+    case Kind::command:
+      return "command " + base::in_quotes(e.command);
+    default:
+      return "model " + e.model;
+  }
+}
+
 std::string problem_of(const Expectation& e, const Seen& seen) {
   const bool about_model = e.kind == Kind::path_length || e.kind == Kind::reach || e.kind == Kind::stay || e.kind == Kind::no_contact;
   const auto poses = seen.record.poses.find(e.model);
@@ -164,7 +178,7 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
     case Kind::path_length: {
       const double length = path_length(poses->second);
       const bool fits = (!e.min || length >= *e.min) && (!e.max || length <= *e.max);
-      return fits ? "" : "it was " + measured(length) + " m, expected " + bounds(e);
+      return fits ? "" : "its path was " + measured(length) + " m long, expected " + bounds(e);
     }
     case Kind::reach:
     case Kind::stay:
@@ -251,6 +265,10 @@ recorder::Expression::Lookup values_at(const RecordedPose& pose) {
   return [at](const auto& value) { return std::optional(member_of(at, value.member)); };
 }
 
+std::string failure_text(const Verdict& verdict) {
+  return verdict.failure.empty() ? verdict.expectation + ": " + verdict.problem : verdict.failure;
+}
+
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen) {
   std::vector<Verdict> verdicts;
   for (const auto& expectation : expectations) {
@@ -258,6 +276,7 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const S
     const auto command = seen.commands.find(expectation.command);
     if (!verdict.problem.empty() && expectation.kind == Expectation::Kind::command && command != seen.commands.end())
       verdict.details = command->second.output;
+    if (!verdict.problem.empty()) verdict.failure = subject_of(expectation) + ": " + verdict.problem + " (" + expectation.text + ")";
     verdicts.push_back(std::move(verdict));
   }
   return verdicts;

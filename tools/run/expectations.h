@@ -74,7 +74,10 @@ struct Verdict {
   std::string expectation;
   std::string problem;       // empty: fulfilled
   std::string details = {};  // what a command that failed had said: its last lines
+  std::string failure = {};  // the problem as a sentence of its own, which begins with what failed; empty: EXPECTATION: PROBLEM
 };
+// The line to print of one that is not fulfilled.
+std::string failure_text(const Verdict& verdict);
 // Values of expressions on this model.
 recorder::Expression::Lookup values_at(const RecordedPose& pose);
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <tuple>
 
 #include "base/text.h"
 #include "run/call_order.h"
 #include "run/same_math.h"
+#include "system/transitions.h"
 
 namespace editor {
 namespace {
@@ -222,6 +224,25 @@ Result<void> ForeignProcesses::join(const Session& session, SavedSystem& system,
   return {};
 }
 
+std::vector<std::string> ForeignProcesses::rest(const Session& session, const SavedSystem& system) const {
+  const auto turn = [&](const TimeMember& member) {
+    const auto listed = std::ranges::find(system.shut_down, member.instance, &SavedTurn::instance);
+    return listed == system.shut_down.end() ? std::numeric_limits<int>::max() : listed->sequence;
+  };
+  auto members = members_;
+  std::ranges::stable_sort(members, {}, turn);
+  std::vector<std::string> problems;
+  const auto end = std::chrono::steady_clock::now() + default_transition_timeout;  // of all that hang
+  for (const auto& member : members) {
+    if (std::chrono::steady_clock::now() > end) {
+      problems.push_back("component " + member.instance + ": was not deactivated, others took too long");
+      continue;
+    }
+    if (const auto rests = rest_in_time(session, member.instance + ".rtc", member.how); !rests) problems.push_back(rests.error().message);
+  }
+  return problems;
+}
+
 std::optional<ForeignProcesses::Ended> ForeignProcesses::ended() {
   for (std::size_t i = 0; i < running_.size(); ++i) {
     auto& one = running_[i];
@@ -241,6 +262,15 @@ std::string ForeignProcesses::about(const std::string& instance) const {
     const auto names = components_of(processes_[i]);
     if (std::ranges::find(names, instance) != names.end())
       return " (" + shortened(processes_[i].command) + "): " + telling_line(running_[i].log);
+  }
+  return "";
+}
+
+std::string ForeignProcesses::traceback_of(const std::string& instance) const {
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    const auto names = components_of(processes_[i]);
+    if (std::ranges::find(names, instance) == names.end()) continue;
+    if (auto line = last_line_of_traceback(running_[i].log); !line.empty()) return line;
   }
   return "";
 }

@@ -43,6 +43,8 @@ class ForeignProcesses {
   // Brings them into simulated time, once they and their proxies are there; each may take so long for it. In `system` their states are then
   // those in these contexts.
   Result<void> join(const Session& session, SavedSystem& system, std::chrono::milliseconds patience);
+  // Deactivates those that are active, in the order in which the system stops. What could not be deactivated, one line each.
+  std::vector<std::string> rest(const Session& session, const SavedSystem& system) const;
   struct Ended {
     std::vector<std::string> components;  // those of all open ones, if it is open: nobody has said whose components they are
     bool is_open = false;
@@ -53,6 +55,8 @@ class ForeignProcesses {
   std::optional<Ended> ended();
   // Where a component comes from, and what its process says, for messages.
   std::string about(const std::string& instance) const;
+  // The last line of the last traceback that its process has written, "ValueError: no scan"; empty: there is none.
+  std::string traceback_of(const std::string& instance) const;
   std::string last_words() const;
   std::vector<RunningSystem::Process> processes() const;  // the shells that run the commands
   void terminate();

@@ -28,10 +28,13 @@ Result<void> LostMembers::check() {
 }
 
 Error LostMembers::with_reason(const Error& problem) {
-  if (foreign_.empty()) return problem;
   const auto end = Clock::now() + end_of_process;
-  auto whole = check();
-  for (; whole && Clock::now() < end; std::this_thread::sleep_for(pause_between_looks)) whole = check();
+  const auto look = [this] {
+    const auto whole = check();
+    return whole ? hosts_.check() : whole;
+  };
+  auto whole = look();
+  for (; whole && Clock::now() < end; std::this_thread::sleep_for(pause_between_looks)) whole = look();
   return whole || problem.message.starts_with(whole.error().message) ? problem : Error{whole.error().message + "; " + problem.message};
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "run/expectation_check.h"
 #include "system/value_codec.h"
 
 namespace editor {
@@ -67,11 +68,10 @@ Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Session& session, cons
 }
 
 Result<PortValues::Listening> PortValues::attach(CORBA::ORB_ptr orb, const Session& session, const Expectation& expectation) {
+  if (const auto good = check_value(session, expectation); !good) return good.error();
   auto port = session.port(expectation.port);
   if (!port) return port.error();
-  if (port->port.port_type() != "DataOutPort") return Error{"port " + expectation.port + ": is no OutPort, so there are no values to see"};
   const auto type = type_code_of(port->port.data_type());
-  if (CORBA::is_nil(type)) return Error{"port " + expectation.port + ": carries " + port->port.data_type() + ", which rtse does not know"};
   const auto path =
       expectation.member.empty() ? Result<std::vector<std::string>>(std::vector<std::string>()) : member_path(expectation.member);
   if (!path) return path.error();

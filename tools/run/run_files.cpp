@@ -98,6 +98,41 @@ std::string complaint(const std::string& file) {
   return level == LogLevel::warning || level == LogLevel::error ? ": " + line : "";
 }
 
+std::string last_output(const std::string& file) {
+  constexpr std::size_t most = 3;
+  auto lines = lines_of(file);
+  std::erase_if(lines, [](const std::string& line) { return line.empty() || base::parse_sudden_end(line).has_value(); });
+  auto begin = lines.end();
+  while (begin != lines.begin() && level_of(*std::prev(begin)) == LogLevel::none && lines.end() - begin < static_cast<std::ptrdiff_t>(most))
+    --begin;
+  if (begin == lines.end()) return complaint(file);
+  return ": " + base::join(std::vector<std::string>(begin, lines.end()), "; ");
+}
+
+// Lines as they are: what is indented belongs to the traceback.
+std::string last_line_of_traceback(const std::string& file) {
+  constexpr std::string_view heading = "Traceback (most recent call last)";
+  std::ifstream lines(file);
+  std::string line, last;
+  bool is_inside = false;
+  while (std::getline(lines, line)) {
+    if (line.find(heading) != std::string::npos) {
+      is_inside = true;
+    } else if (is_inside && !line.starts_with(' ') && !line.empty()) {
+      last = line;
+      is_inside = false;
+    }
+  }
+  return last;
+}
+
+std::optional<base::SuddenEnd> sudden_end_in(const std::string& file) {
+  for (const auto& line : lines_of(file)) {
+    if (auto end = base::parse_sudden_end(line)) return end;
+  }
+  return std::nullopt;
+}
+
 std::string tail_of(const std::vector<std::string>& lines) {
   constexpr std::size_t enough = 40;
   std::string text;

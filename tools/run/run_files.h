@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/sudden_end.h"
 
 namespace editor {
 
@@ -37,6 +40,13 @@ LogLevel level_of(const std::string& line);
 std::string telling_line(const std::string& file);
 // ": " and that line when it is a warning or an error; else nothing.
 std::string complaint(const std::string& file);
+// What a process that ended suddenly had written last: up to three lines that are no lines of its log, as of an exception that nobody
+// caught; where there are none, its complaint. Begins with ": "; nothing when there is nothing to say.
+std::string last_output(const std::string& file);
+// "ValueError: no scan", of the last traceback of Python; empty: there is none.
+std::string last_line_of_traceback(const std::string& file);
+// The callback in which the process ended, if it has said so; see base/sudden_end.h.
+std::optional<base::SuddenEnd> sudden_end_in(const std::string& file);
 // The last 40 lines, each with its end.
 std::string tail_of(const std::vector<std::string>& lines);
 // The last lines of a log under its name; nothing for one that is empty.

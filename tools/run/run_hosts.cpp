@@ -19,6 +19,7 @@ namespace editor {
 namespace {
 
 constexpr std::chrono::seconds kill_limit{5};
+constexpr std::chrono::milliseconds end_of_steps{300};  // from the end of a process until the simulator has ended the steps for it
 
 bool is_among(const RunHosts::Members& members, const std::string& instance) {
   return std::ranges::any_of(members, [&](const auto* member) { return member->instance == instance; });
@@ -105,13 +106,29 @@ Result<RunHosts::Members> RunHosts::restart(const std::string& instance) {
 
 Result<void> RunHosts::check() {
   for (auto& host : hosts_) {
-    if (host.process.is_running()) continue;
-    const auto now = simulator_.now();
-    return Error{"host of " + host.components + " " + host.process.how_it_ended() +
-                 (now && now->time_s > 0 ? " at " + base::format_number(now->time_s) + " s" : "") +
-                 (host.process.exit_code() < 128 ? ": " + telling_line(host.log) : complaint(host.log))};
+    if (!host.process.is_running()) return end_of(host);
   }
   return {};
+}
+
+// Where it was when it ended its last words say, and the lock step: which of its components had not finished their tick, and when.
+Error RunHosts::end_of(const Host& host) {
+  auto text = "host of " + host.components + " " + host.process.how_it_ended();
+  const auto callback = sudden_end_in(host.log);
+  const auto loss = simulator_.await_loss(end_of_steps);
+  const bool is_known = loss && loss->pid == host.process.pid();
+  if (callback) {
+    text += " in " + callback->callback + " of " + callback->component;
+  } else if (is_known && !loss->in_tick.empty()) {
+    text += " in the tick of " + base::join(loss->in_tick, ", ");
+  }
+  if (is_known) {
+    text += " at " + base::format_number(loss->time_s) + " s" + (loss->tick > 0 ? ", in tick " + std::to_string(loss->tick) : "");
+  } else if (const auto now = simulator_.now(); now && now->time_s > 0) {
+    text += " at " + base::format_number(now->time_s) + " s";
+  }
+  const bool has_failed = host.process.exit_code() < 128 && !callback;  // on its own account, as one that cannot load a module
+  return {text + (has_failed ? ": " + telling_line(host.log) : last_output(host.log))};
 }
 
 std::vector<RunHosts::Gone> RunHosts::gone_members() {
@@ -179,6 +196,16 @@ std::vector<std::string> RunHosts::lost_connections(const SavedSystem& system) c
     }
   }
   return lost;
+}
+
+std::string RunHosts::what_threw(const std::string& instance) const {
+  for (const auto& host : hosts_) {
+    for (const auto& line : lines_of(host.log)) {
+      const auto at = line.find(corba::threw_mark);
+      if (at != std::string::npos && line.substr(0, at).ends_with(" " + instance)) return line.substr(at + corba::threw_mark.size());
+    }
+  }
+  return "";
 }
 
 bool RunHosts::has(const std::string& instance) const { return host_of(hosts_, instance) != hosts_.end(); }

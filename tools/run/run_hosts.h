@@ -47,6 +47,8 @@ class RunHosts {
   std::vector<Gone> gone_members();
   // Those of `system` for whom ports of ours wait: "; From.out waits for Alien.in". Empty: nobody.
   std::string who_is_waited_for(const SavedSystem& system) const;
+  // Why a member of others came into its error state: "onExecute at 0.2 s: UNKNOWN"; empty: it did not throw.
+  std::string what_threw(const std::string& instance) const;
   // Over which nothing more comes, and why: "From.out to Alien.in: the peer throws UNKNOWN".
   std::vector<std::string> lost_connections(const SavedSystem& system) const;
   bool has(const std::string& instance) const;
@@ -74,6 +76,7 @@ class RunHosts {
   };
   Result<void> start(const std::vector<std::string>& creations, const Members& members, const std::string& names);
   std::string creation(const SavedComponent& component) const;
+  Error end_of(const Host& host);
 
   const RunOptions& options_;
   const RunHooks& hooks_;

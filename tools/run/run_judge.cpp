@@ -8,6 +8,7 @@
 #include "base/child_process.h"
 #include "base/text.h"
 #include "run/chance_report.h"
+#include "run/expectation_check.h"
 #include "run/run_script.h"
 
 namespace editor {
@@ -25,7 +26,23 @@ Result<void> RunJudge::read() {
   auto expectations = read_expectations(options_.expectations);
   if (!expectations) return expectations.error();
   expectations_ = std::move(*expectations);
-  return {};
+  const auto known = check_components(expectations_, system_);
+  return known ? known : in_file(known.error());
+}
+
+Error RunJudge::in_file(const Error& error) const { return {"file " + base::in_quotes(options_.expectations) + ": " + error.message}; }
+
+Result<void> RunJudge::check_models(bool may_spawn) const {
+  if (may_spawn || expectations_.empty()) return {};
+  const auto models = simulator_.models();
+  if (!models) return models.error();
+  const auto known = editor::check_models(expectations_, *models);
+  return known ? known : in_file(known.error());
+}
+
+Result<void> RunJudge::check_values(const Session& session) const {
+  const auto known = editor::check_values(session, expectations_);
+  return known ? known : in_file(known.error());
 }
 
 Result<void> RunJudge::watch() {
@@ -51,7 +68,11 @@ Result<void> RunJudge::look(const Session& session, const std::vector<std::strin
   }
   check_states(result);
   // What a script takes down takes its connections with it.
-  if (!hooks_.script) result.verdicts.push_back({"no connection is lost", base::join(hosts_.lost_connections(system_), "; ")});
+  if (!hooks_.script) {
+    const auto lost = base::join(hosts_.lost_connections(system_), "; ");
+    result.verdicts.push_back(
+        {.expectation = "no connection is lost", .problem = lost, .failure = lost.empty() ? "" : "connection lost: " + lost});
+  }
   check_chances(chances, result);
   return {};
 }
@@ -65,10 +86,20 @@ void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& r
   for (auto& pair : services_of_one_phase(system_, places)) chances.push_back(std::move(pair));
   for (auto& pair : callers_of_one_phase(system_, places, providers_)) chances.push_back(std::move(pair));
   if (options_.strict) {
-    result.verdicts.push_back({"nothing depends on chance", base::join(chances, "; ")});
+    const auto found = base::join(chances, "; ");
+    result.verdicts.push_back(
+        {.expectation = "nothing depends on chance", .problem = found, .failure = found.empty() ? "" : "nondeterministic: " + found});
   } else {
     for (const auto& chance : chances) result.notes.push_back("nondeterministic: " + chance);
   }
+}
+
+// " (onExecute at 0.2 s: UNKNOWN; ValueError: no scan)"; empty: not known.
+std::string RunJudge::why_error(const std::string& component) const {
+  const auto threw = hosts_.what_threw(component);
+  if (threw.empty()) return "";
+  const auto traceback = foreign_.traceback_of(component);
+  return " (" + threw + (traceback.empty() ? "" : "; " + traceback) + ")";
 }
 
 // A component that has ended in an error, or has gone, is no success, whether somebody has asked for its state or not.
@@ -79,9 +110,11 @@ void RunJudge::check_states(RunResult& result) const {
       return expectation.kind == Expectation::Kind::state && expectation.component == component;
     });
     if (hooks_.script && hooks_.script->excuses(component)) continue;
-    if (!is_judged && (state == "Error" || state == "gone")) problem += (problem.empty() ? "" : ", ") + component + " is " + state;
+    if (!is_judged && (state == "Error" || state == "gone"))
+      problem += (problem.empty() ? "" : ", ") + component + " is " + state + why_error(component);
   }
-  result.verdicts.push_back({"no component ends in an error", problem});
+  result.verdicts.push_back(
+      {.expectation = "no component ends in an error", .problem = problem, .failure = problem.empty() ? "" : "component " + problem});
 }
 
 Result<void> RunJudge::run_commands(const std::string& naming) {

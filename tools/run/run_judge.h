@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "run/expectations.h"
+#include "run/foreign_processes.h"
 #include "run/run_files.h"
 #include "run/run_hosts.h"
 #include "run/run_system.h"
@@ -22,11 +23,15 @@ class RunJudge {
  public:
   // All of these outlive it.
   RunJudge(const RunOptions& options, const RunHooks& hooks, const Workplace& place, const SavedSystem& system, Simulator& simulator,
-           const RunHosts& hosts)
-      : options_(options), hooks_(hooks), place_(place), system_(system), simulator_(simulator), hosts_(hosts) {}
+           const RunHosts& hosts, const ForeignProcesses& foreign)
+      : options_(options), hooks_(hooks), place_(place), system_(system), simulator_(simulator), hosts_(hosts), foreign_(foreign) {}
 
-  // The file of expectations, if there is one.
+  // The file of expectations, if there is one. An Error also where it names a component that the system does not have.
   Result<void> read();
+  // Before the first step: that the models, ports and members exist. `may_spawn`: the system may add models to the world, so that a model
+  // that is not there yet is no error.
+  Result<void> check_models(bool may_spawn) const;
+  Result<void> check_values(const Session& session) const;
   const std::vector<Expectation>& expectations() const { return expectations_; }
   // Takes over what happened to the models since the last call: before the first step, and from time to time.
   Result<void> watch();
@@ -44,6 +49,8 @@ class RunJudge {
  private:
   void check_chances(const std::vector<std::string>& known, RunResult& result) const;
   void check_states(RunResult& result) const;
+  Error in_file(const Error& error) const;  // of expectations
+  std::string why_error(const std::string& component) const;
 
   const RunOptions& options_;
   const RunHooks& hooks_;
@@ -51,6 +58,7 @@ class RunJudge {
   const SavedSystem& system_;
   Simulator& simulator_;
   const RunHosts& hosts_;
+  const ForeignProcesses& foreign_;
   std::vector<Expectation> expectations_;
   PoseRecord record_;  // part of what was seen when the run has come to its end
   Seen seen_;

@@ -6,7 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "base/own_account.h"
+#include "run/stopped_process.h"
 #include "system/remote.h"
 
 namespace editor {
@@ -83,7 +86,17 @@ Result<void> RunNaming::check() {
   if (!process_) return {};
   if (!process_->is_running()) return Error{"omniNames " + process_->how_it_ended() + ": " + telling_line(place_.file("omninames.log"))};
   if (silent_since_ && !is_stopped_ && Clock::now() - *silent_since_ > silence_limit) return silence();
-  return {};
+  return has_been_stopped() ? Result<void>(silence()) : Result<void>();
+}
+
+// For as long as anything else of the run may hang.
+bool RunNaming::has_been_stopped() {
+  if (is_stopped_ || !is_stopped(process_->pid())) {
+    stopped_since_.reset();
+    return false;
+  }
+  if (!stopped_since_) stopped_since_ = Clock::now();
+  return Clock::now() - *stopped_since_ > std::min<std::chrono::duration<double>>(hang_timeout_, silence_limit);
 }
 
 Result<void> RunNaming::ask() {

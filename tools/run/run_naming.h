@@ -16,8 +16,8 @@ namespace editor {
 
 class RunNaming {
  public:
-  // The place must live as long.
-  explicit RunNaming(const Workplace& place) : place_(place) {}
+  // The place must live as long. One that is stopped fails the run after `hang_timeout_s`, also while nobody asks it.
+  RunNaming(const Workplace& place, double hang_timeout_s) : place_(place), hang_timeout_(hang_timeout_s) {}
 
   // Returns when it answers.
   Result<void> start(CORBA::ORB_ptr orb, const RunSimulator::Wait& wait_until);
@@ -33,21 +33,23 @@ class RunNaming {
 
   // What the caller has just seen of it.
   void answered(bool has_answered);
-  // An error that says how it ended, or that it has not answered for some seconds.
+  // An error that says how it ended, that it has not answered for some seconds, or that it is stopped.
   Result<void> check();
   // Asks it now: an error when it is there and does not answer.
   Result<void> ask();
 
  private:
   Error silence() const;
+  bool has_been_stopped();
 
   const Workplace& place_;
+  const std::chrono::duration<double> hang_timeout_;
   CORBA::ORB_var orb_;
   std::string address_;
   std::optional<ChildProcess> process_;
   bool is_stopped_ = false;  // by set_running
   bool is_silent_ = false;   // when it was asked
-  std::optional<std::chrono::steady_clock::time_point> silent_since_;
+  std::optional<std::chrono::steady_clock::time_point> silent_since_, stopped_since_;
 };
 
 }  // namespace editor

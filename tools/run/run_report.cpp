@@ -12,17 +12,26 @@ namespace editor {
 std::string RunResult::first_problem() const {
   if (!problem.empty()) return problem;
   const auto unmet = std::ranges::find_if(verdicts, [](const Verdict& verdict) { return !verdict.problem.empty(); });
-  return unmet == verdicts.end() ? "" : unmet->expectation + ": " + unmet->problem;
+  return unmet == verdicts.end() ? "" : failure_text(*unmet);
 }
 
 nlohmann::ordered_json to_json(const RunResult& result) {
-  nlohmann::ordered_json json{
-      {"seed", result.seed},         {"passed", result.is_passed()}, {"problem", result.problem},
-      {"logs", result.logs},         {"notes", result.notes},        {"state_hash", result.state_hash},
-      {"run_hash", result.run_hash}, {"path", result.path_m},        {"simulated", result.simulated_s},
-      {"wall", result.wall_s},       {"runs", result.runs},          {"expectations", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{{"seed", result.seed},
+                              {"passed", result.is_passed()},
+                              {"problem", result.problem},
+                              {"logs", result.logs},
+                              {"notes", result.notes},
+                              {"state_hash", result.state_hash},
+                              {"run_hash", result.run_hash},
+                              {"path", result.path_m},
+                              {"simulated", result.simulated_s},
+                              {"wall", result.wall_s},
+                              {"runs", result.runs},
+                              {"refused", static_cast<int>(result.refusal)},
+                              {"expectations", nlohmann::ordered_json::array()}};
   for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back({{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}});
+    json["expectations"].push_back(
+        {{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}, {"failure", verdict.failure}});
   return json;
 }
 
@@ -36,10 +45,13 @@ RunResult run_result_of(const nlohmann::ordered_json& json) {
   result.run_hash = json.value("run_hash", "");
   result.path_m = json.value("path", 0.0);
   result.runs = json.value("runs", 1);
+  const int refusal = json.value("refused", 0);
+  result.refusal = refusal >= 0 && refusal <= 2 ? static_cast<RunResult::Refusal>(refusal) : RunResult::Refusal::none;
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
   for (const auto& entry : json.value("expectations", nlohmann::ordered_json::array()))
-    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", "")});
+    result.verdicts.push_back(
+        {entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", ""), entry.value("failure", "")});
   return result;
 }
 

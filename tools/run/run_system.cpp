@@ -25,6 +25,7 @@
 #include "run/run_script.h"
 #include "run/run_simulator.h"
 #include "run/stepping.h"
+#include "run/stopped_process.h"
 #include "run/time_members.h"
 #include "system/remote.h"
 #include "system/reporter.h"
@@ -51,7 +52,7 @@ class Run final : public RunningSystem {
         hooks_(hooks),
         reporter_(reporter),
         place_(options.keep),
-        naming_(place_),
+        naming_(place_, options.hang_timeout_s),
         hashes_(options.hash_log, place_),
         simulator_process_(options_, hooks_, place_, hashes_),
         simulator_(simulator_process_.control()),
@@ -62,8 +63,9 @@ class Run final : public RunningSystem {
     const auto began = Clock::now();
     result_.seed = options_.seed;
     if (const auto done = run(); !done) {
-      result_.problem = with_naming(done.error().message);
-      result_.logs = last_words();
+      const bool is_refused = result_.refusal != RunResult::Refusal::none;
+      result_.problem = is_refused ? done.error().message : with_naming(done.error().message);
+      if (!is_refused) result_.logs = last_words();
     }
     ports_.end();
     if (const auto ended = links_.end(); !ended) result_.verdicts.push_back({"hash log", ended.error().message});
@@ -98,16 +100,18 @@ class Run final : public RunningSystem {
 
  private:
   Result<void> run() {
-    for (auto step : {&Run::read, &Run::start_naming, &Run::start_simulator, &Run::start_foreign, &Run::start_hosts, &Run::wire,
-                      &Run::listen, &Run::record, &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
+    for (auto step : {&Run::read, &Run::read_expectations, &Run::start_naming, &Run::start_simulator, &Run::check_models,
+                      &Run::start_foreign, &Run::start_hosts, &Run::wire, &Run::check_values, &Run::listen, &Run::record,
+                      &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
       const auto done = (this->*step)();
+      if (!done && result_.refusal != RunResult::Refusal::none) return done;
       if (!done) return is_interrupted() ? fail("run: interrupted") : lost_.with_reason(done.error());
       if (hooks_.driver && step == &Run::drive) return done;
     }
     return {};
   }
 
-  Result<void> read() {
+  Result<void> read_all() {
     auto system = read_system(options_.system);
     if (!system) return system.error();
     system_ = std::move(*system);
@@ -117,8 +121,24 @@ class Run final : public RunningSystem {
     if (hooks_.script) {
       if (const auto altered = hooks_.script->alter(system_); !altered) return altered;
     }
-    if (const auto known = foreign_.read(options_, system_, properties_); !known) return known;
-    return judge_.read();
+    return foreign_.read(options_, system_, properties_);
+  }
+
+  Result<void> read() { return refused(RunResult::Refusal::system, read_all()); }
+  Result<void> read_expectations() { return refused(RunResult::Refusal::expectations, judge_.read()); }
+
+  // A component that adds models may do so when it is active, a program of others at any time, and a script when it says so.
+  Result<void> check_models() {
+    const bool has_spawner = std::ranges::any_of(
+        system_.components, [](const auto& component) { return component.id.find(":RTCSimulation:") != std::string::npos; });
+    return refused(RunResult::Refusal::expectations, judge_.check_models(has_spawner || !foreign_.empty() || hooks_.script != nullptr));
+  }
+
+  Result<void> check_values() { return refused(RunResult::Refusal::expectations, judge_.check_values(*session_)); }
+
+  Result<void> refused(RunResult::Refusal refusal, Result<void> checked) {
+    if (!checked && !is_interrupted()) result_.refusal = refusal;
+    return checked;
   }
 
   static Result<void> fail(const std::string& what) { return Error{what}; }
@@ -163,7 +183,17 @@ class Run final : public RunningSystem {
 
   Stepping stepping(std::function<void(double)> passed) {
     return {options_.in_real_time, options_.hang_timeout_s, [this] { return check_children(); }, std::move(passed),
-            [this](const std::string& text) { reporter_.warn(text); }};
+            [this](const std::string& text) { reporter_.warn(who_is_stopped() + text); }};
+  }
+
+  // Whoever is stopped is named before those who wait for it. "process of Alien (pid 12) is stopped, by a signal or a debugger; "
+  std::string who_is_stopped() const {
+    std::string text;
+    for (const auto& one : processes()) {
+      const auto stopped = one.pid > 0 ? stopped_process(one.pid) : std::nullopt;
+      if (stopped) text += one.what + " (pid " + std::to_string(*stopped) + ") is stopped, by a signal or a debugger; ";
+    }
+    return text;
   }
 
   // For the commands of the user, and for whoever looks at a run afterwards.
@@ -448,6 +478,7 @@ class Run final : public RunningSystem {
   Result<void> drive() {
     if (hooks_.driver) return hooks_.driver(*this);
     auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
+    if (const auto alive = check_children(); !alive) return alive;
     if (const auto watched = judge_.watch(); !watched) return watched;
     double last = 0;  // [s], simulated
     auto shown = Clock::now();
@@ -464,7 +495,7 @@ class Run final : public RunningSystem {
       if (const auto stepped = editor::make_steps(simulator_, steps, stepping(passed)); !stepped) {
         const auto now = simulator_.now();
         result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
-        return fail(stepped.error().message + hosts_.who_is_waited_for(system_) +
+        return fail(who_is_stopped() + stepped.error().message + hosts_.who_is_waited_for(system_) +
                     foreign_.who_may_be_waited_for(system_, late_participants(simulator_)));
       }
       left -= steps;
@@ -478,9 +509,18 @@ class Run final : public RunningSystem {
     return check_children();
   }
 
+  // A member of others that is told to end gets no onDeactivated, as our own do. Where a tick hangs, or a process has gone, nobody could
+  // be deactivated.
+  void rest_foreign() {
+    if (foreign_.empty() || !session_ || is_interrupted() || !late_participants(simulator_).empty() || !naming_.ask()) return;
+    if (!lost_.check()) return;
+    for (const auto& problem : foreign_.rest(*session_, system_)) reporter_.warn(problem);
+  }
+
   // Ends components first, so that they can say good-bye to the naming service.
   void stop() {
     naming_.set_running(true);
+    rest_foreign();
     if (!naming_.ask()) naming_.end();  // nobody need wait for it
     foreign_.terminate();
     hosts_.terminate();
@@ -513,7 +553,7 @@ class Run final : public RunningSystem {
   RunRecorder recorder_{place_};
   std::optional<Session> session_;
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script
-  RunJudge judge_{options_, hooks_, place_, system_, simulator_, hosts_};
+  RunJudge judge_{options_, hooks_, place_, system_, simulator_, hosts_, foreign_};
   PortValues ports_;
   ForeignLinks links_;
   std::optional<RunScene> scene_;  // of a script

@@ -50,6 +50,8 @@ struct RunHooks {
 
 struct RunResult {
   std::uint64_t seed = 0;
+  // Nothing was run, because what was asked for does not fit: the system or its options, or the file of expectations.
+  enum class Refusal { none, system, expectations } refusal = Refusal::none;
   bool has_begun = false;          // its naming service and its simulator were there: what came then is its own
   std::string problem;             // why the system could not be started or run to the end; empty: it was
   std::string logs;                // last lines of all processes, when there was a problem

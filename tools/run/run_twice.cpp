@@ -13,7 +13,9 @@ constexpr const char* verdict_name = "a second run is the same";
 
 Verdict compare(const std::string& first, const std::string& second) {
   const auto comparison = base::compare_hash_logs(first, second);
-  return {verdict_name, comparison ? difference_text(*comparison) : comparison.error().message};
+  Verdict verdict{.expectation = verdict_name, .problem = comparison ? difference_text(*comparison) : comparison.error().message};
+  if (!verdict.problem.empty()) verdict.failure = "not repeatable: " + verdict.problem;
+  return verdict;
 }
 
 std::string below(const std::string& folder, const char* name) {
@@ -36,7 +38,9 @@ RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& rep
   const RunResult again = run_system(orb, second, reporter);
   result.wall_s += again.wall_s;
   result.runs = 2;
-  result.verdicts.push_back(again.problem.empty() ? compare(first.hash_log, second.hash_log) : Verdict{verdict_name, again.problem});
+  result.verdicts.push_back(
+      again.problem.empty() ? compare(first.hash_log, second.hash_log)
+                            : Verdict{.expectation = verdict_name, .problem = again.problem, .failure = "second run: " + again.problem});
   return result;
 }
 

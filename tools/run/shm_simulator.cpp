@@ -1,10 +1,12 @@
 #include "run/shm_simulator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/text.h"
 #include "shm/control.h"
 #include "shm/lockstep.h"
 
@@ -17,6 +19,15 @@ using base::Result;
 nlohmann::json parsed(const std::string& text) {
   auto json = nlohmann::json::parse(text, nullptr, false);
   return json.is_object() ? json : nlohmann::json::object();
+}
+
+// A reply of StepRequest.
+std::optional<LostProcess> loss_in(const shm::Reply& reply) {
+  if (reply.status != shm::RequestStatus::failed || reply.count <= 0) return std::nullopt;
+  LostProcess lost{.pid = static_cast<pid_t>(reply.count), .in_tick = base::split_list(reply.text, '\n'), .time_s = reply.values[0]};
+  constexpr double rounding = 1e-6;  // of ticks
+  if (reply.values[1] > 0) lost.tick = static_cast<std::int64_t>(std::floor(reply.values[0] / reply.values[1] + rounding)) + 1;
+  return lost;
 }
 
 class RecordSink final : public shm::PoseLogSink {
@@ -170,16 +181,29 @@ Result<void> ShmSimulator::screenshot(const std::string& file, std::uint32_t pix
 
 Result<void> ShmSimulator::begin_steps(std::int64_t steps, bool is_paced) {
   if (!steps_) return Error{"simulator: has not started"};
-  return steps_->begin(shm::StepRequest{steps, is_paced});
+  const auto begun = steps_->begin(shm::StepRequest{.steps = steps, .is_paced = is_paced, .ends_at_death = true});
+  loss_.reset();
+  are_steps_under_way_ = begun.ok();
+  return begun;
 }
 
 Result<bool> ShmSimulator::await_steps(std::chrono::milliseconds timeout) {
   if (!steps_) return Error{"simulator: has not started"};
+  if (loss_) return loss_error_;
   auto reply = steps_->await(timeout);
   if (!reply) return reply.error();
   if (!*reply) return false;
+  are_steps_under_way_ = false;
+  const auto loss = loss_in(**reply);
   const auto done = shm::without_refusal(shm::StepRequest{}, std::move(**reply));
-  return done ? Result<bool>(true) : done.error();
+  if (done) return true;
+  loss_ = loss;
+  return loss_error_ = done.error();
+}
+
+std::optional<LostProcess> ShmSimulator::await_loss(std::chrono::milliseconds timeout) {
+  if (are_steps_under_way_) (void)await_steps(timeout);
+  return loss_;
 }
 
 Result<void> ShmSimulator::read_events(PoseRecord& record) {

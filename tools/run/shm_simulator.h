@@ -34,6 +34,7 @@ class ShmSimulator final : public Simulator {
   base::Result<void> screenshot(const std::string& file, std::uint32_t pixels) override;
   base::Result<void> begin_steps(std::int64_t steps, bool is_paced) override;
   base::Result<bool> await_steps(std::chrono::milliseconds timeout) override;
+  std::optional<LostProcess> await_loss(std::chrono::milliseconds timeout) override;
   base::Result<void> read_events(PoseRecord& record) override;
 
  private:
@@ -42,6 +43,9 @@ class ShmSimulator final : public Simulator {
   std::string id_;
   double step_s_ = 0;
   std::optional<shm::Requester> requests_, steps_;  // two: others are answered while steps are made
+  bool are_steps_under_way_ = false;
+  std::optional<LostProcess> loss_;  // why the last steps ended
+  base::Error loss_error_;           // what await_steps() returns then
   shm::PoseLogReader log_;
   std::int64_t log_read_ = 0;  // [bytes]
 };

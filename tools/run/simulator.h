@@ -37,6 +37,14 @@ struct LockstepParticipant {
   bool is_late = false;  // did not finish its tick
 };
 
+// Why steps ended early: a process with lock-step participants died.
+struct LostProcess {
+  pid_t pid = 0;
+  std::vector<std::string> in_tick;  // its participants that had not finished their tick
+  double time_s = 0;                 // of the tick, simulated
+  std::int64_t tick = 0;             // its number, from 1; 0: it was in none
+};
+
 struct ModelContact {
   std::string link, other;  // "MODEL::LINK::COLLISION"
 };
@@ -90,6 +98,10 @@ class Simulator {
   virtual base::Result<void> begin_steps(std::int64_t steps, bool is_paced) = 0;
   // True: they are done. False: not within the timeout. An Error: another client has paused or reset the simulation, or it has exited.
   virtual base::Result<bool> await_steps(std::chrono::milliseconds timeout) = 0;
+
+  // The steps that began last end with the tick in which a process of lock-step participants dies. Which one that was, once the steps have
+  // ended for it within the timeout; else nothing. await_steps() then returns the same Error again.
+  virtual std::optional<LostProcess> await_loss(std::chrono::milliseconds timeout) = 0;
 
   // What happened since the last call: poses of moving models, ten times a simulated second, and contacts that began. The first call
   // starts the log. Adds to `record`.

@@ -1,7 +1,10 @@
 #include "run/time_members.h"
 
+#include <omnithread.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <future>
 
 #include "base/text.h"
 #include "rtm/idl/LogicalTimeTriggeredECStub.h"
@@ -162,6 +165,29 @@ Result<void> join_time(const Session& session, const std::string& path, const st
   if (const auto added = check(what, code, "it does not answer attach_context, or has refused; the log of its process may say why"); !added)
     return added;
   return *was_active ? activate_in(session, path, true) : Result<void>();
+}
+
+// One tick, of whichever kind the context takes.
+void tick_once(RTC::ExecutionContext_ptr context) {
+  static_cast<void>(remote("the context", [&] {
+    const OpenRTM::ExtTrigExecutionContextService_var ticked = OpenRTM::ExtTrigExecutionContextService::_narrow(context);
+    if (!CORBA::is_nil(ticked)) ticked->tick();
+  }));
+}
+
+Result<void> rest_in_time(const Session& session, const std::string& path, TimeMember::How how) {
+  constexpr std::chrono::milliseconds at_once{200};  // a context that needs no tick has done it within this time
+  const auto component = session.component(path, {.contexts = true});
+  if (!component) return component.error();
+  const auto* context = how == TimeMember::How::member ? simulated_context(*component) : component->shown_context();
+  if (context == nullptr || context->state != RTC::ACTIVE_STATE) return {};
+  const int index = index_of(*component, *context);
+  auto done = std::async(std::launch::async, [&] {
+    const omni_thread::ensure_self known_to_the_orb;  // timeouts need it
+    return change_state(*component, Transition::deactivate, index);
+  });
+  if (how != TimeMember::How::member && done.wait_for(at_once) != std::future_status::ready) tick_once(context->object);
+  return done.get();
 }
 
 Result<void> leave_time(const Session& session, const std::string& path) {

@@ -62,6 +62,9 @@ bool ticks_on_its_own(const ComponentView& component);
 // already, or is in its error state, is refused. `patience`: with its attach_context.
 Result<void> join_time(const Session& session, const std::string& component, const std::string& proxy, TimeMember::How how,
                        std::chrono::milliseconds patience);
+// Deactivates it where it takes part; nothing if it is not active there. A context that is ticked gets one tick for it if need be: in that
+// the component is not executed any more.
+Result<void> rest_in_time(const Session& session, const std::string& component, TimeMember::How how);
 // Undoes it: active here becomes active in its own first context. The proxy ends.
 Result<void> leave_time(const Session& session, const std::string& component);
 

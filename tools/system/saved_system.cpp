@@ -164,7 +164,7 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   for (const auto* port : {source, target}) {
     if (const auto done = clear_leftovers(*port, saved.id); !done) return done;
   }
-  return connect_ports({source, target}, saved.id, saved.name, connect_properties(saved));
+  return connect_ports({source, target}, saved.id, saved.name, restored_properties(saved));
 }
 
 // The values that the component can take; what it has said that it cannot is added to `problems`.

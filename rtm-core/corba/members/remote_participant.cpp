@@ -112,7 +112,7 @@ void RemoteParticipant::tell(rt::Action action, const CORBA::Exception& exceptio
     base::log(base::Level::error, name_, "{} in {}{} ({}); it is left alone until it is reset", gone_mark.substr(2), callback,
               simulated_time_text(), to_text(exception));
   } else {
-    base::log(base::Level::error, name_, "component of another process throws in {}: {}", callback, to_text(exception));
+    base::log(base::Level::error, name_, "{}{}{}: {}", threw_mark.substr(2), callback, simulated_time_text(), to_text(exception));
   }
 }
 

@@ -29,6 +29,9 @@ namespace corba {
 // What the log says of a member whose process has ended, or whose object has gone; its name stands before it.
 inline constexpr std::string_view gone_mark = ": component of another process is gone";
 
+// What the log says of a member that threw; its name stands before it, "onExecute at 0.2 s: UNKNOWN" behind it.
+inline constexpr std::string_view threw_mark = ": component of another process throws in ";
+
 // A reference of its own to the same object, whose calls end after `timeout` and throw CORBA system exceptions; nil for nil.
 CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
 

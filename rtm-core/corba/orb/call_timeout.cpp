@@ -46,8 +46,7 @@ std::chrono::milliseconds ChainDeadline::left() const {
 void ChainDeadline::limit(CORBA::Object_ptr object) const { limit_calls(object, std::min(left(), patience_for_one_)); }
 
 std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all) {
-  if (all <= most_patience) return patience_for_one * static_cast<int>(left);
-  return patience_for_one * most_patience * static_cast<int>(left) / static_cast<int>(all);
+  return patience_for_one * static_cast<int>(left) / static_cast<int>(all);
 }
 
 }  // namespace corba

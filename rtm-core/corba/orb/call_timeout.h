@@ -34,7 +34,7 @@ class ChainDeadline {
 };
 
 // The time-out of a call that leads through `left` of the `all` members of a chain, each of which waits for the next one: whoever comes
-// later gives up earlier, and the whole chain takes at most three times the patience for one.
+// later gives up earlier, and the whole chain takes at most the patience for one.
 std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all);
 
 }  // namespace corba

@@ -90,7 +90,7 @@ ForGivers::ForGivers(const RTC::PortServiceList& ports) {
 }
 
 bool may_keep_ports(const RTC::PortServiceList& ports, int self) {
-  const ChainDeadline deadline(std::chrono::seconds(2));
+  const ChainDeadline deadline(std::chrono::milliseconds(700));  // 2 s for all
   for (CORBA::ULong i = 0; i < ports.length(); ++i) {
     if (i != static_cast<CORBA::ULong>(self) && !may_keep(ports[i], deadline.left())) return false;
   }

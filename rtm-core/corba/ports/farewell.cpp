@@ -203,7 +203,9 @@ void end_farewells() {
   state.wait_for(table.changed, attempt * 10, [&] { return state->threads == 0; });
 }
 
-ChainDeadline farewell_deadline() { return ChainDeadline(2 * patience_for_one()); }
+ChainDeadline farewell_deadline(bool has_waited) {
+  return ChainDeadline(has_waited ? std::chrono::milliseconds::zero() : 2 * patience_for_one());
+}
 
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left,
                                             const ChainDeadline& deadline) {
@@ -215,7 +217,7 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
       tell_later(address, port, connector_id, false, port_call_timeout());
       return std::nullopt;
     }
-    limit_calls(port, std::min(deadline.left(), chain_timeout(patience_for_one(), std::min<std::size_t>(left, 3), 3)));
+    limit_calls(port, std::min(deadline.left(), patience_for_one() * static_cast<int>(std::min<CORBA::ULong>(left, 3))));
     return port->notify_disconnect(connector_id);
   } catch (const CORBA::SystemException& e) {
     if (is_time_out(e)) tell_later(address, port, connector_id, true, port_call_timeout());  // or it is dead, and there is nobody to tell

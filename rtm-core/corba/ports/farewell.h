@@ -19,8 +19,9 @@ namespace corba {
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left,
                                             const ChainDeadline& deadline);
 
-// The deadline for the calls of take_leave to all ports of one connection.
-ChainDeadline farewell_deadline();
+// The deadline for the calls of take_leave to all ports of one connection. `has_waited`: a port of it has taken its whole time-out just
+// now, so nobody is waited for again.
+ChainDeadline farewell_deadline(bool has_waited = false);
 
 // For a connection that was dropped because the port's process did not answer: says notify_disconnect to the port when the process has
 // woken, within ten minutes; nothing if it is dead. Returns at once.

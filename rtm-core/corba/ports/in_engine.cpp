@@ -116,6 +116,7 @@ Line line_of(const ConnectionPlan& plan) {
   Line line = line_of(plan.settings);
   line.port = plan.port;
   line.connection = connection_text(plan);
+  line.connector_id = plan.id;
   return line;
 }
 

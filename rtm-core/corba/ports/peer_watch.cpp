@@ -19,9 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto patience = std::chrono::milliseconds(1000);        // of one question
-constexpr auto soon = std::chrono::milliseconds(200);             // after a first sign of death, and to meet a new peer
-constexpr int rounds_between_looks_at_a_process_that_hangs = 15;  // each look takes all the patience
+constexpr auto patience = std::chrono::milliseconds(1000);              // of one question
+constexpr auto soon = std::chrono::milliseconds(200);                   // after a first sign of death, and to meet a new peer
+constexpr auto patience_with_hanging = std::chrono::milliseconds(100);  // is spent whole as long as it hangs
+constexpr auto patience_with_hanging_afar = std::chrono::milliseconds(300);
 
 struct Peer {
   RTC::PortService_var port;
@@ -53,13 +54,13 @@ struct Table {
 
 enum class Sign { life, object_is_gone, process_is_gone, silence };
 
-Sign ask(CORBA::Object_ptr port) {
+Sign ask(CORBA::Object_ptr port, std::chrono::milliseconds limit = patience) {
   try {
     // A reference of its own, so that the time-out touches nobody else's calls.
     const CORBA::ORB_var the_orb = orb();
     const CORBA::String_var text = the_orb->object_to_string(port);
     const CORBA::Object_var own = the_orb->string_to_object(text);
-    limit_calls(own, patience);
+    limit_calls(own, limit);
     return own->_non_existent() ? Sign::object_is_gone : Sign::life;
   } catch (const CORBA::OBJECT_NOT_EXIST&) {
     return Sign::object_is_gone;
@@ -106,14 +107,15 @@ class Rounds {
     for (const auto& [key, watched] : connections) {
       for (const auto& peer : watched.peers) processes[peer.address].emplace_back(&key, &peer);
     }
-    std::erase_if(hanging_, [&](const auto& entry) { return !processes.contains(entry.first); });
+    std::erase_if(hanging_, [&](const auto& address) { return !processes.contains(address); });
     std::erase_if(met_, [&](const auto& address) { return !processes.contains(address); });
     std::set<Key> suspects;
-    for (const auto& [address, members] : processes) {
-      if (is_stopping()) return false;
-      const auto hangs = hanging_.find(address);
-      if (hangs != hanging_.end() && hangs->second > round_) continue;
-      look_at(address, members, suspects);
+    const auto hung = hanging_;
+    for (const bool hangs : {false, true}) {
+      for (const auto& [address, members] : processes) {
+        if (is_stopping()) return false;
+        if (hung.contains(address) == hangs) look_at(address, members, suspects);
+      }
     }
     std::vector<Key> dead;
     for (const auto& key : suspects) {
@@ -135,9 +137,10 @@ class Rounds {
   // One port speaks for its whole process, another one each time; if it is gone, each is asked.
   void look_at(const std::string& address, const std::vector<std::pair<const Key*, const Peer*>>& members, std::set<Key>& suspects) {
     const auto& first = members[round_ % members.size()];
-    const Sign sign = ask(first.second->port);
-    hanging_.erase(address);
-    if (sign == Sign::silence) hanging_[address] = round_ + rounds_between_looks_at_a_process_that_hangs;
+    const bool has_hung = hanging_.erase(address) > 0;
+    const auto brief = is_on_loopback(address) ? patience_with_hanging : patience_with_hanging_afar;
+    const Sign sign = ask(first.second->port, has_hung ? brief : patience);
+    if (sign == Sign::silence) hanging_.insert(address);
     if (sign != Sign::process_is_gone) met_.insert(address);
     // One of another host that could never be called may be behind a wall and send to us all the same.
     if (sign == Sign::process_is_gone && (met_.contains(address) || is_on_loopback(address))) {
@@ -157,8 +160,8 @@ class Rounds {
   const std::chrono::milliseconds interval_;
   std::size_t round_ = 0;
   std::set<Key> suspects_;
-  std::set<std::string> met_;                   // addresses that have answered once
-  std::map<std::string, std::size_t> hanging_;  // and the round in which to look again
+  std::set<std::string> met_;  // addresses that have answered once
+  std::set<std::string> hanging_;
 };
 
 }  // namespace

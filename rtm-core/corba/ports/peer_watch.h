@@ -5,6 +5,13 @@
 // It asks every corba.peer_check_interval seconds (2; 0: never). Connections of processes that exited are removed, with their listeners;
 // a process that only hangs keeps its connections until a call to it exceeds its timeout. Profiles of ports are answered without calls to
 // the other ends.
+//
+// States of a process:
+//   unknown -> met        it has answered, or has not, but accepts connections
+//   met -> hangs          a question took its time-out (1 s). It is asked in each round all the same, after all others, and for 0.1 s only
+//                         (0.3 s on other machines): the kernel refuses at once for a process that has exited
+//   met, hangs -> gone    it has refused twice; its connections are dropped
+//   hangs -> met          it has answered within the short time
 #pragma once
 
 #include <chrono>

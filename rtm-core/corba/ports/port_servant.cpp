@@ -12,6 +12,7 @@
 #include "corba/ports/connector_keys.h"
 #include "corba/ports/farewell.h"
 #include "corba/ports/peer_watch.h"
+#include "corba/transport/transport.h"
 #include "core/key_limits.h"
 
 namespace corba {
@@ -248,7 +249,7 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
     return RTC::PRECONDITION_NOT_MET;
   }
 
-  if (is_same(profile.ports[0], reference())) return join(profile);
+  if (is_same(profile.ports[0], reference())) return join(profile, true);
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   try {
     const RTC::PortService_var first = RTC::PortService::_duplicate(profile.ports[0]);
@@ -259,7 +260,7 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, port_name(), "the first port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
               e._name());
-    break_up(profile);
+    break_up(profile, is_time_out(e));
   }
   return code;
 }
@@ -268,7 +269,7 @@ RTC::ReturnCode_t PortServant::notify_connect(RTC::ConnectorProfile& profile) {
   const Gate::Visit visit(gate_);
   if (!visit) return RTC::RTC_ERROR;
   if (*profile.connector_id.in() == '\0' || !is_good(profile, port_name())) return RTC::BAD_PARAMETER;
-  return join(profile);
+  return join(profile, false);
 }
 
 RTC::ReturnCode_t PortServant::reserve(const RTC::ConnectorProfile& profile, bool allows_duplicate) {
@@ -308,7 +309,7 @@ bool PortServant::gives_way(std::string_view id) {
   return connection && !connection->gives_way_to.empty() && state->find(connection->gives_way_to);
 }
 
-RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
+RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_the_chain) {
   const int self = position(profile.ports);
   const ForGivers givers(profile.ports);
   if (self < 0 || !may_keep_ports(profile.ports, self)) return RTC::BAD_PARAMETER;
@@ -323,6 +324,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   const std::string id = profile.connector_id.in();
   const RTC::PortServiceList ports = profile.ports;
   bool is_next_told = false;
+  bool is_next_silent = false;
   bool is_published = false;
   try {
     code = prepare(profile, *terms);
@@ -332,7 +334,9 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
       tell(Step::published, profile, code);
     }
     if (code == RTC::RTC_OK) {
-      code = join_next(profile, self);
+      const Next next = join_next(profile, self, starts_the_chain);
+      code = next.code;
+      is_next_silent = next.is_silent;
       is_next_told = code != RTC::PRECONDITION_NOT_MET;
       if (id != profile.connector_id.in() || profile.ports.length() != ports.length()) {
         base::log(base::Level::warn, port_name(), "the next port of connection {} answers with another id or other ports",
@@ -359,7 +363,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   }
 
   if (code != RTC::RTC_OK) {
-    if (is_next_told) leave_next(profile);
+    if (is_next_told) leave_next(profile, is_next_silent);
     if (is_published) unsubscribe(profile, false);
     auto state = state_.lock();
     if (const Connection* connection = state->find(profile.connector_id.in())) {
@@ -381,23 +385,24 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile) {
   return code;
 }
 
-RTC::ReturnCode_t PortServant::join_next(RTC::ConnectorProfile& profile, int self) {
+PortServant::Next PortServant::join_next(RTC::ConnectorProfile& profile, int self, bool starts_the_chain) {
   const CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1;
-  if (next >= profile.ports.length()) return RTC::RTC_OK;
+  if (next >= profile.ports.length()) return {};
   const RTC::PortService_var port = RTC::PortService::_duplicate(profile.ports[next]);
   try {
-    limit_calls(port, chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length()));
-    return port->notify_connect(profile);
+    limit_calls(port,
+                chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length() - (starts_the_chain ? 1 : 0)));
+    return {port->notify_connect(profile)};
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, port_name(), "the next port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
               e._name());
-    return RTC::RTC_ERROR;
+    return {RTC::RTC_ERROR, is_time_out(e)};
   }
 }
 
-RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile) {
+RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile, bool has_waited) {
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
-  const auto deadline = farewell_deadline();
+  const auto deadline = farewell_deadline(has_waited);
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
     // If it is dead or hangs, the next one takes the lead.
@@ -477,7 +482,9 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
 
 // A process that only hung still thinks that it is connected, and would refuse to be connected again.
 void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
-  const bool comes_back = base::parse_bool(find_text(profile.properties, "dataport.reconnect").value_or("")).value_or(false);
+  const bool has_refused = take_refusal(profile.connector_id.in());
+  const bool comes_back =
+      !has_refused && base::parse_bool(find_text(profile.properties, "dataport.reconnect").value_or("")).value_or(false);
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) continue;
     if (comes_back)
@@ -487,10 +494,10 @@ void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
   }
 }
 
-RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile) {
+RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile, bool has_waited) {
   const int self = position(profile.ports);
   if (self < 0) return RTC::BAD_PARAMETER;
-  const auto deadline = farewell_deadline();
+  const auto deadline = farewell_deadline(has_waited);
   for (CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1; next < profile.ports.length(); ++next) {
     if (const auto answer = take_leave(profile.ports[next], profile.connector_id, profile.ports.length() - next, deadline)) return *answer;
   }

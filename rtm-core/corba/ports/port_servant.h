@@ -124,15 +124,21 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
 
   // Where this port stands in the list, -1 if nowhere.
   int position(const RTC::PortServiceList& ports);
-  RTC::ReturnCode_t join(RTC::ConnectorProfile& profile);
+  // `starts_the_chain`: nobody waits for this port to have joined.
+  RTC::ReturnCode_t join(RTC::ConnectorProfile& profile, bool starts_the_chain);
   RTC::ReturnCode_t reserve(const RTC::ConnectorProfile& profile, bool allows_duplicate);
   bool gives_way(std::string_view connector_id);
-  RTC::ReturnCode_t join_next(RTC::ConnectorProfile& profile, int self);
+  struct Next {
+    RTC::ReturnCode_t code = RTC::RTC_OK;
+    bool is_silent = false;  // it has taken its whole time-out
+  };
+  Next join_next(RTC::ConnectorProfile& profile, int self, bool starts_the_chain);
   RTC::ReturnCode_t leave(std::string_view connector_id, bool tells_next, bool is_lost);
-  RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile);
+  // `has_waited`: see farewell_deadline.
+  RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile, bool has_waited = false);
   void tell_lost(const RTC::ConnectorProfile& profile);
   // Tells the ports of a connection to take it apart, in order, until one answers; its answer.
-  RTC::ReturnCode_t break_up(const RTC::ConnectorProfile& profile);
+  RTC::ReturnCode_t break_up(const RTC::ConnectorProfile& profile, bool has_waited = false);
   void tell(Step step, RTC::ConnectorProfile& profile, RTC::ReturnCode_t code);
 
   base::Guarded<State, base::Rank::port> state_;

@@ -9,7 +9,10 @@
 #include <omniORB4/omniORB.h>
 
 #include <cstring>
+#include <set>
+#include <string>
 
+#include "base/guarded.h"
 #include "base/log.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/ports/provider.h"
@@ -345,6 +348,12 @@ typename Stub::_ptr_type narrow(CORBA::Object_ptr object, const Line& line) {
   }
 }
 
+// Connections whose peer has thrown, until they are gone. Never destroyed: ports may die after it otherwise.
+base::Guarded<std::set<std::string>, base::Rank::registry>& refusals() {
+  static auto& ids = *new base::Guarded<std::set<std::string>, base::Rank::registry>;
+  return ids;
+}
+
 template <class Names>
 std::unique_ptr<Sender> make_sender(CORBA::Object_ptr object, const Line& line) {
   typename Names::InStub::_var_type in_port = narrow<typename Names::InStub>(object, line);
@@ -366,6 +375,8 @@ CORBA::ORB_var orb() {
   return CORBA::ORB_init(argc, nullptr);
 }
 
+bool take_refusal(const std::string& connector_id) { return refusals().lock()->erase(connector_id) > 0; }
+
 rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line) {
   // The sample is to blame, not the peer: it exceeds the longest message of this ORB, or cannot be encoded.
   const bool is_about_the_sample = dynamic_cast<const CORBA::MARSHAL*>(&problem) || dynamic_cast<const CORBA::BAD_PARAM*>(&problem);
@@ -378,6 +389,7 @@ rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line
   } else {
     base::log(base::Level::warn, line.port, "connection {}{}{} {}", line.connection, lost_mark,
               is_unreachable ? "the peer does not answer:" : "the peer throws", why);
+    if (!is_unreachable) refusals().lock()->insert(line.connector_id);
   }
   return is_about_the_sample ? rt::PortStatus::error : rt::PortStatus::connection_lost;
 }

@@ -77,6 +77,7 @@ struct Line {
   std::size_t shared_memory_size = std::size_t{2} << 20;
   std::string port = "data port";  // whose it is, and what it is called, for messages
   std::string connection{};
+  std::string connector_id{};
 };
 
 // The ORB of this process.
@@ -87,6 +88,8 @@ inline constexpr std::string_view lost_mark = ": connection lost: ";
 
 // What an exception of a call says about the connection; logs it.
 rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line);
+// Whether the connection was lost because the peer has answered with an exception, so that it would do so again; forgets it.
+bool take_refusal(const std::string& connector_id);
 
 // nullptr if the object is nil, unreachable or of another interface.
 std::unique_ptr<Sender> make_cdr_sender(rt::Interface interface, CORBA::Object_ptr in_port, const Line& line);

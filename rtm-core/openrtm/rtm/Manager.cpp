@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "base/log.h"
+#include "base/sudden_end.h"
 #include "base/text.h"
 #include "manager/manager_impl.h"
 #include "rtm/ECFactory.h"
@@ -76,6 +77,7 @@ void ManagerImpl::end_at_exit(int status, void*) {
   constexpr std::chrono::seconds patience{10};
   const Manager* manager = Manager::instance_if_any();
   if (manager == nullptr) return;
+  if (base::report_exit_in_callback(status)) manager->impl_->end_in_callback(status);
   manager->impl_->request_end();
   if (manager->impl_->wait_until_ended(patience)) return;
   manager->impl_->remove_files();
@@ -130,6 +132,7 @@ Manager* Manager::init(int argc, char** argv, const ManagerOptions& options) {
   has_started.notify_all();
   manager->impl_->start_services();
   on_exit(&ManagerImpl::end_at_exit, nullptr);
+  base::report_fatal_signals();
   return manager;
 }
 

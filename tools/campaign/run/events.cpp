@@ -80,7 +80,7 @@ Result<void> connection(editor::RunScene& scene, const Event& event) {
   if (event.kind == Event::Kind::disconnect) return editor::disconnect_connector(*source, saved->id);
   const auto target = port(scene, saved->target);
   if (!target) return target.error();
-  return editor::connect_ports({&*source, &*target}, saved->id, saved->name, editor::connect_properties(*saved));
+  return editor::connect_ports({&*source, &*target}, saved->id, saved->name, editor::restored_properties(*saved));
 }
 
 // The component that an event needs and that was killed; empty: none.

@@ -5,6 +5,7 @@
 #include <deque>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "base/clock.h"
@@ -53,6 +54,17 @@ std::string as_text(const Json& value) {
   return std::string(stamp) + " " + (++value.begin()).value().dump();
 }
 
+constexpr std::chrono::seconds long_silence{2};  // after it a port that has sent nothing is named
+
+// "port A0:out: no sample in 2 s, print waits; A0 is Inactive".
+std::string silence_text(const Session& session, const std::string& path, const std::string& port) {
+  const auto component = session.component(path.substr(0, path.rfind(':')), {.contexts = true});
+  const auto why = !component                                ? component.error().message
+                   : component->state() != RTC::ACTIVE_STATE ? component->instance + " is " + state_text(component->state())
+                                                             : std::string();
+  return "port " + port + ": no sample in " + std::to_string(long_silence.count()) + " s, print waits" + (why.empty() ? "" : "; " + why);
+}
+
 struct PrintOptions {
   std::vector<std::string> ports;
   int count = 0;         // 0: until stopped
@@ -94,9 +106,16 @@ void print_ports(const Session& session, Console& console, const PrintOptions& o
                        ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s))
                        : Clock::time_point::max();
   auto next_line = Clock::now();
+  const auto began = next_line;
+  std::set<std::size_t> silent;
+  for (std::size_t i = 0; i < ports.size(); ++i) silent.insert(i);
   int printed = 0;
   const auto is_over = [] { return ended_by_user.load(std::memory_order_relaxed) || base::output_is_closed() || !std::cout; };
   while (!is_over() && Clock::now() < end && (options.count <= 0 || printed < options.count)) {
+    if (!silent.empty() && Clock::now() - began > long_silence) {
+      for (const auto i : silent) console.warn(silence_text(session, options.ports[i], ports[i].port.full_name));
+      silent.clear();
+    }
     Sample sample;
     {
       auto content = queue.content.lock();
@@ -107,6 +126,7 @@ void print_ports(const Session& session, Console& console, const PrintOptions& o
       sample = std::move(content->samples.front());
       content->samples.pop_front();
     }
+    silent.erase(sample.port);
     if (options.rate > 0) {
       if (Clock::now() < next_line) continue;
       next_line = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));

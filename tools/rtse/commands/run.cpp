@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -35,6 +36,12 @@ constexpr const char* options_from_input = "--options-from-input";
 
 double times_real_time(const RunResult& result) { return result.wall_s > 0 ? result.runs * result.simulated_s / result.wall_s : 0; }
 
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", length);
+  return text;
+}
+
 void print_heading() {
   std::printf("%10s  %-6s  %11s  %9s  %9s  %-16s  %s\n", "seed", "result", "simulated", "speed", "path", "state", "unmet");
 }
@@ -44,31 +51,43 @@ void print_row(const RunResult& result) {
   for (const auto& verdict : result.verdicts) {
     if (!verdict.problem.empty()) unmet += (unmet.empty() ? "" : ", ") + verdict.expectation;
   }
-  std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %7.2f m  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
-              result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), result.path_m,
+  const auto path = result.problem.empty() ? metres(result.path_m) : "-";
+  std::printf("%10llu  %-6s  %9.1f s  %7.1f x  %9s  %-16s  %s\n", static_cast<unsigned long long>(result.seed),
+              result.is_passed() ? "passed" : "FAILED", result.simulated_s, times_real_time(result), path.c_str(),
               result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : base::printable(unmet).c_str());
+}
+
+void reject(Console& console, const RunResult& result) {
+  if (result.refusal == RunResult::Refusal::expectations) return console.reject({result.problem});
+  console.fail({result.problem});
 }
 
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
 // several.
+// Of what was not run because it was asked for wrongly there is no result.
 void report(Console& console, const RunResult& result, bool is_row) {
+  const bool is_refused = result.refusal != RunResult::Refusal::none;
+  if (is_refused && !console.json()) return reject(console, result);
   if (console.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (is_row) {
     print_row(result);
   } else {
-    std::printf("%s  seed %llu  %s%.1f s simulated in %.1f s (%.1f x real time)  path %.2f m  state %s%s%s\n",
+    // How far the models went is known of a run that came to its end.
+    const auto path = result.problem.empty() ? "  path " + metres(result.path_m) : "";
+    std::printf("%s  seed %llu  %s%.1f s simulated in %.1f s (%.1f x real time)%s  state %s%s%s\n",
                 result.is_passed() ? "passed" : "FAILED", static_cast<unsigned long long>(result.seed), result.runs > 1 ? "2 x " : "",
-                result.simulated_s, result.wall_s, times_real_time(result), result.path_m,
+                result.simulated_s, result.wall_s, times_real_time(result), path.c_str(),
                 result.state_hash.empty() ? "-" : result.state_hash.c_str(), result.run_hash.empty() ? "" : "  run ",
                 result.run_hash.c_str());
   }
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
   for (const auto& note : result.notes) console.warn(seed + note);
+  if (is_refused) return reject(console, result);
   if (!result.problem.empty()) console.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) console.fail({seed + verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({seed + failure_text(verdict)});
   }
 }
 
@@ -165,6 +184,8 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
   base::Turn<> telling;                   // one result at a time
   std::map<std::size_t, RunResult> done;  // by place in `seeds`
   std::size_t reported = 0;               // rows come in the order of the seeds
+  std::atomic<bool> is_refused{false};
+  std::vector<RunResult> results;
   const bool shows = isatty(2);
   const auto show = [&] {
     constexpr std::size_t width = 30;
@@ -173,17 +194,22 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
                  seeds.size());
   };
   const auto hide = [] { std::fprintf(stderr, "\r%60s\r", ""); };
-  if (!console.json()) print_heading();
-  std::fflush(stdout);
   if (shows) show();
   in_parallel(
       seeds.size(), session.call_timeout(),
       [&](std::size_t i) {
-        if (is_interrupted()) return;
+        if (is_interrupted() || is_refused) return;
         auto result = run_apart(options, seeds[i]);
         const auto mine = telling.take();
+        if (result.refusal != RunResult::Refusal::none) {
+          if (is_refused.exchange(true)) return;  // as each seed would be
+          reject(console, result);
+          results.push_back(std::move(result));
+          return;
+        }
         done.emplace(i, std::move(result));
         if (shows) hide();
+        if (done.size() == 1 && !console.json()) print_heading();
         for (auto next = done.find(reported); next != done.end(); next = done.find(reported)) {
           report(console, next->second, true);
           ++reported;
@@ -192,13 +218,13 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
       },
       static_cast<std::size_t>(jobs));
   if (shows) hide();
-  std::vector<RunResult> results;
   std::size_t passed = 0;
   for (auto& [place, result] : done) {
     if (place >= reported) report(console, result, true);  // an earlier one was interrupted
     passed += result.is_passed() ? 1U : 0U;
     results.push_back(std::move(result));
   }
+  if (is_refused) return results;
   if (!console.json()) std::printf("%zu of %zu seeds passed\n", passed, seeds.size());
   if (results.size() < seeds.size())
     console.fail({"run: interrupted after " + std::to_string(results.size()) + " of " + std::to_string(seeds.size()) + " seeds"});

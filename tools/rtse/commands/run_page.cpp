@@ -51,7 +51,7 @@ nlohmann::ordered_json summary_of(const RunOptions& options, const RunResult& re
   auto why = nlohmann::ordered_json::array();
   if (!result.problem.empty()) why.push_back(result.problem);
   for (const auto& verdict : result.verdicts) {
-    if (!verdict.problem.empty()) why.push_back(verdict.expectation + ": " + verdict.problem);
+    if (!verdict.problem.empty()) why.push_back(failure_text(verdict));
   }
   nlohmann::ordered_json summary{{"passed", result.is_passed()},
                                  {"why", std::move(why)},

@@ -26,6 +26,12 @@ Properties connect_properties(const SavedConnector& saved) {
   return properties;
 }
 
+Properties restored_properties(const SavedConnector& saved) {
+  auto properties = connect_properties(saved);
+  if (saved.is_data) properties.emplace("dataport.reconnect", "YES");
+  return properties;
+}
+
 bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target) {
   bool has_source = false;
   bool has_target = false;

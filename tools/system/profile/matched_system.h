@@ -17,6 +17,8 @@ bool is_reference(const std::string& key, const std::string& value);
 
 // What a saved connection is made with.
 Properties connect_properties(const SavedConnector& saved);
+// The same for a connection that is made: unless the file says otherwise it comes back when an end has hung (dataport.reconnect).
+Properties restored_properties(const SavedConnector& saved);
 
 bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target);
 
