@@ -65,9 +65,9 @@ const std::vector<Layer> layers = {
      {"omniORB", "pugixml", "JSON", "YAML", "spdlog", "ncurses"}},
     {"tools/simctl", {"simctl", "shm", "base"}, {"JSON", "PNG"}},
     {"tools/studio", {"studio", "run", "recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate"}},
-    {"clients/examples", {"rtm", "coil", "base", "stubs"}},
-    {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
-    {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
+    {"clients/examples", {"rtm", "coil", "stubs"}},
+    {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
+    {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "base"}},
 };
 
@@ -270,7 +270,9 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/core/a.h", "#pragma once\n#include <omniORB4/CORBA.h>\n#include \"corba/orb/orb.h\"\n#include <vector>\n");
   plant("sim-server/devices/b.cpp", "#include \"shm/segment.h\"\n  #  include <rtm/Manager.h>\n");
   plant("iface-components/c.cpp", "#include <rtm/Manager.h>\n#include \"core/registry.h\"\n");
-  plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n");
+  plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n#include <base/text.h>\n#include <coil/Mutex.h>\n");
+  plant("clients/examples/q.cpp", "#include <rtm/Manager.h>\n#include \"component/runtime_access.h\"\n");
+  plant("clients/obstacle-avoidance/r.h", "#include \"base/result.h\"\n");
   plant("rtm-core/component/i.h", "#include \"core/lifecycle.h\"\n#include \"manager/manager_impl.h\"\n");
   plant("rtm-core/manager/l.cpp", "#include <rtm/RTObject.h>\n#include \"component/managed.h\"\n#include \"component/component_impl.h\"\n");
   plant("rtm-core/core/j.cpp", "#include <sys/types.h>\n#include \"neighbour.h\"\n#include <poco/any.h>\n#include <Eigen/Core>\n");
@@ -287,8 +289,11 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/corba/p.cpp", "#include \"shm/client.h\"\n");
   EXPECT_EQ(offences(root_),
             (Names{
+                "clients/examples/q.cpp:2: clients/examples may not include <component/runtime_access.h> of component",
+                "clients/obstacle-avoidance/r.h:1: clients/obstacle-avoidance may not include <base/result.h> of base",
                 "clients/unknown/g.cpp: is in no layer of the table",
                 "clients/video-player/d.cpp:1: clients/video-player may not include <shm/segment.h> of shm",
+                "clients/video-player/d.cpp:2: clients/video-player may not include <base/text.h> of base",
                 "gateways/player/m.cpp:1: \"session.h\" is no header of gateways/player",
                 "gateways/player/m.cpp:2: gateways/player may not include <system/session.h> of system",
                 "gateways/player/protocol/h.cpp:2: gateways/player/protocol may not include <shm/client.h> of shm",
