@@ -240,6 +240,49 @@ Names not_own_first(const fs::path& root) {
   return found;
 }
 
+// Types of the runtime that headers for authors name, as "file: namespace::Type". They have no definition there, so no author can use them.
+Names internal_names(const fs::path& root) {
+  static const std::regex name(R"(\b(base|rt|corba|shm|iface)::\w+)");
+  Names found;
+  const fs::path folder = root / "rtm-core/openrtm/include";
+  if (!fs::exists(folder)) return found;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".h") continue;
+    std::istringstream in(source_text(entry.path()));
+    for (std::string line; std::getline(in, line);) {
+      const auto code = line.substr(0, line.find("//"));
+      for (std::sregex_iterator at(code.begin(), code.end(), name), end; at != end; ++at)
+        found.push_back(fs::relative(entry.path(), folder).generic_string() + ": " + at->str());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+// Parameters of virtual functions, which authors' programs have in their tables: they can go when RTMSIM_SOVERSION grows. The list only
+// shrinks.
+const Names internal_names_in_virtual_functions = {
+    "rtm/ByteData.h: corba::EventData",           "rtm/ConnectorListener.h: corba::EventData", "rtm/CorbaPort.h: corba::ConnectionTerms",
+    "rtm/DataPortBase.h: corba::ConnectionTerms", "rtm/EventPort.h: corba::EventData",         "rtm/ExecutionContextBase.h: base::Clock",
+    "rtm/LogicalTimeTriggeredEC.h: base::Clock",  "rtm/OutPortBase.h: corba::ConnectionTerms", "rtm/PortBase.h: corba::ConnectionTerms",
+};
+
+// Functions that the runtime alone needs are behind the one friend of these classes, component/runtime_access.h.
+Names friends(const fs::path& root) {
+  static const std::regex line_of_friend(R"(^\s*friend (class|struct) ([\w:]+);)");
+  Names found;
+  for (const char* file : {"RTObject.h", "ExecutionContextBase.h", "ConnectorBase.h", "CdrBufferBase.h", "DataPortBase.h", "DataType.h"}) {
+    std::ifstream in(root / "rtm-core/openrtm/include/rtm" / file);
+    std::smatch match;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, match, line_of_friend)) found.push_back(std::string(file) + ": " + match[2].str());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 class PlantedTree : public testing::Test {
  protected:
   PlantedTree() : root_(fs::path(testing::TempDir()) / ("include_rules_" + std::to_string(getpid()))) {}
@@ -264,6 +307,22 @@ TEST_F(PlantedTree, a_source_that_does_not_begin_with_its_own_header_is_found) {
   plant("rtm-core/component/c.cpp", "// text\n#include \"component/c.h\"\n");
   plant("rtm-core/component/d.cpp", "#include <string>\n");
   EXPECT_EQ(not_own_first(root_), Names{"rtm-core/openrtm/rtm/a.cpp: does not begin with a.h"});
+}
+
+TEST(IncludeRules, headers_for_authors_name_no_type_of_the_runtime) {
+  EXPECT_EQ(internal_names(paths::source_dir), internal_names_in_virtual_functions);
+}
+
+TEST(IncludeRules, what_the_runtime_alone_does_with_classes_of_authors_is_behind_one_friend) {
+  EXPECT_EQ(friends(paths::source_dir),
+            (Names{"CdrBufferBase.h: RuntimeAccess", "ConnectorBase.h: RuntimeAccess", "DataPortBase.h: RuntimeAccess",
+                   "DataType.h: RTC::RuntimeAccess", "ExecutionContextBase.h: RuntimeAccess", "RTObject.h: RuntimeAccess"}));
+}
+
+TEST_F(PlantedTree, a_type_of_the_runtime_in_a_header_for_authors_is_found) {
+  plant("rtm-core/openrtm/include/rtm/a.h", "// like base::Clock\nstd::shared_ptr<rt::Worker> worker_;\nint rest(corba::Orb&);\n");
+  plant("rtm-core/openrtm/rtm/a.cpp", "base::Clock clock;\n");
+  EXPECT_EQ(internal_names(root_), (Names{"rtm/a.h: corba::Orb", "rtm/a.h: rt::Worker"}));
 }
 
 TEST_F(PlantedTree, every_kind_of_offence_is_found) {
