@@ -69,7 +69,7 @@ Mapping map_file(int file, std::size_t size) {
     std::map<FileKey, Known> mappings;
     std::size_t swept_at = 64;  // entries at which those of mappings that are gone are taken out
   };
-  static base::Guarded<Table, base::Rank::registry> guarded;
+  static base::Guarded<Table, base::Rank::objects> guarded;
   struct stat status {};
   if (::fstat(file, &status) != 0) return {};
   const FileKey key{status.st_dev, status.st_ino};

@@ -83,7 +83,7 @@ class NamedContexts {
     ExecutionContextBase* context;
     int owners;
   };
-  base::Guarded<std::vector<Entry>, base::Rank::registry> entries_;
+  base::Guarded<std::vector<Entry>, base::Rank::objects> entries_;
 };
 
 std::chrono::nanoseconds left_until(std::chrono::steady_clock::time_point deadline) {
@@ -91,8 +91,8 @@ std::chrono::nanoseconds left_until(std::chrono::steady_clock::time_point deadli
 }
 
 // Contexts whose owners are gone, but not the callback that one of their threads is in.
-base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry>& left_contexts() {
-  static base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry> contexts;
+base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects>& left_contexts() {
+  static base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects> contexts;
   return contexts;
 }
 

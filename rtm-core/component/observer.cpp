@@ -172,7 +172,7 @@ class Link {
   corba::Courier courier_;
   const Send send_;
   const std::set<Kind> observed_;
-  base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::buffer> last_told_;
+  base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::queue> last_told_;
 };
 
 template <class Base, class Function, class... Args>
@@ -256,7 +256,7 @@ class SampleListeners {
     bool has_left = false;
   };
   const SampleIntervals intervals_;
-  base::Guarded<Data, base::Rank::registry> shared_;
+  base::Guarded<Data, base::Rank::peers> shared_;
 };
 
 // The listeners of one observer at one component.

@@ -180,8 +180,8 @@ struct ModuleManager::Impl {
   };
 
   Manager* manager;
-  base::Guarded<std::vector<Module>, base::Rank::registry> modules;
-  base::Guarded<std::map<std::string, Profile>, base::Rank::registry> known_profiles;
+  base::Guarded<std::vector<Module>, base::Rank::objects> modules;
+  base::Guarded<std::map<std::string, Profile>, base::Rank::objects> known_profiles;
 
   std::vector<fs::path> load_path() const {
     std::vector<fs::path> folders;

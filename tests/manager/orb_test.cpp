@@ -176,7 +176,7 @@ TEST(OrbDeathTest, a_call_to_another_process_while_data_is_held_is_found) {
     auto orb = started();
     CORBA::Object_var context = orb->orb()->string_to_object(("corbaloc:iiop:" + names.address() + "/NameService").c_str());
     if (context->_non_existent()) std::abort();  // nothing is held: this call succeeds
-    base::Guarded<int, base::Rank::buffer> data;
+    base::Guarded<int, base::Rank::queue> data;
     if (!holds_data) std::_Exit(0);
     const auto lock = data.lock();
     static_cast<void>(context->_non_existent());
@@ -186,7 +186,7 @@ TEST(OrbDeathTest, a_call_to_another_process_while_data_is_held_is_found) {
 }
 
 TEST(OrbDeathTest, a_call_that_is_prepared_while_data_is_held_is_found_also_where_its_object_is_in_this_process) {
-  base::Guarded<int, base::Rank::buffer> data;
+  base::Guarded<int, base::Rank::queue> data;
   EXPECT_DEATH(
       {
         const auto lock = data.lock();

@@ -36,7 +36,7 @@ struct Latest {
 };
 struct Port {
   CORBA::TypeCode_ptr type = CORBA::TypeCode::_nil();  // of a table that lives as long as we
-  base::Guarded<Latest, base::Rank::buffer> latest;
+  base::Guarded<Latest, base::Rank::samples> latest;
   std::unique_ptr<editor::Tap> tap;  // last: it uses the others
 };
 
@@ -52,7 +52,7 @@ struct BreakWatch::State {
   std::uint32_t simulator = 0;
   std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
   std::map<std::string, shm::Iface> models;
-  base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::registry> hit;
+  base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::noted> hit;
   std::atomic<bool> is_ending{false};  // relaxed: says nothing but itself
   std::thread thread;
 

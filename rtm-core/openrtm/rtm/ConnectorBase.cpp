@@ -14,7 +14,7 @@ struct ConnectorBase::Impl {
   PortBase& port;
   // Shared, because a sample may still be on its way when the port dies.
   const std::shared_ptr<ConnectorListeners> listeners;
-  base::Guarded<std::shared_ptr<ConnectorInfo>, base::Rank::buffer> info{};
+  base::Guarded<std::shared_ptr<ConnectorInfo>, base::Rank::details> info{};
 };
 
 ConnectorBase::ConnectorBase(PortBase& port, std::shared_ptr<ConnectorListeners> listeners, ConnectorInfo info)
