@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/guarded.h"
 #include "base/text.h"
 
 namespace base {
@@ -43,6 +44,7 @@ bool stays_below(const fs::path& relative) {
 
 // Each part is opened from the one before, so that what is checked is what is read. openat2 would do the same, where it is allowed.
 Result<std::string> read_beneath(const fs::path& folder, const fs::path& relative, std::size_t most) {
+  expect_no_data_held();
   const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes((folder / relative).string()) + ": " + what}; };
   if (!stays_below(relative)) return bad("is not below " + in_quotes(folder.string()));
   OpenAt at(::open(folder.empty() ? "." : folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
@@ -76,6 +78,7 @@ Result<std::string> read_beneath(const fs::path& folder, const fs::path& relativ
 }
 
 Result<void> check_regular_file(const fs::path& file, const RegularFile& wanted) {
+  expect_no_data_held();
   const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
   struct stat status {};
   const int failed = wanted.follows ? ::stat(file.c_str(), &status) : ::lstat(file.c_str(), &status);

@@ -10,9 +10,9 @@
 namespace base {
 namespace {
 
-Guarded<std::weak_ptr<const LockStepClock>, Rank::registry>& clock_of_lock_step() {
+Guarded<std::weak_ptr<const LockStepClock>, Rank::noted>& clock_of_lock_step() {
   // Never destroyed: calls may come at the very end.
-  static auto& clock = *new Guarded<std::weak_ptr<const LockStepClock>, Rank::registry>;
+  static auto& clock = *new Guarded<std::weak_ptr<const LockStepClock>, Rank::noted>;
   return clock;
 }
 
@@ -22,7 +22,7 @@ void set_lock_step_clock(const std::shared_ptr<const LockStepClock>& clock) { *c
 std::shared_ptr<const LockStepClock> lock_step_clock() { return clock_of_lock_step().snapshot().lock(); }
 
 void tell_of_chance(std::string_view where, std::string_view what, std::chrono::nanoseconds simulated) {
-  static auto& told = *new Guarded<std::set<std::string>, Rank::registry>;  // never destroyed, likewise
+  static auto& told = *new Guarded<std::set<std::string>, Rank::noted>;  // never destroyed, likewise
   const std::string text = std::string(where) + " " + std::string(what);
   if (!told.lock()->insert(text).second) return;
   log(Level::info, "lock step", "{}{} at {} s", chance_mark, text, format_number(to_seconds(simulated)));

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/guarded.h"
 #include "base/interrupt.h"
 #include "base/text.h"
 
@@ -53,6 +54,7 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
 }  // namespace
 
 Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
+  base::expect_no_data_held();
   const bool collects = call.output.empty();
   const int output = collects                    ? memfd_create("output", MFD_CLOEXEC)
                      : call.output == own_output ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)  // opened anew it would have a place of its own

@@ -17,17 +17,26 @@
 
 namespace base {
 
-// Outermost first.
+// What a lock guards, outermost first: the order in which a thread may take several.
 enum class Rank : int {
-  turn = 5,  // outside of all data
-  manager = 10,
-  component = 20,
-  context = 30,
-  port = 40,
-  connector = 50,
-  buffer = 60,
-  registry = 70,
-  log = 90
+  turn = 5,        // no data: one thread at a time
+  manager = 10,    // the state of a manager or of a whole program
+  component = 20,  // a component, its configuration, the members of its contexts
+  context = 30,    // the states of those whom a context calls, its place in the lock step
+  port = 40,       // a port, its open calls
+  connector = 50,  // the connections of a port; one connection
+  callbacks = 60,  // who runs the callbacks of a component
+  worker = 62,     // what a thread does, and whether it is to go on
+  queue = 64,      // jobs, messages and samples that wait for a thread
+  samples = 66,    // samples that wait for a reader; the newest ones
+  details = 68,    // one fact of an object that others may replace: profile and clock of a connection, a fault
+  objects = 70,    // tables of objects of this process by name or key
+  peers = 73,      // other processes: who is connected, watched, bound, or still to be told
+  profile = 76,    // properties of a component that its author reads as well
+  tasks = 79,      // threads that serve others, and what they are asked for
+  memory = 82,     // blocks and streams to be used again
+  noted = 85,      // counts, times, and what is said or found only once
+  log = 90         // the log, and what it asks for: clock, caller, settings
 };
 
 namespace detail {

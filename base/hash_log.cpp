@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/guarded.h"
 #include "base/hash_log_format.h"
 #include "base/text.h"
 
@@ -37,6 +38,7 @@ void put_text(std::string& out, std::string_view text) {
 }  // namespace
 
 Result<HashLogWriter> HashLogWriter::create(const std::string& path, unsigned version) {
+  expect_no_data_held();
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   if (!file) return Error{"hash log " + in_quotes(path) + ": " + std::strerror(errno)};
   HashLogWriter writer(std::move(file));
@@ -95,6 +97,7 @@ void HashLogWriter::end_tick() {
 }
 
 void HashLogWriter::flush() {
+  expect_no_data_held();
   file_.write(out_.data(), static_cast<std::streamsize>(out_.size()));
   out_.clear();
 }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/guarded.h"
 #include "base/hash_log.h"
 #include "base/hash_log_format.h"
 #include "base/text.h"
@@ -37,6 +38,7 @@ std::string HashKey::text() const {
 }
 
 Result<HashLogReader> HashLogReader::open(const std::string& path) {
+  expect_no_data_held();
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{"hash log " + in_quotes(path) + ": " + std::strerror(errno)};
   std::string start(hash_log_format::magic.size(), '\0');

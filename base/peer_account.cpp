@@ -14,6 +14,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/guarded.h"
+
 namespace base {
 namespace {
 
@@ -150,6 +152,7 @@ std::optional<uid_t> look_up(const End& local, const End& remote) {
 }
 
 std::optional<uid_t> account_of(const End& theirs, const End& ours) {
+  expect_no_data_held();
   if (theirs.family != ours.family) return std::nullopt;
   const Descriptor netlink(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
   if (netlink.value() >= 0) {

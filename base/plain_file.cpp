@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/guarded.h"
+
 namespace base {
 namespace {
 
@@ -28,6 +30,7 @@ Error unreadable(int code) { return {"cannot be read: " + std::generic_category(
 }  // namespace
 
 Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t most_bytes, struct stat* status) {
+  expect_no_data_held();
   struct stat is {};
   // Looked at before it is opened: opening alone can move a tape or wake a driver.
   if (::stat(file.c_str(), &is) != 0) {
@@ -56,6 +59,7 @@ Result<std::string> read_plain_file(const std::filesystem::path& file, std::uint
 }
 
 bool is_plain_file(const std::filesystem::path& file) {
+  expect_no_data_held();
   struct stat is {};
   return ::stat(file.c_str(), &is) == 0 && S_ISREG(is.st_mode);
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "base/guarded.h"
 #include "base/text.h"
 
 namespace base {
@@ -49,6 +50,7 @@ int make_file(const fs::path& file, std::string_view octets) {
 }  // namespace
 
 Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
+  expect_no_data_held();
   const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
   std::error_code error;
   const auto status = fs::status(file, error);

@@ -49,7 +49,7 @@ class ClockGenerator : public RTC::DataFlowComponentBase {
   int made_ = 0;                             // proxies so far; the thread's
   OpenHRP::ClockGenerator_var reference_;
   PortableServer::ServantBase_var servant_;
-  base::Guarded<std::deque<std::function<void()>>, base::Rank::buffer> jobs_;
+  base::Guarded<std::deque<std::function<void()>>, base::Rank::queue> jobs_;
   std::condition_variable_any posted_;
   std::jthread thread_;  // last: it uses the others
 };

@@ -29,7 +29,7 @@ class Errand {
   void run(const std::stop_token& stop);
 
   Say say_;
-  base::Guarded<std::deque<Job>, base::Rank::buffer> jobs_;
+  base::Guarded<std::deque<Job>, base::Rank::queue> jobs_;
   std::condition_variable_any posted_;
   base::Turn<> starting_;  // the thread, with the first post
   std::jthread thread_;    // last: it uses the others

@@ -58,7 +58,7 @@ class SimTimeProxy : public RTC::DataFlowComponentBase {
   std::chrono::nanoseconds patience_{0};
   Clock::time_point served_at_, next_look_;
 
-  base::Guarded<Watched, base::Rank::buffer> watched_;
+  base::Guarded<Watched, base::Rank::worker> watched_;
   std::condition_variable ending_;
   std::thread watch_;
 };

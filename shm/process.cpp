@@ -123,7 +123,7 @@ bool ProcessLife::is_alive() const {
 std::shared_ptr<const ProcessLife> ProcessLife::of(const ProcessMark& mark) {
   using Known = std::map<ProcessKey, std::weak_ptr<const ProcessLife>>;
   // Never destroyed: threads may still ask at the very end.
-  static auto& known = *new base::Guarded<Known, base::Rank::registry>;
+  static auto& known = *new base::Guarded<Known, base::Rank::peers>;
   const ProcessKey key = key_of(mark);
   if (auto life = (*known.lock())[key].lock()) return life;
   auto made = std::make_shared<const ProcessLife>(mark);

@@ -37,7 +37,7 @@ struct ProcessWatch::State {
     bool is_calling = false;
   };
   std::condition_variable called;
-  base::Guarded<Table, base::Rank::registry> table;
+  base::Guarded<Table, base::Rank::peers> table;
 };
 
 bool Watched::is_dead() const {

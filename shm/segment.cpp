@@ -69,7 +69,7 @@ Mapping map_file(int file, std::size_t size) {
     std::map<FileKey, Known> mappings;
     std::size_t swept_at = 64;  // entries at which those of mappings that are gone are taken out
   };
-  static base::Guarded<Table, base::Rank::registry> guarded;
+  static base::Guarded<Table, base::Rank::objects> guarded;
   struct stat status {};
   if (::fstat(file, &status) != 0) return {};
   const FileKey key{status.st_dev, status.st_ino};
@@ -116,6 +116,7 @@ std::uint64_t lay_out(const Geometry& geometry, Header& header) {
 
 // An unnamed file that gets its name when it is complete. Needs no clean-up when we die in between.
 base::Result<int> make_file(const SegmentName& name, std::uint64_t size, const Access& access) {
+  base::expect_no_data_held();
   const int file = ::open(segment_folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   const auto fail = [&](const std::string& what) {
     const std::string why = reason();
@@ -355,6 +356,7 @@ base::Result<Segment> Segment::open(const SegmentName& name) {
 }
 
 base::Result<Segment> Segment::open_at(const SegmentName& name, const std::string& path) {
+  base::expect_no_data_held();
   FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) return base::Error{"shared memory " + name.text() + " can't be opened: " + reason()};
   struct stat status {};
@@ -393,6 +395,7 @@ bool Segment::is_current() const { return inode_ != 0 && inode_of_path(path_of(n
 
 void Segment::close() {
   if (!base_) return;
+  base::expect_no_data_held();
   tell_readers(header());
   if (!is_current()) return;
   remove_name(name_, path_of(name_));

@@ -155,7 +155,8 @@ struct Listing {
 }  // namespace
 
 std::shared_ptr<const std::vector<SegmentPlace>> segment_places() {
-  static auto& last = *new base::Guarded<Listing, base::Rank::registry>;  // never destroyed: threads may still look at the very end
+  base::expect_no_data_held();
+  static auto& last = *new base::Guarded<Listing, base::Rank::objects>;  // never destroyed: threads may still look at the very end
   // The kernel's clock for files ticks every few milliseconds: a change in the same tick as the last one would not be seen.
   constexpr std::int64_t settled = 50'000'000;  // [ns]
   auto changed = last_change(segment_folder);

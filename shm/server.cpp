@@ -20,7 +20,7 @@ struct Server::State {
     std::int64_t last_tend = 0;
     std::uint64_t deaths = 0;
   };
-  base::Guarded<Ifaces, base::Rank::buffer> ifaces;
+  base::Guarded<Ifaces, base::Rank::samples> ifaces;
   std::atomic<std::size_t> cuts_told{0};
   Bytes bytes = std::make_shared<std::atomic<std::uint64_t>>(0);
 };

@@ -1,22 +1,17 @@
 #include "picture.h"
 
-#include <base/bayer.h>
-#include <base/text.h>
+#include <coil/stringutil.h>
 #include <png.h>
 #include <turbojpeg.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <optional>
-#include <string_view>
 
 namespace video {
 namespace {
-
-using base::Error;
-using base::Result;
 
 constexpr int largest_side = 16384;           // [pixel]
 constexpr std::size_t most_pixels = 1 << 26;  // a JPEG of few octets can claim any size
@@ -24,14 +19,16 @@ constexpr std::size_t most_pixels = 1 << 26;  // a JPEG of few octets can claim 
 enum class Kind { colors, depth, bayer, wide_grey };
 
 // A peer's text may be of any length.
-std::string quoted_format(const RTC::CameraImage& image) { return base::in_quotes(std::string_view(image.format.in()).substr(0, 40)); }
+std::string quoted_format(const RTC::CameraImage& image) { return quoted(std::string_view(image.format.in()).substr(0, 40)); }
 
 struct Layout {
   std::size_t octets;                // of a pixel
   int red = 0, green = 0, blue = 0;  // offsets in it
   Kind kind = Kind::colors;
-  base::BayerOrder order = {};
+  std::size_t red_row = 0, red_column = 0;  // of a Bayer mosaic: 0 or 1; blue is diagonally beside it, green everywhere else
 };
+
+Layout mosaic(std::size_t red_row, std::size_t red_column) { return {1, 0, 0, 0, Kind::bayer, red_row, red_column}; }
 
 // By the bits of a pixel; 0 bits: by the octets that came.
 std::optional<Layout> nameless_layout(const RTC::CameraImage& image, bool is_bgr) {
@@ -43,8 +40,8 @@ std::optional<Layout> nameless_layout(const RTC::CameraImage& image, bool is_bgr
   return std::nullopt;
 }
 
-Result<Layout> layout_of(const RTC::CameraImage& image) {
-  const auto format = base::to_lower(image.format.in());
+std::optional<Layout> layout_of(const RTC::CameraImage& image) {
+  const auto format = coil::toLower(std::string(image.format.in()));
   const auto is = [&](std::initializer_list<const char*> names) { return std::find(names.begin(), names.end(), format) != names.end(); };
   if (is({"rgb8", "rgb", "r8g8b8", "rgb888"})) return Layout{3, 0, 1, 2};
   if (is({"bgr8", "bgr", "b8g8r8", "bgr888"})) return Layout{3, 2, 1, 0};
@@ -53,19 +50,16 @@ Result<Layout> layout_of(const RTC::CameraImage& image) {
   if (is({"mono8", "mono", "gray", "grey", "gray8", "grey8", "l8", "y8"})) return Layout{1};
   if (is({"mono16", "gray16", "grey16", "l16", "y16"})) return Layout{2, 1, 1, 1, Kind::wide_grey};
   if (is({"depth32f"})) return Layout{4, 0, 0, 0, Kind::depth};
-  if (format.starts_with("bayer_") && format.size() >= 10 && (format.size() == 10 || format.substr(10) == "8")) {
-    if (const auto order = base::parse_bayer_order(format.substr(6, 4))) return Layout{1, 0, 0, 0, Kind::bayer, *order};
-  }
+  if (is({"bayer_rggb8", "bayer_rggb"})) return mosaic(0, 0);
+  if (is({"bayer_grbg8", "bayer_grbg"})) return mosaic(0, 1);
+  if (is({"bayer_gbrg8", "bayer_gbrg"})) return mosaic(1, 0);
+  if (is({"bayer_bggr8", "bayer_bggr"})) return mosaic(1, 1);
   // Components with OpenCV inside send its memory, blue first, as "bitmap".
-  if (format.empty() || format == "bitmap") {
-    if (const auto layout = nameless_layout(image, !format.empty())) return *layout;
-  }
-  return Error{
-      "image format " + quoted_format(image) + " with " + std::to_string(image.bpp) +
-      " bits per pixel is not known, expected RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16, BAYER_RGGB8 and its like, DEPTH32F or JPEG"};
+  if (format.empty() || format == "bitmap") return nameless_layout(image, !format.empty());
+  return std::nullopt;
 }
 
-Result<Picture> from_jpeg(const RTC::CameraImage& image) {
+std::optional<Picture> from_jpeg(const RTC::CameraImage& image, std::string& problem) {
   const std::unique_ptr<void, int (*)(void*)> decoder(tjInitDecompress(), tjDestroy);
   Picture picture;
   int sampling = 0;
@@ -73,15 +67,19 @@ Result<Picture> from_jpeg(const RTC::CameraImage& image) {
   const auto size = image.pixels.length();
   const auto* bytes = image.pixels.get_buffer();
   if (!decoder || size == 0 || tjDecompressHeader3(decoder.get(), bytes, size, &picture.width, &picture.height, &sampling, &colours) != 0) {
-    return Error{"image of " + std::to_string(size) + " bytes is not a JPEG image"};
+    problem = "image of " + std::to_string(size) + " bytes is not a JPEG image";
+    return std::nullopt;
   }
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  if (picture.width > largest_side || picture.height > largest_side || pixels > most_pixels)
-    return Error{"JPEG image of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " is too large"};
+  if (picture.width > largest_side || picture.height > largest_side || pixels > most_pixels) {
+    problem = "JPEG image of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " is too large";
+    return std::nullopt;
+  }
   picture.rgb.resize(3 * pixels);
   if (tjDecompress2(decoder.get(), bytes, size, picture.rgb.data(), picture.width, 0, picture.height, TJPF_RGB, 0) != 0 &&
       tjGetErrorCode(decoder.get()) == TJERR_FATAL) {
-    return Error{std::string("JPEG image: ") + tjGetErrorStr2(decoder.get())};
+    problem = std::string("JPEG image: ") + tjGetErrorStr2(decoder.get());
+    return std::nullopt;
   }
   return picture;
 }
@@ -101,56 +99,94 @@ void depth_to_grey(const RTC::CameraImage& image, Picture& picture) {
   }
 }
 
+// Each colour that a pixel does not have is the mean of its neighbours that do.
+void mosaic_to_rgb(const unsigned char* mosaic, const Layout& layout, Picture& picture) {
+  const auto columns = static_cast<std::size_t>(picture.width), rows = static_cast<std::size_t>(picture.height);
+  const auto color_at = [&](std::size_t row, std::size_t column) -> std::size_t {
+    const bool in_red_row = row % 2 == layout.red_row, in_red_column = column % 2 == layout.red_column;
+    return in_red_row != in_red_column ? 1 : in_red_row ? 0 : 2;
+  };
+  unsigned char* pixel = picture.rgb.data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column, pixel += 3) {
+      std::array<unsigned, 3> sum{}, count{};
+      for (std::size_t y = row - (row > 0 ? 1 : 0); y <= std::min(row + 1, rows - 1); ++y) {
+        for (std::size_t x = column - (column > 0 ? 1 : 0); x <= std::min(column + 1, columns - 1); ++x) {
+          const std::size_t color = color_at(y, x);
+          sum[color] += mosaic[y * columns + x];
+          ++count[color];
+        }
+      }
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<unsigned char>(count[c] > 0 ? (sum[c] + count[c] / 2) / count[c] : 0);
+      pixel[color_at(row, column)] = mosaic[row * columns + column];
+    }
+  }
+}
+
+void colors_to_rgb(const unsigned char* from, const Layout& layout, Picture& picture) {
+  if (layout.octets == 3 && layout.red == 0) {
+    std::memcpy(picture.rgb.data(), from, picture.rgb.size());
+    return;
+  }
+  unsigned char* to = picture.rgb.data();
+  for (std::size_t i = 0; i < picture.rgb.size() / 3; ++i, from += layout.octets, to += 3) {
+    to[0] = from[layout.red];
+    to[1] = from[layout.green];
+    to[2] = from[layout.blue];
+  }
+}
+
+// Why the image cannot be shown; empty: it can.
+std::string problem_of(const RTC::CameraImage& image, const std::optional<Layout>& layout) {
+  if (!layout) {
+    return "image format " + quoted_format(image) + " with " + std::to_string(image.bpp) +
+           " bits per pixel is not known, expected RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16, BAYER_RGGB8 and its like, DEPTH32F or JPEG";
+  }
+  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  const auto size = std::to_string(image.width) + "x" + std::to_string(image.height);
+  if (count == 0 || image.width > largest_side || image.height > largest_side) return "image of " + size + " pixels cannot be shown";
+  if (image.pixels.length() == count * layout->octets) return {};
+  return "image of " + size + " pixels in format " + quoted_format(image) + " must have " + std::to_string(count * layout->octets) +
+         " bytes, got " + std::to_string(image.pixels.length());
+}
+
 }  // namespace
 
-Result<Picture> to_picture(const RTC::CameraImage& image) {
-  if (base::equal_ignoring_case(image.format.in(), "jpeg") || base::equal_ignoring_case(image.format.in(), "jpg")) return from_jpeg(image);
+std::optional<Picture> to_picture(const RTC::CameraImage& image, std::string& problem) {
+  const auto format = coil::toLower(std::string(image.format.in()));
+  if (format == "jpeg" || format == "jpg") return from_jpeg(image, problem);
   const auto layout = layout_of(image);
-  if (!layout) return layout.error();
-  Picture picture;
-  picture.width = image.width;
-  picture.height = image.height;
-  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
-  const auto wanted = count * layout->octets;
-  const auto size = std::to_string(image.width) + "x" + std::to_string(image.height);
-  if (count == 0 || image.width > largest_side || image.height > largest_side) return Error{"image of " + size + " pixels cannot be shown"};
-  if (image.pixels.length() != wanted) {
-    return Error{"image of " + size + " pixels in format " + quoted_format(image) + " must have " + std::to_string(wanted) +
-                 " bytes, got " + std::to_string(image.pixels.length())};
-  }
-  picture.rgb.resize(3 * count);
+  problem = problem_of(image, layout);
+  if (!problem.empty()) return std::nullopt;
+  Picture picture{image.width, image.height, {}};
+  picture.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
   const auto* from = image.pixels.get_buffer();
-  auto* to = picture.rgb.data();
   if (layout->kind == Kind::depth) {
     depth_to_grey(image, picture);
-    return picture;
-  }
-  if (layout->kind == Kind::bayer) {
-    base::demosaic({from, count}, picture.width, picture.height, image.width, layout->order, picture.rgb);
-    return picture;
-  }
-  if (layout->octets == 3 && layout->red == 0) {
-    std::memcpy(to, from, wanted);
-    return picture;
-  }
-  for (std::size_t i = 0; i < count; ++i, from += layout->octets, to += 3) {
-    to[0] = from[layout->red];
-    to[1] = from[layout->green];
-    to[2] = from[layout->blue];
+  } else if (layout->kind == Kind::bayer) {
+    mosaic_to_rgb(from, *layout, picture);
+  } else {
+    colors_to_rgb(from, *layout, picture);
   }
   return picture;
 }
 
-Result<void> write_png(const Picture& picture, const std::string& file) {
+std::string write_png(const Picture& picture, const std::string& file) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(picture.width);
   image.height = static_cast<png_uint_32>(picture.height);
   image.format = PNG_FORMAT_RGB;
   image.flags = PNG_IMAGE_FLAG_FAST;  // every frame of a stream is written: three times the speed for a tenth more bytes
-  if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) == 0)
-    return Error{"file " + base::in_quotes(file) + ": " + image.message};
-  return {};
+  if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) != 0) return {};
+  return "file " + quoted(file) + ": " + image.message;
+}
+
+std::string quoted(std::string_view text) {
+  std::string line(text);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
+  return '"' + line + '"';
 }
 
 }  // namespace video

@@ -1,10 +1,11 @@
 // An image as it came over a port, made ready to show: packed RGB, checked. Values; any thread.
 #pragma once
 
-#include <base/result.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace video {
@@ -17,8 +18,12 @@ struct Picture {
 
 // Formats: RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16 (its high octets), BAYER_RGGB8 and its like, DEPTH32F (shown as grey, near is bright),
 // JPEG; images without a format by their bits per pixel (none: by their octets), "bitmap" the same with blue first.
-// An image whose pixels do not fit its size is refused with a line that says what came and what was expected.
-base::Result<Picture> to_picture(const RTC::CameraImage& image);
-base::Result<void> write_png(const Picture& picture, const std::string& file);
+// Nothing if the pixels of an image do not fit its size; `problem` is then a line that says what came and what was expected.
+std::optional<Picture> to_picture(const RTC::CameraImage& image, std::string& problem);
+// Why it failed; empty when the file is written.
+std::string write_png(const Picture& picture, const std::string& file);
+
+// For lines of text: what a peer or a user wrote, with a ? for everything that a terminal would obey.
+std::string quoted(std::string_view text);
 
 }  // namespace video

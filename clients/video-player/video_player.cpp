@@ -1,7 +1,5 @@
 #include "video_player.h"
 
-#include <base/text.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -86,14 +84,10 @@ RTC::ReturnCode_t VideoPlayer::onActivated(RTC::UniqueId) {
   recording_to_.clear();
   if (!open_records()) return RTC::RTC_ERROR;
   if (window_wanted_ == 0) return RTC::RTC_OK;
-  auto opened = video::Window::open(getInstanceName());
-  if (opened) {
-    window_ = std::move(*opened);
-  } else if (record_dir_.empty()) {
-    RTC_WARN(("no window: %s; set record_dir to get the frames as PNG files", opened.error().message.c_str()));
-  } else {
-    RTC_WARN(("no window: %s; the frames go to %s", opened.error().message.c_str(), record_dir_.c_str()));
-  }
+  std::string problem;
+  window_ = video::Window::open(getInstanceName(), problem);
+  if (!window_ && record_dir_.empty()) RTC_WARN(("no window: %s; set record_dir to get the frames as PNG files", problem.c_str()));
+  if (!window_ && !record_dir_.empty()) RTC_WARN(("no window: %s; the frames go to %s", problem.c_str(), record_dir_.c_str()));
   return RTC::RTC_OK;
 }
 
@@ -106,7 +100,7 @@ bool VideoPlayer::open_records() {
   std::error_code error;
   fs::create_directories(record_dir_, error);
   if (error) {
-    RTC_ERROR(("record_dir %s cannot be made: %s", base::in_quotes(record_dir_).c_str(), error.message().c_str()));
+    RTC_ERROR(("record_dir %s cannot be made: %s", video::quoted(record_dir_).c_str(), error.message().c_str()));
     return false;
   }
   recorded_ = last_number(record_dir_, "frame");
@@ -116,7 +110,7 @@ bool VideoPlayer::open_records() {
 
 void VideoPlayer::close_window() {
   if (!window_) return;
-  if (const auto closed = window_->close(); !closed) RTC_WARN(("the window: %s", closed.error().message.c_str()));
+  if (const auto problem = window_->close(); !problem.empty()) RTC_WARN(("the window: %s", problem.c_str()));
   window_.reset();
 }
 
@@ -155,8 +149,9 @@ void VideoPlayer::refuse(const std::string& line) {
 }
 
 void VideoPlayer::take(const RTC::CameraImage& image) {
-  auto picture = video::to_picture(image);
-  if (!picture) return refuse(picture.error().message);
+  std::string problem;
+  auto picture = video::to_picture(image, problem);
+  if (!picture) return refuse(problem);
   if (is_paused_) {
     ++passed_;
     return;
@@ -179,9 +174,9 @@ std::string VideoPlayer::save(const std::string& folder, const char* prefix, std
     std::snprintf(name, sizeof name, "%s-%06llu.png", prefix, static_cast<unsigned long long>(++free));
     file = fs::path(folder) / name;
   } while (fs::exists(file, error));
-  if (const auto written = video::write_png(*picture_, file.string()); !written) {
-    if (said_ != written.error().message) RTC_ERROR(("%s", written.error().message.c_str()));
-    said_ = written.error().message;
+  if (const auto problem = video::write_png(*picture_, file.string()); !problem.empty()) {
+    if (said_ != problem) RTC_ERROR(("%s", problem.c_str()));
+    said_ = problem;
     return {};
   }
   number = free;

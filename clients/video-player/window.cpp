@@ -3,7 +3,8 @@
 #include <SDL.h>
 #include <SDL_syswm.h>
 #include <X11/Xlib.h>
-#include <base/guarded.h>
+#include <coil/Guard.h>
+#include <coil/Mutex.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -13,32 +14,36 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <functional>
-#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 namespace video {
 
-// What a window's owner and the thread of the display tell each other.
+using Guard = coil::Guard<coil::Mutex>;
+
+// What a window's owner and the thread of the display tell each other. With its mutex.
 struct Window::Shared {
-  struct State {
-    std::shared_ptr<const Picture> picture;  // to be shown; empty: nothing new
-    std::string title;                       // the same
-    Events events;
-  };
-  base::Guarded<State, base::Rank::buffer> state;
+  coil::Mutex mutex;
+  std::shared_ptr<const Picture> picture;  // to be shown; empty: nothing new
+  std::string title;                       // the same
+  Events events;
 };
 
 // A window as SDL knows it. The thread of the display only.
 class Window::Pane {
  public:
-  static base::Result<std::unique_ptr<Pane>> open(std::shared_ptr<Shared> shared, const std::string& title) {
+  static std::unique_ptr<Pane> open(std::shared_ptr<Shared> shared, const std::string& title, std::string& problem) {
     std::unique_ptr<Pane> pane(new Pane(std::move(shared)));
     pane->window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, 640, 480, SDL_WINDOW_RESIZABLE);
-    if (!pane->window_) return base::Error{std::string("the window cannot be made: ") + SDL_GetError()};
-    pane->renderer_ = SDL_CreateRenderer(pane->window_, -1, SDL_RENDERER_SOFTWARE);
-    if (!pane->renderer_) return base::Error{std::string("the window cannot be drawn to: ") + SDL_GetError()};
+    if (pane->window_) pane->renderer_ = SDL_CreateRenderer(pane->window_, -1, SDL_RENDERER_SOFTWARE);
+    if (!pane->renderer_) {
+      problem = std::string(pane->window_ ? "the window cannot be drawn to: " : "the window cannot be made: ") + SDL_GetError();
+      return nullptr;
+    }
     pane->draw();
     return pane;
   }
@@ -58,28 +63,32 @@ class Window::Pane {
     SDL_VERSION(&info.version);
     return SDL_GetWindowWMInfo(window_, &info) == SDL_TRUE && info.subsystem == SDL_SYSWM_X11 ? info.info.x11.display : nullptr;
   }
-  void lose() const { shared_->state.lock()->events.lost = true; }
+  void lose() const {
+    const Guard guard(shared_->mutex);
+    shared_->events.lost = true;
+  }
 
   void take(const SDL_Event& event) {
-    auto state = shared_->state.lock();
+    const Guard guard(shared_->mutex);
+    Events& events = shared_->events;
     if (event.type == SDL_WINDOWEVENT) {
-      if (event.window.event == SDL_WINDOWEVENT_CLOSE) state->events.close = true;
+      if (event.window.event == SDL_WINDOWEVENT_CLOSE) events.close = true;
       if (event.window.event == SDL_WINDOWEVENT_EXPOSED || event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) is_stale_ = true;
     }
     if (event.type != SDL_KEYDOWN || event.key.repeat != 0) return;
     const auto key = event.key.keysym.sym;
-    if (key == SDLK_SPACE) state->events.toggle_pause = !state->events.toggle_pause;
-    if (key == SDLK_s) state->events.save = true;
-    if (key == SDLK_q || key == SDLK_ESCAPE) state->events.close = true;
+    if (key == SDLK_SPACE) events.toggle_pause = !events.toggle_pause;
+    if (key == SDLK_s) events.save = true;
+    if (key == SDLK_q || key == SDLK_ESCAPE) events.close = true;
   }
 
   void refresh() {
     std::shared_ptr<const Picture> picture;
     std::string title;
     {
-      auto state = shared_->state.lock();
-      picture = std::exchange(state->picture, nullptr);
-      title = std::exchange(state->title, {});
+      const Guard guard(shared_->mutex);
+      picture = std::exchange(shared_->picture, nullptr);
+      title = std::exchange(shared_->title, {});
     }
     if (!title.empty()) SDL_SetWindowTitle(window_, title.c_str());
     if (picture) put(*picture);
@@ -113,8 +122,8 @@ class Window::Pane {
     is_stale_ = false;
   }
   void fail(const std::string& what) {
-    shared_->state.lock()->events.problem =
-        "picture of " + std::to_string(width_) + "x" + std::to_string(height_) + " " + what + ": " + SDL_GetError();
+    const Guard guard(shared_->mutex);
+    shared_->events.problem = "picture of " + std::to_string(width_) + "x" + std::to_string(height_) + " " + what + ": " + SDL_GetError();
   }
 
   std::shared_ptr<Shared> shared_;
@@ -146,17 +155,18 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  base::Result<void> open(const std::shared_ptr<Shared>& shared, const std::string& title) {
-    const auto mine = turnstile_.take();
+  // What failed; empty: nothing. So for everything below that returns a string.
+  std::string open(const std::shared_ptr<Shared>& shared, const std::string& title) {
+    const Guard mine(turnstile_);
     if (!thread_.joinable()) thread_ = std::thread([self = shared_from_this()] { self->run(); });
-    const auto opened = std::make_shared<base::Result<void>>();
-    const auto answer = run_there([this, shared, title, opened] { *opened = open_pane(shared, title); });
-    if (answer) return *opened;
+    const auto not_opened = std::make_shared<std::string>();
+    auto problem = run_there([this, shared, title, not_opened] { *not_opened = open_pane(shared, title); });
+    if (problem.empty()) return *not_opened;
     (void)give([this, shared] { close_pane(shared.get()); });  // it may come to be after all
-    return answer;
+    return problem;
   }
-  base::Result<void> close(const std::shared_ptr<Shared>& shared) {
-    const auto mine = turnstile_.take();
+  std::string close(const std::shared_ptr<Shared>& shared) {
+    const Guard mine(turnstile_);
     return run_there([this, shared] { close_pane(shared.get()); });
   }
   // Any thread.
@@ -166,75 +176,64 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   }
 
  private:
-  struct State {
-    std::vector<std::function<void()>> tasks;
-    std::uint64_t tasks_given = 0, tasks_done = 0;
-    std::uint64_t tasks_missed = 0;  // the last one that nobody waits for any more
-    bool is_lost = false;
-  };
-
   static constexpr std::chrono::milliseconds longest_answer{1500};  // within the 2 s that the runtime grants a callback at its end
   static constexpr std::chrono::seconds answer_when_held_up{1};
 
   // The process ends, perhaps with windows open.
   void end() {
     if (!thread_.joinable()) return;
-    const auto ended = run_there([this] {
+    const auto problem = run_there([this] {
       is_ending_ = true;
       panes_.clear();
       leave();
     });
-    if (ended) return thread_.join();
+    if (problem.empty()) return thread_.join();
     thread_.detach();
   }
   // The number of the work that the thread is to do when it comes to it.
   std::uint64_t give(std::function<void()> work) {
-    auto state = state_.lock();
-    state->tasks.push_back(std::move(work));
+    const Guard guard(mutex_);
+    tasks_.push_back(std::move(work));
     wake();
-    return ++state->tasks_given;
+    return ++tasks_given_;
   }
   // An error when the display has gone: the work is never finished. And when it does not answer in time: the work is done when it does.
-  base::Result<void> run_there(std::function<void()> work) {
+  std::string run_there(std::function<void()> work) {
     const auto number = give(std::move(work));
-    auto state = state_.lock();
-    const auto is_answered = [&] { return state->tasks_done >= number || state->is_lost; };
-    const bool is_held_up = state->tasks_done < state->tasks_missed;
-    if (!state.wait_for(changed_, is_held_up ? answer_when_held_up : longest_answer, is_answered)) {
-      state->tasks_missed = number;
-      return base::Error{"the display does not answer"};
+    std::unique_lock<coil::Mutex> lock(mutex_);
+    const auto is_answered = [&] { return tasks_done_ >= number || is_lost_; };
+    const bool is_held_up = tasks_done_ < tasks_missed_;
+    if (!changed_.wait_for(lock, is_held_up ? answer_when_held_up : longest_answer, is_answered)) {
+      tasks_missed_ = number;
+      return "the display does not answer";
     }
-    if (state->tasks_done < number) return base::Error{"the display of this process is lost"};
-    return {};
+    return tasks_done_ < number ? "the display of this process is lost" : "";
   }
 
-  static base::Result<void> enter() {
+  static std::string enter() {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the manager ends the process, not the window
     SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, "1");
     // Pictures go to the X server as they are. GL would hang at the end of a process that has lost its display.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     // Without this SDL would rather draw where nobody can see it than fail. The variable SDL_VIDEODRIVER still wins.
     SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
-    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return base::Error{std::string("the display cannot be used: ") + SDL_GetError()};
-    return {};
+    return SDL_InitSubSystem(SDL_INIT_VIDEO) == 0 ? std::string() : std::string("the display cannot be used: ") + SDL_GetError();
   }
   void leave() {
     if (SDL_WasInit(SDL_INIT_VIDEO) == 0) return;
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
     display_ = nullptr;
   }
-  base::Result<void> open_pane(const std::shared_ptr<Shared>& shared, const std::string& title) {
-    if (panes_.empty()) {
-      if (auto entered = enter(); !entered) return entered;
-    }
-    auto pane = Pane::open(shared, title);
-    if (pane) {
-      watch(**pane);
-      panes_.push_back(std::move(*pane));
+  std::string open_pane(const std::shared_ptr<Shared>& shared, const std::string& title) {
+    std::string problem = panes_.empty() ? enter() : std::string();
+    if (!problem.empty()) return problem;
+    if (auto pane = Pane::open(shared, title, problem)) {
+      watch(*pane);
+      panes_.push_back(std::move(pane));
       return {};
     }
     if (panes_.empty()) leave();
-    return pane.error();
+    return problem;
   }
   void close_pane(const Shared* shared) {
     std::erase_if(panes_, [&](const auto& pane) { return pane->shared() == shared; });
@@ -244,16 +243,20 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   void run() {
     while (!is_ending_) {
       const bool was_busy = take_events();
-      const auto tasks = std::exchange(state_.lock()->tasks, {});
-      for (const auto& task : tasks) {
+      for (const auto& task : take_tasks()) {
         task();
-        ++state_.lock()->tasks_done;
+        const Guard guard(mutex_);
+        ++tasks_done_;
         changed_.notify_all();
       }
       for (auto& pane : panes_) pane->refresh();
       // Drawing may have brought events along, which no longer wait in the connection.
       if (!was_busy && !is_ending_ && !take_events()) sleep();
     }
+  }
+  std::vector<std::function<void()>> take_tasks() {
+    const Guard guard(mutex_);
+    return std::exchange(tasks_, {});
   }
   // Until somebody rings or the display has something to say.
   void sleep() const {
@@ -294,16 +297,23 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
     for (const auto& pane : panes_) {
       if (pane) pane->lose();  // one that is being closed is gone already
     }
-    state_.lock()->is_lost = true;
+    {
+      const Guard guard(mutex_);
+      is_lost_ = true;
+    }
     changed_.notify_all();
     while (true) ::poll(nullptr, 0, -1);
   }
 
   const int bell_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  base::Turn<> turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
+  coil::Mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
   std::thread thread_;
-  base::Guarded<State, base::Rank::buffer> state_;
-  std::condition_variable changed_;
+  coil::Mutex mutex_;  // of what follows
+  std::condition_variable_any changed_;
+  std::vector<std::function<void()>> tasks_;
+  std::uint64_t tasks_given_ = 0, tasks_done_ = 0;
+  std::uint64_t tasks_missed_ = 0;  // the last one that nobody waits for any more
+  bool is_lost_ = false;
   std::vector<std::unique_ptr<Pane>> panes_;  // the thread's, like what follows
   Display* display_ = nullptr;                // of X11; SDL's
   bool is_ending_ = false;
@@ -312,29 +322,38 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
 Window::Window(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 Window::~Window() { (void)close(); }
 
-base::Result<std::unique_ptr<Window>> Window::open(const std::string& title) {
+std::unique_ptr<Window> Window::open(const std::string& title, std::string& problem) {
   const auto has = [](const char* name) { return std::getenv(name) != nullptr && *std::getenv(name) != '\0'; };
-  if (!has("DISPLAY") && !has("WAYLAND_DISPLAY") && !has("SDL_VIDEODRIVER")) return base::Error{"there is no display"};
   auto shared = std::make_shared<Shared>();
-  if (auto opened = Screen::one().open(shared, title); !opened) return opened.error();
-  return std::unique_ptr<Window>(new Window(std::move(shared)));
+  const bool has_display = has("DISPLAY") || has("WAYLAND_DISPLAY") || has("SDL_VIDEODRIVER");
+  problem = has_display ? Screen::one().open(shared, title) : "there is no display";
+  return problem.empty() ? std::unique_ptr<Window>(new Window(std::move(shared))) : nullptr;
 }
 
-base::Result<void> Window::close() {
+std::string Window::close() {
   const auto shared = std::exchange(shared_, nullptr);
-  return shared ? Screen::one().close(shared) : base::Result<void>{};
+  return shared ? Screen::one().close(shared) : std::string();
 }
 
 void Window::show(std::shared_ptr<const Picture> picture) {
-  shared_->state.lock()->picture = std::move(picture);
+  {
+    const Guard guard(shared_->mutex);
+    shared_->picture.swap(picture);  // the one before ends without the lock
+  }
   Screen::one().wake();
 }
 
 void Window::set_title(const std::string& title) {
-  shared_->state.lock()->title = title;
+  {
+    const Guard guard(shared_->mutex);
+    shared_->title = title;
+  }
   Screen::one().wake();
 }
 
-Events Window::events() { return std::exchange(shared_->state.lock()->events, {}); }
+Events Window::events() {
+  const Guard guard(shared_->mutex);
+  return std::exchange(shared_->events, {});
+}
 
 }  // namespace video

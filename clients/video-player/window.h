@@ -7,8 +7,6 @@
 // goes on.
 #pragma once
 
-#include <base/result.h>
-
 #include <memory>
 #include <string>
 
@@ -27,11 +25,12 @@ struct Events {
 
 class Window {
  public:
-  // Fails when there is no display, or when it does not answer. After one has gone the process gets no other: SDL cannot leave it.
-  static base::Result<std::unique_ptr<Window>> open(const std::string& title);
-  // Once; then the window must not be used any more. Fails when the display does not answer (an X server that is stopped); the window goes
-  // away as soon as it does.
-  base::Result<void> close();
+  // Null, and `problem` says why, when there is no display, or when it does not answer. After one has gone the process gets no other: SDL
+  // cannot leave it.
+  static std::unique_ptr<Window> open(const std::string& title, std::string& problem);
+  // Once; then the window must not be used any more. Returns what failed, or nothing: the display may not answer (an X server that is
+  // stopped); the window goes away as soon as it does.
+  std::string close();
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

@@ -43,7 +43,7 @@ class Alarm {
     std::optional<std::vector<SharedSegment>> segments;
     bool is_over = false;
   };
-  base::Guarded<Wish, base::Rank::buffer> next_;
+  base::Guarded<Wish, base::Rank::worker> next_;
   std::thread thread_;
 };
 

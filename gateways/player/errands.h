@@ -52,7 +52,7 @@ class Errands {
     std::deque<Job> jobs;
     std::deque<Answer> answers;
   };
-  base::Guarded<Queues, base::Rank::buffer> queues_;
+  base::Guarded<Queues, base::Rank::queue> queues_;
   std::condition_variable_any posted_;
   std::jthread thread_;  // last: it uses the others
 };

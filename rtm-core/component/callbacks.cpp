@@ -64,39 +64,82 @@ ReturnCode_t RTObject_impl::onAction(RTC::UniqueId) { return RTC_OK; }
 
 // --- the one way to an author's code
 
-// `refusal` says why a caller from outside may not call now, `done` comes after a callback that such a caller has called.
+namespace {
+
+// `action` is one of RTC::ComponentAction: its listeners stand in both lists at one place.
+constexpr int listeners_of(rt::Action action) { return PRE_ON_STARTUP + static_cast<int>(action); }
+static_assert(listeners_of(rt::Action::rate_changed) == PRE_ON_RATE_CHANGED && listeners_of(rt::Action::error) == PRE_ON_ERROR);
+static_assert(int{PRE_ON_STARTUP} == int{POST_ON_STARTUP} && int{PRE_ON_RATE_CHANGED} == int{POST_ON_RATE_CHANGED});
+static_assert(int{PRE_ON_INITIALIZE} == int{POST_ON_INITIALIZE} && int{PRE_ON_FINALIZE} == int{POST_ON_FINALIZE});
+
+}  // namespace
+
+// Calls the author's functions when their turn comes; what they throw is logged and RTC_ERROR.
+class RTObject_impl::Callbacks {
+ public:
+  explicit Callbacks(RTObject_impl& component)
+      : component_(component), rtclog(component.rtclog), is_outside_(OutsideCall::is_mine(component)) {}
+
+  // `refusal` says why a caller from outside may not call now, `done` comes after a callback that such a caller has called.
+  template <class Refusal, class Function, class Done>
+  ReturnCode_t in_turn(const char* name, Refusal refusal, Function function, Done done);
+
+  // For a context. `alone`: without the listeners, which the function notifies itself.
+  template <class Function>
+  ReturnCode_t call(rt::Action action, ExecutionContextHandle_t exec_handle, Function function) {
+    return alone(action, exec_handle, [&] { return heard(listeners_of(action), exec_handle, function); });
+  }
+  template <class Function>
+  ReturnCode_t alone(rt::Action action, ExecutionContextHandle_t exec_handle, Function function);
+
+  // With the component action listeners before and after it.
+  template <class Function>
+  ReturnCode_t heard(int listeners, ExecutionContextHandle_t exec_handle, Function function) {
+    component_.m_actionListeners.preaction_[static_cast<PreComponentActionListenerType>(listeners)].notify(exec_handle);
+    const ReturnCode_t code = function();
+    component_.m_actionListeners.postaction_[static_cast<PostComponentActionListenerType>(listeners)].notify(exec_handle, code);
+    return code;
+  }
+
+ private:
+  RTObject_impl& component_;
+  Logger& rtclog;
+  const bool is_outside_;
+};
+
 template <class Refusal, class Function, class Done>
-ReturnCode_t RTObject_impl::callInTurn(const char* name, bool is_outside, Refusal refusal, Function function, Done done) {
+ReturnCode_t RTObject_impl::Callbacks::in_turn(const char* name, Refusal refusal, Function function, Done done) {
   using Gate = rt::CallbackGate;
   base::expect_no_data_held();
-  if (is_outside && !mayBeChangedByCaller(name)) return RTC_ERROR;
-  Gate::Visit visit(impl_->gate, name, is_outside ? Gate::Caller::remote : Gate::Caller::local);
+  if (is_outside_ && !component_.mayBeChangedByCaller(name)) return RTC_ERROR;
+  Gate::Visit visit(component_.impl_->gate, name, is_outside_ ? Gate::Caller::remote : Gate::Caller::local);
   if (visit.answer() != Gate::Answer::inside) {
-    if (is_outside)
-      if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
-    const bool is_simulated = is_outside ? corba::clock_of_caller() != nullptr : base::tick_in_lock_step() != nullptr;
+    if (is_outside_)
+      if (const auto why = refusal()) return component_.refuse(name, *why, PRECONDITION_NOT_MET);
+    const bool is_simulated = is_outside_ ? corba::clock_of_caller() != nullptr : base::tick_in_lock_step() != nullptr;
     const std::chrono::nanoseconds patience = is_simulated ? std::chrono::nanoseconds(simulated_patience)
-                                              : is_outside ? std::chrono::nanoseconds(remote_patience)
-                                                           : std::max<std::chrono::nanoseconds>(callbackTimeout(), local_patience);
+                                              : is_outside_
+                                                  ? std::chrono::nanoseconds(remote_patience)
+                                                  : std::max<std::chrono::nanoseconds>(component_.callbackTimeout(), local_patience);
     {
       const base::ScopedWait waiting;
       visit.wait(std::chrono::steady_clock::now() + patience);
     }
     if (visit.answer() != Gate::Answer::inside) {
-      const std::string running = impl_->gate.describe();
+      const std::string running = component_.impl_->gate.describe();
       const std::string why = visit.answer() == Gate::Answer::crowded  ? "too many callers wait for its callbacks"
                               : visit.answer() == Gate::Answer::closed ? "the component ends"
                               : running.empty()                        ? "other callbacks took too long"
                                                                        : running;
-      if (is_outside) return refuse(name, why, PRECONDITION_NOT_MET);
+      if (is_outside_) return component_.refuse(name, why, PRECONDITION_NOT_MET);
       RTC_ERROR(("%s was not called: %s", name, why.c_str()));
       return RTC_ERROR;
     }
   }
-  if (is_outside)
-    if (const auto why = refusal()) return refuse(name, *why, PRECONDITION_NOT_MET);
-  const InsideCallback inside(*this);
-  const base::CallbackOnStack on_stack(m_profile.instance_name, name);
+  if (is_outside_)
+    if (const auto why = refusal()) return component_.refuse(name, *why, PRECONDITION_NOT_MET);
+  const InsideCallback inside(component_);
+  const base::CallbackOnStack on_stack(component_.m_profile.instance_name, name);
   // Called by a context of another process: its time is ours.
   std::optional<base::ScopedClock> clock;
   if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));
@@ -110,25 +153,26 @@ ReturnCode_t RTObject_impl::callInTurn(const char* name, bool is_outside, Refusa
   } catch (...) {
     RTC_ERROR(("%s threw something that is no std::exception", name));
   }
-  if (is_outside) done();
+  if (is_outside_) done();
   return code;
 }
 
 template <class Function>
-ReturnCode_t RTObject_impl::callAction(rt::Action action, ExecutionContextHandle_t exec_handle, Function function) {
+ReturnCode_t RTObject_impl::Callbacks::alone(rt::Action action, ExecutionContextHandle_t exec_handle, Function function) {
+  Impl& impl = *component_.impl_;
   const auto refusal = [&]() -> std::optional<std::string> {
-    auto data = impl_->shared.lock();
+    auto data = impl.shared.lock();
     if (data->phase != Impl::Phase::initializing && data->phase != Impl::Phase::alive && data->phase != Impl::Phase::exiting)
       return "the component is not alive";
     const auto context = data->elsewhere.find(exec_handle);
     return why_not(action, context == data->elsewhere.end() ? std::nullopt : std::optional(context->second));
   };
   const auto done = [&] {
-    auto data = impl_->shared.lock();
+    auto data = impl.shared.lock();
     const auto context = data->elsewhere.find(exec_handle);
     if (context != data->elsewhere.end()) context->second = is_active_after(action, context->second);
   };
-  return callInTurn(rt::callback_of(action).data(), OutsideCall::is_mine(*this), refusal, function, done);
+  return in_turn(rt::callback_of(action).data(), refusal, function, done);
 }
 
 ReturnCode_t RTObject_impl::on_initialize() {
@@ -140,105 +184,74 @@ ReturnCode_t RTObject_impl::on_initialize() {
     return std::nullopt;
   };
   const auto done = [this] { impl_->shared.lock()->was_initialized_from_outside = true; };
-  const auto initialize = [this] {
+  Callbacks callbacks(*this);
+  const auto initialize = [&] {
     if (auto faults = rt::ExecuteFaults::parse(property("fault.on_execute", ""))) {
       impl_->faults = std::move(*faults);
     } else {
       RTC_WARN(("%s", faults.error().message.c_str()));
     }
-    m_actionListeners.preaction_[PRE_ON_INITIALIZE].notify(0);
-    const ReturnCode_t code = onInitialize();
-    const std::string active = property("configuration.active_config", "default");
-    if (!m_configsets.activateConfigurationSet(active.c_str())) m_configsets.activateConfigurationSet("default");
-    m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_INITIALIZE].notify(0, code);
-    return code;
+    return callbacks.heard(PRE_ON_INITIALIZE, 0, [this] {
+      const ReturnCode_t code = onInitialize();
+      const std::string active = property("configuration.active_config", "default");
+      if (!m_configsets.activateConfigurationSet(active.c_str())) m_configsets.activateConfigurationSet("default");
+      m_configsets.update();
+      return code;
+    });
   };
-  return callInTurn("onInitialize", OutsideCall::is_mine(*this), refusal, initialize, done);
+  return callbacks.in_turn("onInitialize", refusal, initialize, done);
 }
 
 ReturnCode_t RTObject_impl::on_finalize() {
+  Callbacks callbacks(*this);
   const auto refusal = [] { return std::optional<std::string>("the runtime calls it when the component ends; exit ends one"); };
-  const auto finalize = [this] {
-    m_actionListeners.preaction_[PRE_ON_FINALIZE].notify(0);
-    const ReturnCode_t code = onFinalize();
-    m_actionListeners.postaction_[POST_ON_FINALIZE].notify(0, code);
-    return code;
-  };
-  return callInTurn("onFinalize", OutsideCall::is_mine(*this), refusal, finalize, [] {});
+  const auto finalize = [&] { return callbacks.heard(PRE_ON_FINALIZE, 0, [this] { return onFinalize(); }); };
+  return callbacks.in_turn("onFinalize", refusal, finalize, [] {});
 }
 
 ReturnCode_t RTObject_impl::on_startup(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::startup, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_STARTUP].notify(exec_handle);
-    const ReturnCode_t code = onStartup(exec_handle);
-    m_actionListeners.postaction_[POST_ON_STARTUP].notify(exec_handle, code);
-    return code;
-  });
+  return Callbacks(*this).call(rt::Action::startup, exec_handle, [&] { return onStartup(exec_handle); });
 }
 
 ReturnCode_t RTObject_impl::on_shutdown(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::shutdown, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_SHUTDOWN].notify(exec_handle);
-    const ReturnCode_t code = onShutdown(exec_handle);
-    m_actionListeners.postaction_[POST_ON_SHUTDOWN].notify(exec_handle, code);
-    return code;
-  });
+  return Callbacks(*this).call(rt::Action::shutdown, exec_handle, [&] { return onShutdown(exec_handle); });
 }
 
 ReturnCode_t RTObject_impl::on_activated(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::activated, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_ACTIVATED].notify(exec_handle);
+  return Callbacks(*this).call(rt::Action::activated, exec_handle, [&] {
     m_configsets.update();
     const ReturnCode_t code = onActivated(exec_handle);
     activatePorts(exec_handle);
-    m_actionListeners.postaction_[POST_ON_ACTIVATED].notify(exec_handle, code);
     return code;
   });
 }
 
 ReturnCode_t RTObject_impl::on_deactivated(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::deactivated, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_DEACTIVATED].notify(exec_handle);
+  return Callbacks(*this).call(rt::Action::deactivated, exec_handle, [&] {
     deactivatePorts(exec_handle);
-    const ReturnCode_t code = onDeactivated(exec_handle);
-    m_actionListeners.postaction_[POST_ON_DEACTIVATED].notify(exec_handle, code);
-    return code;
+    return onDeactivated(exec_handle);
   });
 }
 
 ReturnCode_t RTObject_impl::on_aborting(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::aborting, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_ABORTING].notify(exec_handle);
-    const ReturnCode_t code = onAborting(exec_handle);
-    m_actionListeners.postaction_[POST_ON_ABORTING].notify(exec_handle, code);
-    return code;
-  });
+  return Callbacks(*this).call(rt::Action::aborting, exec_handle, [&] { return onAborting(exec_handle); });
 }
 
 ReturnCode_t RTObject_impl::on_error(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::error, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_ERROR].notify(exec_handle);
+  return Callbacks(*this).call(rt::Action::error, exec_handle, [&] {
     const ReturnCode_t code = onError(exec_handle);
     m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_ERROR].notify(exec_handle, code);
     return code;
   });
 }
 
 ReturnCode_t RTObject_impl::on_reset(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::reset, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_RESET].notify(exec_handle);
-    const ReturnCode_t code = onReset(exec_handle);
-    m_actionListeners.postaction_[POST_ON_RESET].notify(exec_handle, code);
-    return code;
-  });
+  return Callbacks(*this).call(rt::Action::reset, exec_handle, [&] { return onReset(exec_handle); });
 }
 
 ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::execute, exec_handle, [&] {
-    if (base::tick_in_lock_step()) m_configsets.update();  // at the edge that all ticks of one time have in common
-    m_actionListeners.preaction_[PRE_ON_EXECUTE].notify(exec_handle);
+  Callbacks callbacks(*this);
+  const auto execute = [&] {
     bool reads = false, writes = false;
     {
       auto data = impl_->shared.lock();
@@ -248,28 +261,24 @@ ReturnCode_t RTObject_impl::on_execute(ExecutionContextHandle_t exec_handle) {
     if (reads) readAll();
     const ReturnCode_t code = impl_->faults && impl_->faults->strike() ? RTC_ERROR : onExecute(exec_handle);
     if (writes) writeAll();
-    m_actionListeners.postaction_[POST_ON_EXECUTE].notify(exec_handle, code);
     return code;
+  };
+  return callbacks.alone(rt::Action::execute, exec_handle, [&] {
+    if (base::tick_in_lock_step()) m_configsets.update();  // at the edge that all ticks of one time have in common
+    return callbacks.heard(PRE_ON_EXECUTE, exec_handle, execute);
   });
 }
 
 ReturnCode_t RTObject_impl::on_state_update(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::state_update, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_STATE_UPDATE].notify(exec_handle);
+  return Callbacks(*this).call(rt::Action::state_update, exec_handle, [&] {
     const ReturnCode_t code = onStateUpdate(exec_handle);
     if (!base::tick_in_lock_step()) m_configsets.update();
-    m_actionListeners.postaction_[POST_ON_STATE_UPDATE].notify(exec_handle, code);
     return code;
   });
 }
 
 ReturnCode_t RTObject_impl::on_rate_changed(ExecutionContextHandle_t exec_handle) {
-  return callAction(rt::Action::rate_changed, exec_handle, [&] {
-    m_actionListeners.preaction_[PRE_ON_RATE_CHANGED].notify(exec_handle);
-    const ReturnCode_t code = onRateChanged(exec_handle);
-    m_actionListeners.postaction_[POST_ON_RATE_CHANGED].notify(exec_handle, code);
-    return code;
-  });
+  return Callbacks(*this).call(rt::Action::rate_changed, exec_handle, [&] { return onRateChanged(exec_handle); });
 }
 
 std::vector<RTObject_impl::RunningCallback> RTObject_impl::runningCallbacks() const {

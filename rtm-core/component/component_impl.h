@@ -80,14 +80,14 @@ struct RTObject_impl::Impl {
 
   base::Guarded<Data, base::Rank::component> shared;
   // Held while the runtime reads or writes m_properties and profile_, which are the author's and no members of ours.
-  base::Turn<base::Rank::registry> properties_turn;
+  base::Turn<base::Rank::profile> properties_turn;
   SdoServiceAdmin services;
   // Of the context that the component joined last; for time stamps.
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
   rt::CallbackGate gate;                      // all callbacks pass it
   RefusalLog refusals;
-  base::Guarded<std::thread, base::Rank::registry> exiter;  // runs exit() when a callback asked for it
+  base::Guarded<std::thread, base::Rank::tasks> exiter;  // runs exit() when a callback asked for it
 };
 
 inline constexpr ExecutionContextHandle_t foreign_offset = 1000;

@@ -244,46 +244,50 @@ RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject
   return onRemovedComponent(comp);
 }
 
-RTC::ReturnCode_t ExecutionContextBase::activateComponent(RTC::LightweightRTObject_ptr comp) {
+// One that callers ask for, with the hooks of contexts that derive from this one.
+struct ExecutionContextBase::Transition {
+  using Machine = RTC_impl::RTObjectStateMachine;
+  rt::Event event;
+  RTC::ReturnCode_t (ExecutionContextBase::*before)(RTC::LightweightRTObject_ptr);
+  RTC::ReturnCode_t (ExecutionContextBase::*waiting)(Machine*, long int);
+  RTC::ReturnCode_t (ExecutionContextBase::*after)(Machine*, long int);
+  std::atomic<bool> ExecutionContextBase::*is_waited_for;
+  std::chrono::nanoseconds Impl::Data::*timeout;
+};
+
+RTC::ReturnCode_t ExecutionContextBase::make(const Transition& transition, RTC::LightweightRTObject_ptr comp) {
   const auto member = impl_->find(comp);
   if (!member) return RTC::BAD_PARAMETER;
-  if (const auto code = onActivating(comp); code != RTC::RTC_OK) return code;
-  if (const auto code = impl_->context.request(member->id, rt::Event::activate); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const auto timeout = impl_->shared.lock()->activation;
+  if (const auto code = (this->*transition.before)(comp); code != RTC::RTC_OK) return code;
+  if (const auto code = impl_->context.request(member->id, transition.event); code != rt::ReturnCode::ok) return corba::to_wire(code);
+  const auto timeout = (*impl_->shared.lock()).*transition.timeout;
   RTC_impl::RTObjectStateMachine* machine = member->machine.get();
-  if (!m_syncActivation) return onActivated(machine, 0);
+  if (!(this->*transition.is_waited_for)) return (this->*transition.after)(machine, 0);
   if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
-  if (const auto code = onWaitingActivated(machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::activate, timeout);
-  return code == rt::ReturnCode::ok ? onActivated(machine, 1) : corba::to_wire(code);
+  if (const auto code = (this->*transition.waiting)(machine, 0); code != RTC::RTC_OK) return code;
+  const auto code = impl_->context.wait(member->id, transition.event, timeout);
+  return code == rt::ReturnCode::ok ? (this->*transition.after)(machine, 1) : corba::to_wire(code);
+}
+
+RTC::ReturnCode_t ExecutionContextBase::activateComponent(RTC::LightweightRTObject_ptr comp) {
+  using Context = ExecutionContextBase;
+  return make({rt::Event::activate, &Context::onActivating, &Context::onWaitingActivated, &Context::onActivated, &Context::m_syncActivation,
+               &Impl::Data::activation},
+              comp);
 }
 
 RTC::ReturnCode_t ExecutionContextBase::deactivateComponent(RTC::LightweightRTObject_ptr comp) {
-  const auto member = impl_->find(comp);
-  if (!member) return RTC::BAD_PARAMETER;
-  if (const auto code = onDeactivating(comp); code != RTC::RTC_OK) return code;
-  if (const auto code = impl_->context.request(member->id, rt::Event::deactivate); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const auto timeout = impl_->shared.lock()->deactivation;
-  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
-  if (!m_syncDeactivation) return onDeactivated(machine, 0);
-  if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
-  if (const auto code = onWaitingDeactivated(machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::deactivate, timeout);
-  return code == rt::ReturnCode::ok ? onDeactivated(machine, 1) : corba::to_wire(code);
+  using Context = ExecutionContextBase;
+  return make({rt::Event::deactivate, &Context::onDeactivating, &Context::onWaitingDeactivated, &Context::onDeactivated,
+               &Context::m_syncDeactivation, &Impl::Data::deactivation},
+              comp);
 }
 
 RTC::ReturnCode_t ExecutionContextBase::resetComponent(RTC::LightweightRTObject_ptr comp) {
-  const auto member = impl_->find(comp);
-  if (!member) return RTC::BAD_PARAMETER;
-  if (const auto code = onResetting(comp); code != RTC::RTC_OK) return code;
-  if (const auto code = impl_->context.request(member->id, rt::Event::reset); code != rt::ReturnCode::ok) return corba::to_wire(code);
-  const auto timeout = impl_->shared.lock()->reset;
-  RTC_impl::RTObjectStateMachine* machine = member->machine.get();
-  if (!m_syncReset) return onReset(machine, 0);
-  if (impl_->is_waited_for_by_callback(*member)) return RTC::RTC_OK;
-  if (const auto code = onWaitingReset(machine, 0); code != RTC::RTC_OK) return code;
-  const auto code = impl_->context.wait(member->id, rt::Event::reset, timeout);
-  return code == rt::ReturnCode::ok ? onReset(machine, 1) : corba::to_wire(code);
+  using Context = ExecutionContextBase;
+  return make(
+      {rt::Event::reset, &Context::onResetting, &Context::onWaitingReset, &Context::onReset, &Context::m_syncReset, &Impl::Data::reset},
+      comp);
 }
 
 RTC::LifeCycleState ExecutionContextBase::getComponentState(RTC::LightweightRTObject_ptr comp) const {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "corba/members/remote_participant.h"
 #include "corba/orb/asker.h"
 #include "corba/orb/orb.h"
@@ -82,7 +83,7 @@ class NamedContexts {
     ExecutionContextBase* context;
     int owners;
   };
-  base::Guarded<std::vector<Entry>, base::Rank::registry> entries_;
+  base::Guarded<std::vector<Entry>, base::Rank::objects> entries_;
 };
 
 std::chrono::nanoseconds left_until(std::chrono::steady_clock::time_point deadline) {
@@ -90,8 +91,8 @@ std::chrono::nanoseconds left_until(std::chrono::steady_clock::time_point deadli
 }
 
 // Contexts whose owners are gone, but not the callback that one of their threads is in.
-base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry>& left_contexts() {
-  static base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::registry> contexts;
+base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects>& left_contexts() {
+  static base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects> contexts;
   return contexts;
 }
 
@@ -198,12 +199,12 @@ std::vector<std::shared_ptr<ExecutionContextBase>> RTObject_impl::localContexts(
 
 void RTObject_impl::askToRest() {
   const RTObject_var self = getObjRef();
-  for (const auto& context : localContexts()) context->askToRest(self);
+  for (const auto& context : localContexts()) RuntimeAccess::ask_to_rest(*context, self);
 }
 
 void RTObject_impl::comeToRest(std::chrono::steady_clock::time_point deadline) {
   const RTObject_var self = getObjRef();
-  for (const auto& context : localContexts()) context->calmComponent(self, deadline);
+  for (const auto& context : localContexts()) RuntimeAccess::calm(*context, self, deadline);
   waitForCallbacks(deadline);
 }
 
@@ -216,7 +217,7 @@ void RTObject_impl::leaveContexts(std::chrono::steady_clock::time_point deadline
   for (const ExecutionContext_var& reference : foreign) {
     if (CORBA::is_nil(reference)) continue;
     if (const auto context = findLocalContext(reference)) {
-      context->removeComponent(self, deadline);
+      RuntimeAccess::remove(*context, self, deadline);
       continue;
     }
     if (calls.are_over()) continue;
@@ -238,12 +239,12 @@ void RTObject_impl::finalizeContexts(std::chrono::steady_clock::time_point deadl
   const bool is_held = isHeldByCallback();
   for (ExecutionContextBase* context : contexts) {
     const bool is_last = NamedContexts::instance().release(context);
-    if (is_held || !is_last) context->unbindComponent(this, is_held ? std::chrono::nanoseconds(0) : left_until(deadline));
+    if (is_held || !is_last) RuntimeAccess::unbind(*context, this, is_held ? std::chrono::nanoseconds(0) : left_until(deadline));
     if (!is_last) continue;
-    const bool has_failed = context->stopBy(deadline) == RTC_ERROR;
-    const bool is_quiet = !has_failed && context->waitForQuiet(left_until(deadline));
-    context->unbindComponent(this, std::chrono::nanoseconds(0));
-    context->dismissMembers();
+    const bool has_failed = RuntimeAccess::stop_by(*context, deadline) == RTC_ERROR;
+    const bool is_quiet = !has_failed && RuntimeAccess::wait_for_quiet(*context, left_until(deadline));
+    RuntimeAccess::unbind(*context, this, std::chrono::nanoseconds(0));
+    RuntimeAccess::dismiss_members(*context);
     if (is_quiet)
       destroyExecutionContext(context);
     else
@@ -268,7 +269,7 @@ void RTObject_impl::chooseClock() {
       if (!CORBA::is_nil(context)) chosen = context;
   }
   const auto context = CORBA::is_nil(chosen) ? nullptr : findLocalContext(chosen);
-  impl_->clock->follow(context ? context->sharedClock() : nullptr);
+  impl_->clock->follow(context ? RuntimeAccess::shared_clock(*context) : nullptr);
 }
 
 bool RTObject_impl::destroyLeftContexts() {
@@ -276,7 +277,7 @@ bool RTObject_impl::destroyLeftContexts() {
   std::vector<ExecutionContextBase*> contexts;
   contexts.swap(*left_contexts().lock());
   std::erase_if(contexts, [](ExecutionContextBase* context) {
-    if (!context->waitForQuiet(std::chrono::nanoseconds(0))) return false;
+    if (!RuntimeAccess::wait_for_quiet(*context, std::chrono::nanoseconds(0))) return false;
     context->stop();
     destroyExecutionContext(context);
     return true;

@@ -20,6 +20,7 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "base/tick.h"
+#include "component/runtime_access.h"
 #include "corba/members/courier.h"
 #include "corba/orb/orb.h"
 
@@ -171,7 +172,7 @@ class Link {
   corba::Courier courier_;
   const Send send_;
   const std::set<Kind> observed_;
-  base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::buffer> last_told_;
+  base::Guarded<std::map<std::string, std::chrono::steady_clock::time_point>, base::Rank::queue> last_told_;
 };
 
 template <class Base, class Function, class... Args>
@@ -255,7 +256,7 @@ class SampleListeners {
     bool has_left = false;
   };
   const SampleIntervals intervals_;
-  base::Guarded<Data, base::Rank::registry> shared_;
+  base::Guarded<Data, base::Rank::peers> shared_;
 };
 
 // The listeners of one observer at one component.
@@ -380,19 +381,13 @@ class Listeners {
   }
 
   void listen_to_status() {
-    const int number = component_.addStatusListener([link = link_](RTObject_impl::Status status, const std::string& hint) {
-      switch (status) {
-        case RTObject_impl::Status::component_profile:
-          return link->tell(Kind::component_profile, hint);
-        case RTObject_impl::Status::fsm_profile:
-          return link->tell(Kind::fsm_profile, hint);
-        case RTObject_impl::Status::fsm_structure:
-          return link->tell(Kind::fsm_structure, hint);
-        case RTObject_impl::Status::user_defined:
-          return link->tell(Kind::user_defined, hint);
-      }
-    });
-    undo_.push_back([this, number] { component_.removeStatusListener(number); });
+    // By RTObject_impl::Status.
+    static constexpr std::array kinds{Kind::component_profile, Kind::fsm_profile, Kind::fsm_structure, Kind::user_defined};
+    const auto tell = [link = link_](RTObject_impl::Status status, const std::string& hint) {
+      link->tell(kinds.at(static_cast<std::size_t>(status)), hint);
+    };
+    const int number = RuntimeAccess::add_status_listener(component_, tell);
+    undo_.push_back([this, number] { RuntimeAccess::remove_status_listener(component_, number); });
   }
 
   RTObject_impl& component_;

@@ -90,7 +90,7 @@ class RefusalLog {
     std::optional<std::chrono::steady_clock::time_point> last{};
     std::uint64_t left_out = 0;
   };
-  base::Guarded<State, base::Rank::buffer> state_;
+  base::Guarded<State, base::Rank::callbacks> state_;
 };
 
 }  // namespace RTC

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "component/runtime_access.h"
+
 namespace RTC {
 
 std::string RTObject_impl::portNameOf(const std::string& name) const {
@@ -30,8 +32,8 @@ bool RTObject_impl::addPort(Port port) {
     port.local->setOwner(self);
     port.local->init(properties);
     port.local->setPortConnectListenerHolder(&m_portconnListeners);
-    if (port.in) port.in->setClock(impl_->clock);
-    if (port.out) port.out->setClock(impl_->clock);
+    if (port.in) RuntimeAccess::set_clock(*port.in, impl_->clock);
+    if (port.out) RuntimeAccess::set_clock(*port.out, impl_->clock);
     port.reference = PortService::_duplicate(port.local->getPortRef());
   }
   PortProfile profile;

@@ -83,7 +83,7 @@ class CallbackGate {
     std::size_t remote_waiting = 0;
     bool is_closed_to_remote = false;
   };
-  using Shared = base::Guarded<State, base::Rank::buffer>;
+  using Shared = base::Guarded<State, base::Rank::callbacks>;
 
   static bool is_free(const State& state);
   static bool has_given_up(const State& state);

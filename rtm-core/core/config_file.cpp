@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "base/guarded.h"
 #include "base/text.h"
 
 namespace rt {
@@ -142,6 +143,7 @@ ConfigText parse_config(std::string_view text) {
 }
 
 base::Result<std::string> read_text_file(const std::string& path) {
+  base::expect_no_data_held();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (error || !std::filesystem::exists(status)) return base::Error{"file " + base::in_quotes(path) + ": does not exist"};

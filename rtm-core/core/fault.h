@@ -43,7 +43,7 @@ class FaultyLink {
   };
   void delay(State& state, std::chrono::nanoseconds now, std::vector<Sample>& out) const;
   const std::vector<Fault> faults_;
-  base::Guarded<State, base::Rank::buffer> state_;
+  base::Guarded<State, base::Rank::details> state_;
 };
 
 }  // namespace rt

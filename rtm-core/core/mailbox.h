@@ -123,7 +123,7 @@ class Mailbox {
   };
 
   const std::size_t most_octets_;
-  mutable base::Guarded<State, base::Rank::buffer> state_;
+  mutable base::Guarded<State, base::Rank::samples> state_;
   std::condition_variable arrived_;
   std::condition_variable freed_;
 };

@@ -217,7 +217,7 @@ struct Publisher::Work : std::enable_shared_from_this<Publisher::Work> {
   const Hooks hooks;
   const SteadyTime& time;
   const Point made = time.now();
-  base::Guarded<State, base::Rank::buffer> state;
+  base::Guarded<State, base::Rank::queue> state;
   std::condition_variable changed;
   std::condition_variable room;
 };

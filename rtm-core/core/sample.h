@@ -50,7 +50,7 @@ class BlockPool : public std::enable_shared_from_this<BlockPool> {
   BlockPool() = default;
   void give_back(Block* block);
 
-  base::Guarded<Kept, base::Rank::registry> kept_;
+  base::Guarded<Kept, base::Rank::memory> kept_;
 };
 
 enum class ByteOrder { little, big };

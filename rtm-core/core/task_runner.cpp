@@ -40,7 +40,7 @@ struct TaskRunner::Impl {
   };
   std::string name;
   const SteadyTime& time;
-  base::Guarded<State, base::Rank::registry> shared;
+  base::Guarded<State, base::Rank::tasks> shared;
   std::condition_variable changed;
   std::shared_ptr<void> jump;
   std::thread thread;

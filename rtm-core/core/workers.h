@@ -80,7 +80,7 @@ class PeriodicWorker {
   ExecutionContext& context_;
   Steps& steps_;
   const SteadyTime& time_;
-  base::Guarded<Data, base::Rank::buffer> shared_;
+  base::Guarded<Data, base::Rank::worker> shared_;
   Alarm alarm_;
   SteadyTime::Point cycle_{};           // when the present cycle should have begun; run() only
   std::chrono::nanoseconds waited_{0};  // by this thread, before it; run() only
@@ -120,7 +120,7 @@ class TriggeredWorker {
 
   ExecutionContext& context_;
   Steps& steps_;
-  base::Guarded<Data, base::Rank::buffer> shared_;
+  base::Guarded<Data, base::Rank::worker> shared_;
   std::condition_variable condition_;
   std::condition_variable cycles_;  // for those who wait for the end of one
 };
@@ -146,7 +146,7 @@ class Crew {
 
   std::function<void(std::size_t, int)> work_;
   std::vector<std::thread> threads_;
-  base::Guarded<Data, base::Rank::buffer> shared_;
+  base::Guarded<Data, base::Rank::worker> shared_;
   std::condition_variable begins_, done_;
 };
 
@@ -170,7 +170,7 @@ class Turns {
   bool begin();
   void end();
 
-  base::Guarded<Data, base::Rank::buffer> shared_;
+  base::Guarded<Data, base::Rank::worker> shared_;
   std::condition_variable condition_;
 };
 

@@ -19,6 +19,7 @@
 #include <map>
 #include <thread>
 
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "core/config_file.h"
@@ -85,6 +86,7 @@ bool ends_until(pid_t child, steady_clock::time_point deadline) {
 // What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed. `start_error`: why it does not
 // start, or 0.
 std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience, int& start_error) {
+  base::expect_no_data_held();
   constexpr std::size_t longest = std::size_t{4} << 20;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
@@ -137,6 +139,7 @@ bool contains_stubs(const std::string& file) {
 
 // Of a library that is shorter than it says, the loader maps pages that are not there, and whoever touches them dies.
 bool is_cut_short(const std::string& file) {
+  base::expect_no_data_held();
   std::error_code error;
   const auto size = fs::file_size(file, error);
   std::ifstream in(file, std::ios::binary);
@@ -177,8 +180,8 @@ struct ModuleManager::Impl {
   };
 
   Manager* manager;
-  base::Guarded<std::vector<Module>, base::Rank::registry> modules;
-  base::Guarded<std::map<std::string, Profile>, base::Rank::registry> known_profiles;
+  base::Guarded<std::vector<Module>, base::Rank::objects> modules;
+  base::Guarded<std::map<std::string, Profile>, base::Rank::objects> known_profiles;
 
   std::vector<fs::path> load_path() const {
     std::vector<fs::path> folders;
@@ -319,6 +322,7 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
   if (function.empty()) function = impl_->init_function(file);
 
   if (is_cut_short(file)) return complain("is cut short");
+  base::expect_no_data_held();
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     const char* why = dlerror();

@@ -130,11 +130,13 @@ void ManagerServant::deactivate() {
 // --- who may do what
 
 // rtc.conf says it, and nobody over the wire.
-rt::RemoteRights ManagerServant::rights() const { return rt::parse_remote_rights(manager_.configValue("manager.remote_rights")); }
+bool ManagerServant::may_do_everything() const {
+  return rt::parse_remote_rights(manager_.configValue("manager.remote_rights")) == rt::RemoteRights::everything;
+}
 
-bool ManagerServant::may(rt::RemoteRights needed, const std::string& what) const {
-  const auto given = rights();
-  if (given >= needed) return true;
+bool ManagerServant::may_change(const std::string& what, bool needs_everything) const {
+  const auto given = rt::parse_remote_rights(manager_.configValue("manager.remote_rights"));
+  if (given >= (needs_everything ? rt::RemoteRights::everything : rt::RemoteRights::components)) return true;
   refuse(what, given == rt::RemoteRights::read ? "manager.remote_rights is read" : "manager.remote_rights is not everything");
   return false;
 }
@@ -147,7 +149,7 @@ void ManagerServant::refuse(const std::string& what, const std::string& why) con
 
 // Whoever may put a file somewhere would be this account. A module of the load path was put there by somebody who is.
 bool ManagerServant::may_load(const std::string& module, const std::string& what) const {
-  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || rights() == rt::RemoteRights::everything;
+  const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || may_do_everything();
   if (module.find('/') == std::string::npos || !corba::doors_are_open() || is_said) return true;
   refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
   return false;
@@ -155,16 +157,16 @@ bool ManagerServant::may_load(const std::string& module, const std::string& what
 
 bool ManagerServant::may_set(const std::string& key, const std::string& value, const std::string& what) const {
   const bool is_shown = corba::asker() != corba::Asker::own && rt::shows_environment(key, value);
-  return may(rt::is_protected_key(key) || is_shown ? rt::RemoteRights::everything : rt::RemoteRights::components, what);
+  return may_change(what, rt::is_protected_key(key) || is_shown);
 }
 
 RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* initfunc) {
   const std::string path(pathname);
   const std::string what = "the module " + base::in_quotes(path);
-  if (!may(rt::RemoteRights::components, what)) return RTC::RTC_ERROR;
+  if (!may_change(what)) return RTC::RTC_ERROR;
   if (!may_load(path, what)) return RTC::RTC_ERROR;
   const std::string suffix = manager_.configValue("manager.modules.init_func_suffix");
-  if (rights() != rt::RemoteRights::everything &&
+  if (!may_do_everything() &&
       !rt::is_init_function(path, initfunc, manager_.configValue("manager.modules.init_func_prefix"), suffix.empty() ? "Init" : suffix)) {
     refuse(what + " by the function " + base::in_quotes(initfunc), "no function that makes a module known has that name");
     return RTC::BAD_PARAMETER;
@@ -173,7 +175,7 @@ RTC::ReturnCode_t ManagerServant::load_module(const char* pathname, const char* 
 }
 
 RTC::ReturnCode_t ManagerServant::unload_module(const char* pathname) {
-  if (!may(rt::RemoteRights::components, "the end of module " + base::in_quotes(pathname))) return RTC::RTC_ERROR;
+  if (!may_change("the end of module " + base::in_quotes(pathname))) return RTC::RTC_ERROR;
   return manager_.unload(pathname);
 }
 
@@ -221,7 +223,7 @@ RTM::ModuleProfileList* ManagerServant::get_factory_profiles() {
 // Here, unless the argument names another manager: manager_address=host:port any, manager_name=instance name a slave. Slaves are also asked
 // for what cannot be made here.
 RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
-  if (!may(rt::RemoteRights::components, "the component " + base::in_quotes(module_name))) return RTC::RTObject::_nil();
+  if (!may_change("the component " + base::in_quotes(module_name))) return RTC::RTObject::_nil();
   const auto [argument, name, address] = take_manager(module_name);
   const auto wanted = rt::parse_component_argument(argument);
   for (const auto& [key, text] : wanted ? wanted->properties : decltype(wanted->properties){}) {
@@ -230,8 +232,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
   // A type that is not known yet is looked for as a module of that name.
   if (!may_load(argument.substr(0, argument.find('?')), "the component " + base::in_quotes(argument))) return RTC::RTObject::_nil();
   // The other one would see a caller of our account.
-  if (!address.empty() && corba::doors_are_open() && !may(rt::RemoteRights::everything, "a component at another manager"))
-    return RTC::RTObject::_nil();
+  if (!address.empty() && corba::doors_are_open() && !may_change("a component at another manager", true)) return RTC::RTObject::_nil();
   if (!address.empty()) {
     RTM::Manager_var other = manager_at(address);
     if (CORBA::is_nil(other)) {
@@ -262,7 +263,7 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
 }
 
 RTC::ReturnCode_t ManagerServant::delete_component(const char* instance_name) {
-  if (!may(rt::RemoteRights::components, "the end of component " + base::in_quotes(instance_name))) return RTC::RTC_ERROR;
+  if (!may_change("the end of component " + base::in_quotes(instance_name))) return RTC::RTC_ERROR;
   const auto code = manager_.deleteComponent(instance_name);
   if (code != RTC::BAD_PARAMETER) return code;
   const corba::ChainDeadline deadline(deletion_timeout);
@@ -369,7 +370,7 @@ RTC::ReturnCode_t ManagerServant::fork() { return RTC::RTC_OK; }
 RTC::ReturnCode_t ManagerServant::restart() { return RTC::RTC_OK; }
 
 RTC::ReturnCode_t ManagerServant::shutdown() {
-  if (!may(rt::RemoteRights::components, "the end of this process")) return RTC::RTC_ERROR;
+  if (!may_change("the end of this process")) return RTC::RTC_ERROR;
   manager_.terminate();
   return RTC::RTC_OK;
 }

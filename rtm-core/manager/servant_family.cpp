@@ -81,7 +81,7 @@ RTM::ManagerList* ManagerServant::get_master_managers() {
 }
 
 RTC::ReturnCode_t ManagerServant::add_master_manager(RTM::Manager_ptr mgr) {
-  return may(rt::RemoteRights::components, "another master") ? add_master(mgr) : RTC::RTC_ERROR;
+  return may_change("another master") ? add_master(mgr) : RTC::RTC_ERROR;
 }
 
 RTC::ReturnCode_t ManagerServant::add_master(RTM::Manager_ptr mgr) {
@@ -91,7 +91,7 @@ RTC::ReturnCode_t ManagerServant::add_master(RTM::Manager_ptr mgr) {
 }
 
 RTC::ReturnCode_t ManagerServant::remove_master_manager(RTM::Manager_ptr mgr) {
-  return may(rt::RemoteRights::components, "a master to be forgotten") ? remove_master(mgr) : RTC::RTC_ERROR;
+  return may_change("a master to be forgotten") ? remove_master(mgr) : RTC::RTC_ERROR;
 }
 
 RTC::ReturnCode_t ManagerServant::remove_master(RTM::Manager_ptr mgr) {
@@ -105,7 +105,7 @@ RTM::ManagerList* ManagerServant::get_slave_managers() { return to_list(living_s
 
 // A manager asks its slaves for theirs: one that is above this one already would be asked without end.
 RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
-  if (!may(rt::RemoteRights::components, "another slave")) return RTC::RTC_ERROR;
+  if (!may_change("another slave")) return RTC::RTC_ERROR;
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
   {
     const std::scoped_lock lock(mutex_);
@@ -120,7 +120,7 @@ RTC::ReturnCode_t ManagerServant::add_slave_manager(RTM::Manager_ptr mgr) {
 }
 
 RTC::ReturnCode_t ManagerServant::remove_slave_manager(RTM::Manager_ptr mgr) {
-  if (!may(rt::RemoteRights::components, "a slave to be forgotten")) return RTC::RTC_ERROR;
+  if (!may_change("a slave to be forgotten")) return RTC::RTC_ERROR;
   if (CORBA::is_nil(mgr)) return RTC::BAD_PARAMETER;
   answers(mgr);  // one that has died may go as well
   const std::scoped_lock lock(mutex_);

@@ -1,6 +1,7 @@
 #include "openrtm/data_port_core.h"
 
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "openrtm/data_port_support.h"
 #include "openrtm/interface_plugins.h"
 #include "openrtm/serializer_codec.h"
@@ -16,20 +17,20 @@ class ListenerEvents final : public corba::ConnectorEvents {
  public:
   // The listeners live as long as the connector.
   explicit ListenerEvents(std::shared_ptr<ConnectorBase> connector)
-      : connector_(std::move(connector)), listeners_(connector_->listeners()) {}
+      : connector_(std::move(connector)), listeners_(RuntimeAccess::listeners(*connector_)) {}
 
   ConnectorBase& connector() const { return *connector_; }
 
   bool is_observed(corba::DataEvent event) const override { return !listeners_.connectorData_[static_cast<int>(event)].isEmpty(); }
   void on_data(corba::DataEvent event, corba::EventData& data) override {
-    const auto current = connector_->info();
+    const auto current = RuntimeAccess::info(*connector_);
     bool info_changed = false;  // in place: it is the connection's own
     listeners_.connectorData_[static_cast<int>(event)].notify(*current, data, info_changed);
   }
   void on_event(corba::ConnectorEvent event) override {
     auto& holder = listeners_.connector_[static_cast<int>(event)];
     if (holder.isEmpty()) return;
-    const auto current = connector_->info();
+    const auto current = RuntimeAccess::info(*connector_);
     bool info_changed = false;
     holder.notify(*current, info_changed);
   }
@@ -77,9 +78,9 @@ ReturnCode_t DataPortCore::connect(const PortBase& owner, std::shared_ptr<Connec
     return static_cast<ReturnCode_t>(refusal.code);
   }
   for (const auto& connected : port_->connected()) {
-    if (connected.events == events) connector->getBuffer()->show(connected.waiting, settings.buffer.length);
+    if (connected.events == events) RuntimeAccess::show(*connector->getBuffer(), connected.waiting, settings.buffer.length);
   }
-  if (is_provider) connector->setInfo(info(profile, properties));
+  if (is_provider) RuntimeAccess::set_info(*connector, info(profile, properties));
   events->on_event(corba::ConnectorEvent::connect);
   return RTC_OK;
 }

@@ -56,7 +56,7 @@ class DataPortCore {
   const std::unique_ptr<corba::DataPort> port_;
   const Serializers& serializers_;
   const std::shared_ptr<ConnectorListeners> listeners_ = std::make_shared<ConnectorListeners>();
-  base::Guarded<std::shared_ptr<const base::Clock>, base::Rank::buffer> clock_;
+  base::Guarded<std::shared_ptr<const base::Clock>, base::Rank::details> clock_;
 };
 
 }  // namespace RTC::detail

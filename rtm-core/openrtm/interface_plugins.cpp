@@ -5,6 +5,7 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "corba/transport/payload.h"
 #include "rtm/InPortConsumer.h"
 #include "rtm/InPortProvider.h"
@@ -189,12 +190,12 @@ class AuthorCarrier final : public corba::Carrier {
   }
 
   std::shared_ptr<void> serve(std::weak_ptr<corba::Receiver> receiver, ConnectorProfile& profile) override {
-    static_cast<InPortConnector&>(*connector_).serve(std::move(receiver), order_ == rt::ByteOrder::little);
+    RuntimeAccess::serve(static_cast<InPortConnector&>(*connector_), receiver, order_ == rt::ByteOrder::little);
     return published<InPortProvider, InPortConnector>(profile);
   }
 
   std::shared_ptr<void> serve(std::weak_ptr<corba::Source> source, ConnectorProfile& profile) override {
-    static_cast<OutPortConnector&>(*connector_).serve(std::move(source), order_ == rt::ByteOrder::little);
+    RuntimeAccess::serve(static_cast<OutPortConnector&>(*connector_), source, order_ == rt::ByteOrder::little);
     return published<OutPortProvider, OutPortConnector>(profile);
   }
 
@@ -203,7 +204,7 @@ class AuthorCarrier final : public corba::Carrier {
   void introduce(End& end) {
     ConnectorInfo info = connector_->profile();
     end.setBuffer(connector_->getBuffer());
-    end.setListener(info, &connector_->listeners());
+    end.setListener(info, &RuntimeAccess::listeners(*connector_));
   }
 
   template <class Consumer, class Introduce>

@@ -106,7 +106,7 @@ class SerializerCodec final : public corba::Codec {
   const std::string name_;
   const coil::Properties connection_;
   const std::shared_ptr<rt::BlockPool> pool_ = rt::BlockPool::make();
-  base::Guarded<std::vector<Stream>, base::Rank::registry> free_;
+  base::Guarded<std::vector<Stream>, base::Rank::memory> free_;
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ class WorkerPool {
     std::size_t next = 0, count = 0, running = 0;
     bool is_ending = false;
   };
-  base::Guarded<Parts, base::Rank::buffer> parts_;
+  base::Guarded<Parts, base::Rank::worker> parts_;
   std::condition_variable started_, finished_;
   Sharing sharing_;
   std::vector<std::thread> workers_;

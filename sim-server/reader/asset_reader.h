@@ -199,7 +199,7 @@ class AssetShelf {
 
   static constexpr std::size_t most_entries = 4096;
   std::size_t most_bytes_;
-  base::Guarded<State, base::Rank::registry> state_;
+  base::Guarded<State, base::Rank::objects> state_;
 };
 
 }  // namespace sim

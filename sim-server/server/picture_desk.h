@@ -58,7 +58,7 @@ class PictureDesk {
   std::function<void()> on_done_;
   std::size_t under_way_ = 0;
   std::unique_ptr<Renderer> renderer_;  // the thread's; opened with the first picture
-  base::Guarded<State, base::Rank::buffer> state_;
+  base::Guarded<State, base::Rank::queue> state_;
   std::condition_variable changed_;
   std::jthread thread_;  // last: ends before what it uses
 };

@@ -65,7 +65,7 @@ class SpawnDesk {
 
   std::function<void()> on_done_;
   std::size_t under_way_ = 0;
-  base::Guarded<State, base::Rank::buffer> state_;
+  base::Guarded<State, base::Rank::queue> state_;
   std::condition_variable changed_;
   std::jthread thread_;  // last: ends before what it uses
 };

@@ -2,7 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/beneath.h"
+#include "base/child_process.h"
+#include "base/content_hash.h"
+#include "base/hash_log.h"
+#include "base/peer_account.h"
+#include "base/plain_file.h"
+#include "base/whole_file.h"
 
 namespace base {
 namespace {
@@ -94,6 +106,49 @@ TEST(GuardedDeathTest, a_call_to_others_while_data_is_held_is_found) {
         expect_no_data_held();
       },
       "data is held");
+}
+
+// Operations that may wait for a disk, another process or the kernel's tables.
+const std::vector<std::pair<std::string, std::function<void()>>>& slow_operations() {
+  const std::string none = "/nowhere/none";
+  static const std::vector<std::pair<std::string, std::function<void()>>> all = {
+      {"write_whole_file", [=] { static_cast<void>(write_whole_file(none, "")); }},
+      {"read_plain_file", [=] { static_cast<void>(read_plain_file(none, 1)); }},
+      {"is_plain_file", [=] { static_cast<void>(is_plain_file(none)); }},
+      {"read_beneath", [=] { static_cast<void>(read_beneath("/nowhere", "none", 1)); }},
+      {"check_regular_file", [=] { static_cast<void>(check_regular_file(none)); }},
+      {"ContentHash::add_file", [=] { static_cast<void>(ContentHash().add_file(none)); }},
+      {"HashLogWriter::create", [=] { static_cast<void>(HashLogWriter::create(none)); }},
+      {"HashLogReader::open", [=] { static_cast<void>(HashLogReader::open(none)); }},
+      {"account_of",
+       [] {
+         static_cast<void>(account_of(TcpEnd{"127.0.0.1", 1}, TcpEnd{"127.0.0.1", 2}));
+       }},
+      {"ChildProcess::start",
+       [=] {
+         static_cast<void>(editor::ChildProcess::start({{none}, {}}));
+       }},
+  };
+  return all;
+}
+
+TEST(GuardedDeathTest, a_file_or_a_process_that_is_used_while_data_is_held_is_found) {
+  Guarded<int, Rank::component> data(0);
+  for (const auto& [name, operation] : slow_operations()) {
+    EXPECT_DEATH(
+        {
+          auto lock = data.lock();
+          operation();
+        },
+        "data is held")
+        << name;
+  }
+}
+
+TEST(Turn, leaves_the_thread_free_to_use_files) {
+  Turn<> turn;
+  const auto mine = turn.take();
+  EXPECT_FALSE(read_plain_file("/nowhere/none", 1));
 }
 
 TEST(TurnDeathTest, a_turn_that_is_taken_while_data_is_held_is_found) {

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "component/runtime_access.h"
 #include "corba/orb/orb.h"
 
 namespace {
@@ -53,7 +54,7 @@ class Empty final : public RTC::DataFlowComponentBase {
     if (begins.size() < begins.capacity()) begins.push_back(Clock::now());
     return RTC::RTC_OK;
   }
-  RTC::ExecutionContextBase& context() { return *getOwnContexts().at(0); }
+  RTC::ExecutionContextBase& context() { return *RTC::RuntimeAccess::own_contexts(*this).at(0); }
   std::uint64_t statistic(const char* name) {
     const RTC::ExecutionContextProfile_var profile = context().getProfile();
     return std::strtoull(NVUtil::toString(profile->properties, name).c_str(), nullptr, 10);

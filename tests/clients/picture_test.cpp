@@ -16,6 +16,10 @@ RTC::CameraImage image(const char* format, int bits, std::vector<unsigned char> 
   return result;
 }
 
+std::string problem;
+
+std::optional<Picture> to_picture(const RTC::CameraImage& image) { return video::to_picture(image, problem); }
+
 TEST(Picture, every_order_of_colours_becomes_rgb) {
   const std::vector<unsigned char> wanted = {1, 2, 3, 4, 5, 6};
   EXPECT_EQ(to_picture(image("RGB8", 24, {1, 2, 3, 4, 5, 6}))->rgb, wanted);
@@ -36,23 +40,40 @@ TEST(Picture, near_things_are_bright_in_depth_images) {
   const float depths[2] = {1, 10};
   std::copy_n(reinterpret_cast<const unsigned char*>(depths), sizeof depths, pixels.begin());
   const auto picture = to_picture(image("DEPTH32F", 32, pixels));
-  ASSERT_TRUE(picture.ok());
+  ASSERT_TRUE(picture) << problem;
   EXPECT_GT(picture->rgb[0], picture->rgb[3]);
 }
 
 TEST(Picture, images_that_do_not_fit_their_size_are_refused_with_both_numbers) {
-  const auto short_one = to_picture(image("RGB8", 24, {1, 2, 3}));
-  ASSERT_FALSE(short_one.ok());
-  EXPECT_NE(short_one.error().message.find("6 bytes, got 3"), std::string::npos) << short_one.error().message;
-  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 0, 0)).ok());
-  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 65535, 65535)).ok());
-  EXPECT_FALSE(to_picture(image("RGB8", 24, std::vector<unsigned char>(65535 * 3), 65535, 1)).ok());
-  EXPECT_FALSE(to_picture(image("BAYER_RGBG8", 8, {1, 2})).ok());
-  EXPECT_FALSE(to_picture(image("", 0, {1, 2, 3})).ok());
-  EXPECT_FALSE(to_picture(image("", 12, {1, 2, 3})).ok());
-  EXPECT_FALSE(to_picture(image("HSV", 24, {1, 2, 3, 4, 5, 6})).ok());
-  EXPECT_FALSE(to_picture(image("JPEG", 24, {1, 2, 3, 4, 5, 6})).ok());
-  EXPECT_FALSE(to_picture(image("JPEG", 24, {})).ok());
+  ASSERT_FALSE(to_picture(image("RGB8", 24, {1, 2, 3})));
+  EXPECT_NE(problem.find("6 bytes, got 3"), std::string::npos) << problem;
+  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 0, 0)));
+  EXPECT_FALSE(to_picture(image("RGB8", 24, {}, 65535, 65535)));
+  EXPECT_FALSE(to_picture(image("RGB8", 24, std::vector<unsigned char>(65535 * 3), 65535, 1)));
+  EXPECT_FALSE(to_picture(image("BAYER_RGBG8", 8, {1, 2})));
+  EXPECT_FALSE(to_picture(image("", 0, {1, 2, 3})));
+  EXPECT_FALSE(to_picture(image("", 12, {1, 2, 3})));
+  EXPECT_FALSE(to_picture(image("HSV", 24, {1, 2, 3, 4, 5, 6})));
+  EXPECT_FALSE(to_picture(image("JPEG", 24, {1, 2, 3, 4, 5, 6})));
+  EXPECT_FALSE(to_picture(image("JPEG", 24, {})));
+}
+
+TEST(Picture, a_format_that_a_terminal_would_obey_is_shown_without_that) {
+  ASSERT_FALSE(to_picture(image("\x1b[2J\n", 24, {1, 2, 3, 4, 5, 6})));
+  EXPECT_NE(problem.find("image format \"?[2J?\" with 24 bits"), std::string::npos) << problem;
+}
+
+TEST(Picture, every_order_of_a_mosaic_becomes_the_same_picture) {
+  // One colour everywhere: red 10, green 20, blue 30.
+  const std::vector<std::pair<const char*, std::vector<unsigned char>>> mosaics = {{"BAYER_RGGB8", {10, 20, 20, 30}},
+                                                                                   {"bayer_grbg", {20, 10, 30, 20}},
+                                                                                   {"BAYER_GBRG8", {20, 30, 10, 20}},
+                                                                                   {"BAYER_BGGR8", {30, 20, 20, 10}}};
+  for (const auto& [format, pixels] : mosaics) {
+    const auto picture = to_picture(image(format, 8, pixels, 2, 2));
+    ASSERT_TRUE(picture) << format << ": " << problem;
+    EXPECT_EQ(picture->rgb, (std::vector<unsigned char>{10, 20, 30, 10, 20, 30, 10, 20, 30, 10, 20, 30})) << format;
+  }
 }
 
 }  // namespace

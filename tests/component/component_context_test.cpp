@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "component/runtime_access.h"
 #include "support/component_fixture.h"
 #include "support/silence.h"
 
@@ -218,7 +219,7 @@ TEST_F(ComponentContextTest, authors_may_bring_one_with_a_clock_of_its_own) {
   };
   ASSERT_EQ(simulated->activate(0), RTC::RTC_OK);
   EXPECT_EQ(seen, 10ms);
-  dynamic_cast<ManualContext*>(simulated->getOwnContexts().at(0))->cycle();
+  dynamic_cast<ManualContext*>(RTC::RuntimeAccess::own_contexts(*simulated).at(0))->cycle();
   EXPECT_EQ(seen, 20ms);
   simulated->during = nullptr;
 }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <thread>
 
+#include "component/runtime_access.h"
 #include "support/component_fixture.h"
 #include "support/hanging.h"
 
@@ -43,7 +44,7 @@ class HangingCallbackTest : public testing::Test {
  protected:
   ~HangingCallbackTest() override {
     gate.open();
-    EXPECT_TRUE(eventually([] { return RTC::RTObject_impl::destroyLeftContexts(); }));
+    EXPECT_TRUE(eventually([] { return RTC::RuntimeAccess::destroy_left_contexts(); }));
     EXPECT_TRUE(eventually([&] { return alive == 0; })) << "something is never freed";
   }
   HangingComponent* make(const std::string& name, const std::string& where = "onExecute") {
@@ -61,15 +62,15 @@ TEST_F(HangingCallbackTest, a_component_that_hangs_in_its_own_context_is_not_fre
   hanging->activate(0);
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_EQ(hanging->exit(), RTC::RTC_OK);
-  EXPECT_TRUE(hanging->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*hanging));
   EXPECT_TRUE(lines.speak_of("Own0", "onExecute"));
   EXPECT_EQ(hanging->count("onFinalize"), 0) << "no callback beside the one that runs";
   EXPECT_EQ(hanging->count("onShutdown"), 0);
-  EXPECT_FALSE(RTC::RTObject_impl::destroyLeftContexts());
+  EXPECT_FALSE(RTC::RuntimeAccess::destroy_left_contexts());
   hanging->_remove_ref();  // what a factory does
   EXPECT_EQ(alive, 1);
   gate.open();
-  EXPECT_TRUE(eventually([] { return RTC::RTObject_impl::destroyLeftContexts(); }));
+  EXPECT_TRUE(eventually([] { return RTC::RuntimeAccess::destroy_left_contexts(); }));
   EXPECT_TRUE(eventually([&] { return alive == 0; }));
 }
 
@@ -86,7 +87,7 @@ TEST_F(HangingCallbackTest, a_component_that_hangs_in_the_context_of_another_is_
   guest->activate(1000);
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_EQ(guest->exit(), RTC::RTC_OK);
-  EXPECT_TRUE(guest->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*guest));
   EXPECT_TRUE(lines.speak_of("Guest0", "onExecute"));
   EXPECT_EQ(context->get_component_state(reference), RTC::CREATED_STATE) << "it has left";
   guest->_remove_ref();
@@ -111,10 +112,10 @@ TEST_F(HangingCallbackTest, remove_component_ends_in_time_and_frees_nothing) {
   EXPECT_EQ(context->remove_component(reference), RTC::RTC_OK);
   EXPECT_EQ(context->remove_component(reference), RTC::BAD_PARAMETER);
   EXPECT_TRUE(lines.speak_of("Guest1", "onExecute"));
-  EXPECT_TRUE(guest->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*guest));
   EXPECT_EQ(guest->get_context_handle(context), -1);
   EXPECT_EQ(guest->exit(), RTC::RTC_OK);
-  EXPECT_TRUE(guest->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*guest));
   guest->_remove_ref();
   EXPECT_EQ(alive, 1);
 }
@@ -131,11 +132,11 @@ TEST_F(HangingCallbackTest, the_owner_of_a_context_in_which_another_hangs_is_fre
   guest->activate(1000);
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_EQ(host->exit(), RTC::RTC_OK);
-  EXPECT_FALSE(host->isHeldByCallback());
+  EXPECT_FALSE(RTC::RuntimeAccess::is_held_by_callback(*host));
   EXPECT_EQ(host->count("onFinalize"), 1);
   host->_remove_ref();
   EXPECT_TRUE(eventually([&] { return alive == 1; })) << "the host is freed although the thread is stuck in its guest";
-  EXPECT_FALSE(RTC::RTObject_impl::destroyLeftContexts());
+  EXPECT_FALSE(RTC::RuntimeAccess::destroy_left_contexts());
   EXPECT_EQ(guest->get_context_handle(context), -1) << "the context has let it go";
   EXPECT_EQ(guest->exit(), RTC::RTC_OK);
   guest->_remove_ref();
@@ -153,10 +154,10 @@ TEST_F(HangingCallbackTest, owners_of_one_context_end_one_after_the_other) {
   one->activate(0);
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_EQ(one->exit(), RTC::RTC_OK);
-  EXPECT_TRUE(one->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*one));
   one->_remove_ref();
   EXPECT_EQ(two->exit(), RTC::RTC_OK);
-  EXPECT_FALSE(two->isHeldByCallback());
+  EXPECT_FALSE(RTC::RuntimeAccess::is_held_by_callback(*two));
   two->_remove_ref();
   EXPECT_TRUE(eventually([&] { return alive == 1; }));
 }
@@ -219,9 +220,9 @@ TEST_F(HangingCallbackTest, several_that_hang_cost_no_more_than_one) {
   }
   ASSERT_TRUE(gate.wait_for_visitors(count));
   // Each of them has been waited for once; nobody waits for the same callback again.
-  for (HangingComponent* one : all) EXPECT_EQ(one->exitBy(std::chrono::steady_clock::now()), RTC::RTC_OK);
+  for (HangingComponent* one : all) EXPECT_EQ(RTC::RuntimeAccess::exit_by(*one, std::chrono::steady_clock::now()), RTC::RTC_OK);
   for (int i = 0; i < count; ++i) {
-    EXPECT_TRUE(all[static_cast<std::size_t>(i)]->isHeldByCallback());
+    EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*all[static_cast<std::size_t>(i)]));
     EXPECT_TRUE(lines.speak_of("Many" + std::to_string(i), "onExecute"));
     all[static_cast<std::size_t>(i)]->_remove_ref();
   }
@@ -234,11 +235,11 @@ TEST_F(HangingCallbackTest, a_callback_that_others_call_holds_the_component_too)
   std::jthread caller([&] { RTC::ExecutionContext_var(first_context(*hanging))->set_rate(10); });
   ASSERT_TRUE(gate.wait_for_visitors());
   EXPECT_EQ(hanging->exit(), RTC::RTC_OK);
-  EXPECT_TRUE(hanging->isHeldByCallback());
+  EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*hanging));
   EXPECT_TRUE(lines.speak_of("Called0", "onRateChanged"));
   gate.open();
   caller.join();
-  EXPECT_FALSE(hanging->isHeldByCallback());
+  EXPECT_FALSE(RTC::RuntimeAccess::is_held_by_callback(*hanging));
   hanging->_remove_ref();
 }
 

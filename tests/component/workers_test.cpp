@@ -208,7 +208,7 @@ struct Elsewhere final : Participant {
 
 TEST(ExecutionContextPlaces, members_side_by_side_of_different_places_are_called_at_the_same_time_and_others_in_their_order) {
   ExecutionContext context;
-  base::Guarded<std::vector<std::string>, base::Rank::buffer> heard;
+  base::Guarded<std::vector<std::string>, base::Rank::queue> heard;
   std::latch both{2};
   const auto add = [&](const std::string& name, const std::string& place, bool meets) {
     const auto work = [&, name, meets](Action action) {

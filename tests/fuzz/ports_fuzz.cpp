@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
 #include "corba/transport/event_data.h"
 
@@ -24,8 +25,8 @@ using Octets = std::vector<std::byte>;
 
 template <class T>
 void add(std::vector<std::pair<const corba::TypeOps*, Octets>>& seeds, const T& value) {
-  const auto block = corba::encode(RTC::detail::data_type<T>().ops(), &value, rt::ByteOrder::little);
-  seeds.emplace_back(&RTC::detail::data_type<T>().ops(), Octets(block->octets().begin(), block->octets().end()));
+  const auto block = corba::encode(RTC::RuntimeAccess::ops(RTC::detail::data_type<T>()), &value, rt::ByteOrder::little);
+  seeds.emplace_back(&RTC::RuntimeAccess::ops(RTC::detail::data_type<T>()), Octets(block->octets().begin(), block->octets().end()));
 }
 
 std::vector<std::pair<const corba::TypeOps*, Octets>> make_seeds() {

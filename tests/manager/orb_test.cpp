@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "base/guarded.h"
+#include "corba/orb/call_timeout.h"
 #include "corba/orb/naming.h"
 #include "support/naming_service.h"
 
@@ -166,6 +168,33 @@ bool appears(Orb& orb, const support::NamingService& names, const std::string& t
   }
   return false;
 }
+
+#ifndef NDEBUG
+TEST(OrbDeathTest, a_call_to_another_process_while_data_is_held_is_found) {
+  support::NamingService names;
+  const auto call = [&](bool holds_data) {
+    auto orb = started();
+    CORBA::Object_var context = orb->orb()->string_to_object(("corbaloc:iiop:" + names.address() + "/NameService").c_str());
+    if (context->_non_existent()) std::abort();  // nothing is held: this call succeeds
+    base::Guarded<int, base::Rank::queue> data;
+    if (!holds_data) std::_Exit(0);
+    const auto lock = data.lock();
+    static_cast<void>(context->_non_existent());
+  };
+  EXPECT_EXIT(call(false), testing::ExitedWithCode(0), "");
+  EXPECT_DEATH(call(true), "data is held");
+}
+
+TEST(OrbDeathTest, a_call_that_is_prepared_while_data_is_held_is_found_also_where_its_object_is_in_this_process) {
+  base::Guarded<int, base::Rank::queue> data;
+  EXPECT_DEATH(
+      {
+        const auto lock = data.lock();
+        limit_calls(CORBA::Object::_nil(), 1s);
+      },
+      "data is held");
+}
+#endif
 
 constexpr const char* name = "my\\.host.host_cxt/sub.cxt/Thing0.rtc";
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/tick.h"
+#include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
 #include "ports/support.h"
 #include "support/paths.h"
@@ -164,7 +165,8 @@ TYPED_TEST(GoldenPayload, is_read_and_written_by_ports) {
     ASSERT_TRUE(from_little && from_big) << id;
     for (std::size_t size = 0; size < wanted.size(); ++size) {
       Bytes cut(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(size));
-      EXPECT_FALSE(RTC::detail::data_type<TypeParam>().ops().shape.fits(std::as_bytes(std::span(cut)), rt::ByteOrder::little))
+      EXPECT_FALSE(
+          RTC::RuntimeAccess::ops(RTC::detail::data_type<TypeParam>()).shape.fits(std::as_bytes(std::span(cut)), rt::ByteOrder::little))
           << id << " cut to " << size;
       EXPECT_FALSE(little.put(cut)) << id << " cut to " << size;
     }

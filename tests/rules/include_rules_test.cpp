@@ -66,9 +66,9 @@ const std::vector<Layer> layers = {
     {"tools/simctl", {"simctl", "shm", "base"}, {"JSON", "PNG"}},
     {"tools/studio", {"studio", "run", "recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "Boost", "JSON", "deflate"}},
     {"tools/page", {"page", "studio", "recording", "base"}, {"deflate"}},
-    {"clients/examples", {"rtm", "coil", "base", "stubs"}},
-    {"clients/obstacle-avoidance", {"rtm", "coil", "base", "stubs"}},
-    {"clients/video-player", {"rtm", "coil", "base", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
+    {"clients/examples", {"rtm", "coil", "stubs"}},
+    {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
+    {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "base"}},
 };
 
@@ -242,6 +242,49 @@ Names not_own_first(const fs::path& root) {
   return found;
 }
 
+// Types of the runtime that headers for authors name, as "file: namespace::Type". They have no definition there, so no author can use them.
+Names internal_names(const fs::path& root) {
+  static const std::regex name(R"(\b(base|rt|corba|shm|iface)::\w+)");
+  Names found;
+  const fs::path folder = root / "rtm-core/openrtm/include";
+  if (!fs::exists(folder)) return found;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".h") continue;
+    std::istringstream in(source_text(entry.path()));
+    for (std::string line; std::getline(in, line);) {
+      const auto code = line.substr(0, line.find("//"));
+      for (std::sregex_iterator at(code.begin(), code.end(), name), end; at != end; ++at)
+        found.push_back(fs::relative(entry.path(), folder).generic_string() + ": " + at->str());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+// Parameters of virtual functions, which authors' programs have in their tables: they can go when RTMSIM_SOVERSION grows. The list only
+// shrinks.
+const Names internal_names_in_virtual_functions = {
+    "rtm/ByteData.h: corba::EventData",           "rtm/ConnectorListener.h: corba::EventData", "rtm/CorbaPort.h: corba::ConnectionTerms",
+    "rtm/DataPortBase.h: corba::ConnectionTerms", "rtm/EventPort.h: corba::EventData",         "rtm/ExecutionContextBase.h: base::Clock",
+    "rtm/LogicalTimeTriggeredEC.h: base::Clock",  "rtm/OutPortBase.h: corba::ConnectionTerms", "rtm/PortBase.h: corba::ConnectionTerms",
+};
+
+// Functions that the runtime alone needs are behind the one friend of these classes, component/runtime_access.h.
+Names friends(const fs::path& root) {
+  static const std::regex line_of_friend(R"(^\s*friend (class|struct) ([\w:]+);)");
+  Names found;
+  for (const char* file : {"RTObject.h", "ExecutionContextBase.h", "ConnectorBase.h", "CdrBufferBase.h", "DataPortBase.h", "DataType.h"}) {
+    std::ifstream in(root / "rtm-core/openrtm/include/rtm" / file);
+    std::smatch match;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, match, line_of_friend)) found.push_back(std::string(file) + ": " + match[2].str());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 class PlantedTree : public testing::Test {
  protected:
   PlantedTree() : root_(fs::path(testing::TempDir()) / ("include_rules_" + std::to_string(getpid()))) {}
@@ -268,11 +311,29 @@ TEST_F(PlantedTree, a_source_that_does_not_begin_with_its_own_header_is_found) {
   EXPECT_EQ(not_own_first(root_), Names{"rtm-core/openrtm/rtm/a.cpp: does not begin with a.h"});
 }
 
+TEST(IncludeRules, headers_for_authors_name_no_type_of_the_runtime) {
+  EXPECT_EQ(internal_names(paths::source_dir), internal_names_in_virtual_functions);
+}
+
+TEST(IncludeRules, what_the_runtime_alone_does_with_classes_of_authors_is_behind_one_friend) {
+  EXPECT_EQ(friends(paths::source_dir),
+            (Names{"CdrBufferBase.h: RuntimeAccess", "ConnectorBase.h: RuntimeAccess", "DataPortBase.h: RuntimeAccess",
+                   "DataType.h: RTC::RuntimeAccess", "ExecutionContextBase.h: RuntimeAccess", "RTObject.h: RuntimeAccess"}));
+}
+
+TEST_F(PlantedTree, a_type_of_the_runtime_in_a_header_for_authors_is_found) {
+  plant("rtm-core/openrtm/include/rtm/a.h", "// like base::Clock\nstd::shared_ptr<rt::Worker> worker_;\nint rest(corba::Orb&);\n");
+  plant("rtm-core/openrtm/rtm/a.cpp", "base::Clock clock;\n");
+  EXPECT_EQ(internal_names(root_), (Names{"rtm/a.h: corba::Orb", "rtm/a.h: rt::Worker"}));
+}
+
 TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/core/a.h", "#pragma once\n#include <omniORB4/CORBA.h>\n#include \"corba/orb/orb.h\"\n#include <vector>\n");
   plant("sim-server/devices/b.cpp", "#include \"shm/segment.h\"\n  #  include <rtm/Manager.h>\n");
   plant("iface-components/c.cpp", "#include <rtm/Manager.h>\n#include \"core/registry.h\"\n");
-  plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n");
+  plant("clients/video-player/d.cpp", "#include \"shm/segment.h\"\n#include <base/text.h>\n#include <coil/Mutex.h>\n");
+  plant("clients/examples/q.cpp", "#include <rtm/Manager.h>\n#include \"component/runtime_access.h\"\n");
+  plant("clients/obstacle-avoidance/r.h", "#include \"base/result.h\"\n");
   plant("rtm-core/component/i.h", "#include \"core/lifecycle.h\"\n#include \"manager/manager_impl.h\"\n");
   plant("rtm-core/manager/l.cpp", "#include <rtm/RTObject.h>\n#include \"component/managed.h\"\n#include \"component/component_impl.h\"\n");
   plant("rtm-core/core/j.cpp", "#include <sys/types.h>\n#include \"neighbour.h\"\n#include <poco/any.h>\n#include <Eigen/Core>\n");
@@ -289,8 +350,11 @@ TEST_F(PlantedTree, every_kind_of_offence_is_found) {
   plant("rtm-core/corba/p.cpp", "#include \"shm/client.h\"\n");
   EXPECT_EQ(offences(root_),
             (Names{
+                "clients/examples/q.cpp:2: clients/examples may not include <component/runtime_access.h> of component",
+                "clients/obstacle-avoidance/r.h:1: clients/obstacle-avoidance may not include <base/result.h> of base",
                 "clients/unknown/g.cpp: is in no layer of the table",
                 "clients/video-player/d.cpp:1: clients/video-player may not include <shm/segment.h> of shm",
+                "clients/video-player/d.cpp:2: clients/video-player may not include <base/text.h> of base",
                 "gateways/player/m.cpp:1: \"session.h\" is no header of gateways/player",
                 "gateways/player/m.cpp:2: gateways/player may not include <system/session.h> of system",
                 "gateways/player/protocol/h.cpp:2: gateways/player/protocol may not include <shm/client.h> of shm",

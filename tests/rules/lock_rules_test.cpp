@@ -135,6 +135,75 @@ TEST(LockRules, detached_threads_are_found) {
   EXPECT_EQ(found, (Names{"tools/a.cpp:1", "tools/a.cpp:2"}));
 }
 
+// The table of ranks in a header like base/guarded.h.
+struct RankRow {
+  std::string name;
+  int number = 0;
+  std::string guards;  // what the comment says
+};
+
+std::vector<RankRow> rank_table(const fs::path& header) {
+  static const std::regex row(R"(^  (\w+) = (\d+),?\s*(?://\s*(.*))?$)");
+  std::vector<RankRow> table;
+  std::ifstream in(header);
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("enum class Rank")) {
+  }
+  while (std::getline(in, line) && !line.starts_with("}")) {
+    std::smatch match;
+    if (std::regex_match(line, match, row)) table.push_back({match[1], std::stoi(match[2]), match[3]});
+  }
+  return table;
+}
+
+// How many locks have each rank.
+std::map<std::string, int> locks_of_ranks(const fs::path& root) {
+  static const std::regex lock(R"(\b(Guarded|Turn)<.*\bRank::(\w+)>)");
+  std::map<std::string, int> counts;
+  for (const auto& place : lines_with(lock, root)) {
+    std::ifstream in(root / file_of(place));
+    std::string line;
+    for (int number = std::stoi(place.substr(place.rfind(':') + 1)); number > 0; --number) std::getline(in, line);
+    std::smatch match;
+    if (std::regex_search(line, match, lock)) ++counts[match[2]];
+  }
+  return counts;
+}
+
+// What is wrong with the ranks of a tree.
+Names problems_of_ranks(const fs::path& root) {
+  Names found;
+  const auto counts = locks_of_ranks(root);
+  int all = 0, last = 0;
+  for (const auto& [name, count] : counts) all += count;
+  for (const auto& [name, number, guards] : rank_table(root / "base" / "guarded.h")) {
+    const int count = counts.contains(name) ? counts.at(name) : 0;
+    if (guards.empty()) found.push_back(name + ": the table does not say what it guards");
+    if (number <= last) found.push_back(name + ": is not in the order of the numbers");
+    if (count == 0 && name != "turn") found.push_back(name + ": no lock has it");
+    if (count * 5 > all) found.push_back(name + ": guards " + std::to_string(count) + " of " + std::to_string(all) + " locks");
+    last = number;
+  }
+  return found;
+}
+
+TEST(LockRules, the_table_of_ranks_says_what_each_guards_and_none_guards_a_fifth_of_all) {
+  EXPECT_GT(rank_table(paths::source_dir / fs::path("base/guarded.h")).size(), 10u);
+  EXPECT_EQ(problems_of_ranks(paths::source_dir), Names());
+}
+
+TEST(LockRules, a_rank_that_guards_everything_nothing_or_out_of_order_is_found) {
+  const fs::path root = fs::path(testing::TempDir()) / ("lock_ranks_" + std::to_string(getpid()));
+  fs::create_directories(root / "base");
+  std::ofstream(root / "base" / "guarded.h") << "enum class Rank : int {\n  first = 5,   // one\n  second = 4,  // two\n  third = 9\n};\n";
+  std::ofstream(root / "base" / "a.cpp")
+      << "Guarded<int, Rank::first> a;\nbase::Turn<base::Rank::first> b;\nGuarded<int, Rank::second> c;\n";
+  const auto found = problems_of_ranks(root);
+  fs::remove_all(root);
+  EXPECT_EQ(found, (Names{"first: guards 2 of 3 locks", "second: is not in the order of the numbers", "second: guards 1 of 3 locks",
+                          "third: the table does not say what it guards", "third: no lock has it"}));
+}
+
 TEST(LockRules, no_loop_has_a_lock_that_ends_before_it) { EXPECT_EQ(loops_without_their_lock(paths::source_dir), Names()); }
 
 TEST(LockRules, a_loop_whose_lock_ends_before_it_is_found) {

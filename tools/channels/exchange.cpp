@@ -52,7 +52,7 @@ std::span<char> Block::add(ChannelId channel, Time log_time, std::size_t size) {
 }
 
 struct Blocks {
-  base::Guarded<std::vector<std::unique_ptr<Block>>, base::Rank::registry> free;
+  base::Guarded<std::vector<std::unique_ptr<Block>>, base::Rank::memory> free;
 
   std::unique_ptr<Block> take() {
     auto blocks = free.lock();
@@ -234,7 +234,7 @@ class Outlet {
 
   const std::shared_ptr<Sink> sink_;
   const QueueOptions options_;
-  base::Guarded<Data, base::Rank::buffer> data_;
+  base::Guarded<Data, base::Rank::queue> data_;
   std::condition_variable changed_;  // for the thread
   std::condition_variable room_;     // for those who put and drain
   std::thread thread_;               // last: it uses all of these

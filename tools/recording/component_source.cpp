@@ -132,8 +132,8 @@ class ComponentSource::Watched {
   const editor::ComponentView view_;
   channels::ChannelId states_ = 0, configuration_ = 0;
   Json values_ = Json::object();  // of parameters, as they are now: who reads a part of the recording knows all of them
-  base::Guarded<std::optional<channels::ChannelId>, base::Rank::registry> events_;  // when there is the first one
-  std::unique_ptr<LoggerService> own_events_, log_;                                 // last: they call the others
+  base::Guarded<std::optional<channels::ChannelId>, base::Rank::noted> events_;  // when there is the first one
+  std::unique_ptr<LoggerService> own_events_, log_;                              // last: they call the others
 };
 
 base::Result<void> ComponentSource::Watched::open() {

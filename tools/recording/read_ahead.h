@@ -44,7 +44,7 @@ class ReadAhead final {
   void end(std::optional<base::Error> failure);
 
   mcap::Reader reader_;  // of the thread
-  base::Guarded<Data, base::Rank::buffer> data_;
+  base::Guarded<Data, base::Rank::queue> data_;
   std::condition_variable changed_;
   std::deque<Sample> ready_;  // of who calls next()
   std::thread thread_;        // last: it uses all of these

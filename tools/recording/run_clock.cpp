@@ -14,7 +14,7 @@ struct RunClock::State {
     std::optional<shm::Iface> simulation;
     std::chrono::nanoseconds last{0};
   };
-  base::Guarded<Data, base::Rank::registry> data;
+  base::Guarded<Data, base::Rank::noted> data;
 };
 
 RunClock::RunClock(std::uint32_t server_id) : state_(std::make_unique<State>()) {

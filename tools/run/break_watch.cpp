@@ -38,7 +38,7 @@ struct Latest {
 };
 struct Port {
   CORBA::TypeCode_ptr type = CORBA::TypeCode::_nil();  // of a table that lives as long as we
-  base::Guarded<Latest, base::Rank::buffer> latest;
+  base::Guarded<Latest, base::Rank::samples> latest;
   std::unique_ptr<editor::Tap> tap;  // last: it uses the others
 };
 
@@ -55,7 +55,7 @@ struct BreakWatch::State {
   std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
   std::map<std::string, shm::Iface> models;
   editor::ShmSimulator contacts_of;  // of models; attached if the condition needs it
-  base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::registry> hit;
+  base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::noted> hit;
   std::atomic<bool> is_ending{false};  // relaxed: says nothing but itself
   std::thread thread;
 

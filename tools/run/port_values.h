@@ -40,7 +40,7 @@ class PortValues {
   void take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
             std::span<const unsigned char> payload, bool little);
 
-  base::Guarded<std::map<std::string, SeenValue>, base::Rank::buffer> seen_;
+  base::Guarded<std::map<std::string, SeenValue>, base::Rank::samples> seen_;
   std::vector<Listening> listening_;
 };
 

@@ -95,7 +95,7 @@ class Player {
   std::map<std::uint16_t, Input> by_channel_;
   std::vector<std::unique_ptr<Output>> outputs_;
   // What came since it was judged last: place of the output, octets with their head.
-  base::Guarded<std::vector<std::pair<std::size_t, std::string>>, base::Rank::buffer> arrived_;
+  base::Guarded<std::vector<std::pair<std::size_t, std::string>>, base::Rank::queue> arrived_;
   std::optional<ReadAhead> ahead_;  // of inputs and, when they are compared, outputs
   std::optional<ReadAhead::Sample> next_;
   std::deque<ReadAhead::Sample> due_;      // inputs of this tick
@@ -105,7 +105,7 @@ class Player {
   std::chrono::nanoseconds period_{0};
   std::atomic<bool> is_ending_{false};  // relaxed: says nothing but itself
   std::atomic<bool> has_stood_{false};  // something was done to the component since the last tick; relaxed: time says when
-  base::Guarded<std::optional<base::Error>, base::Rank::registry> failure_;
+  base::Guarded<std::optional<base::Error>, base::Rank::noted> failure_;
   ReplayResult result_;
   std::thread thread_;
 };

@@ -61,7 +61,7 @@ class ChannelBook {
   std::map<std::string, Port> ports_;  // by path
   std::set<channels::ChannelId> wanted_;
   bool is_opening_ = false;
-  using Now = base::Guarded<std::chrono::nanoseconds, base::Rank::registry>;
+  using Now = base::Guarded<std::chrono::nanoseconds, base::Rank::noted>;
   std::shared_ptr<Now> now_ = std::make_shared<Now>();
   std::shared_ptr<bool> lives_ = std::make_shared<bool>(true);  // what workers post to the loop may come later than our end
   std::shared_ptr<channels::Exchange> exchange_ = std::make_shared<channels::Exchange>();

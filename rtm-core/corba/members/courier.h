@@ -57,7 +57,7 @@ class Courier {
   bool carry(const Message& message);
 
   const std::string name_;
-  base::Guarded<Data, base::Rank::buffer> shared_;
+  base::Guarded<Data, base::Rank::queue> shared_;
   std::condition_variable condition_;
   std::condition_variable finished_;
   std::thread thread_;

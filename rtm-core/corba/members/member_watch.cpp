@@ -15,8 +15,8 @@ struct PortWatch {
   bool is_over = true;
 };
 
-base::Guarded<PortWatch, base::Rank::registry>& watch_of_ports() {
-  static auto& watch = *new base::Guarded<PortWatch, base::Rank::registry>;  // never destroyed: calls may end at the very end
+base::Guarded<PortWatch, base::Rank::peers>& watch_of_ports() {
+  static auto& watch = *new base::Guarded<PortWatch, base::Rank::peers>;  // never destroyed: calls may end at the very end
   return watch;
 }
 

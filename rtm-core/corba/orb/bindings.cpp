@@ -13,7 +13,7 @@ namespace corba {
 namespace {
 
 using std::chrono::steady_clock;
-constexpr base::Rank rank = base::Rank::registry;
+constexpr base::Rank rank = base::Rank::peers;
 constexpr const char* log_name = "naming";
 
 struct Entry {

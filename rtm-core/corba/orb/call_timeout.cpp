@@ -1,10 +1,16 @@
 #include "corba/orb/call_timeout.h"
 
+// Each needs the one before it.
+// clang-format off
 #include <omniORB4/minorCode.h>
 #include <omniORB4/omniORB.h>
+#include <omniORB4/omniInterceptors.h>
+// clang-format on
 
 #include <algorithm>
 #include <atomic>
+
+#include "base/guarded.h"
 
 namespace corba {
 namespace {
@@ -19,7 +25,17 @@ void set_port_call_timeout(std::chrono::milliseconds timeout) {
 
 std::chrono::milliseconds port_call_timeout() { return std::chrono::milliseconds(timeout_ms.load(std::memory_order_relaxed)); }
 
+void expect_no_data_held_at_calls() {
+#ifndef NDEBUG
+  omniORB::getInterceptors()->clientSendRequest.add([](omni::omniInterceptors::clientSendRequest_T::info_T&) -> _CORBA_Boolean {
+    base::expect_no_data_held();
+    return true;
+  });
+#endif
+}
+
 void limit_calls(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
+  base::expect_no_data_held();
   if (CORBA::is_nil(object)) return;
   omniORB::setClientCallTimeout(object, static_cast<CORBA::ULong>(std::clamp<std::int64_t>(timeout.count(), 1, 3'600'000)));
 }

@@ -1,4 +1,4 @@
-// Timeouts of calls to other ports. Any thread.
+// Timeouts of calls to other ports, and the lock rule of all remote calls. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>
@@ -15,6 +15,10 @@ std::chrono::milliseconds port_call_timeout();
 
 // Every later call of this reference ends after `timeout`, with CORBA::TIMEOUT or TRANSIENT if the other side hangs. Nil is ignored.
 void limit_calls(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+
+// From now on every call to another process expects that its thread holds no data (base/guarded.h; asserted in builds without NDEBUG).
+// Once per process, when there is an ORB. Calls to objects of this process are not remote; limit_calls() expects the same for them.
+void expect_no_data_held_at_calls();
 
 // The other side has taken the whole time-out: it hangs, or the way there does.
 bool is_time_out(const CORBA::Exception& problem);

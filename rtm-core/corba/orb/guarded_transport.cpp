@@ -58,7 +58,7 @@ struct GateState {
 
 // The end points are those of the process. Never destroyed: connections may go after it otherwise.
 struct Doors {
-  base::Guarded<GateState, base::Rank::registry> state;
+  base::Guarded<GateState, base::Rank::peers> state;
   std::condition_variable gone;             // a connection
   std::atomic<std::size_t> in_progress{0};  // see GiopGate
   std::atomic<bool> are_open{false};        // to others than the own account

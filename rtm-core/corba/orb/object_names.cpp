@@ -18,8 +18,8 @@ struct Name {
 using Names = std::map<std::string, Name, std::less<>>;
 
 // Never destroyed: calls may come at the very end.
-base::Guarded<Names, base::Rank::registry>& names() {
-  static auto& all = *new base::Guarded<Names, base::Rank::registry>;
+base::Guarded<Names, base::Rank::objects>& names() {
+  static auto& all = *new base::Guarded<Names, base::Rank::objects>;
   return all;
 }
 

@@ -308,6 +308,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
     remember_callers();
     watch_calls();
     pass_on_time();
+    expect_no_data_held_at_calls();
     CORBA::Object_var poa = result->orb_->resolve_initial_references("RootPOA");
     result->root_poa_ = PortableServer::POA::_narrow(poa);
     result->poa_manager_ = result->root_poa_->the_POAManager();

@@ -112,7 +112,7 @@ class Gates {
     limits.reads_ahead = false;
     return limits;
   }
-  base::Guarded<std::map<int, Gate>, base::Rank::registry> gates_;
+  base::Guarded<std::map<int, Gate>, base::Rank::peers> gates_;
   std::atomic<std::size_t> in_progress_{0};
 };
 

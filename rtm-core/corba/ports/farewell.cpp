@@ -59,7 +59,7 @@ struct FarewellState {
 
 // The processes are for all ports, so this is a global. Never destroyed: ports may die after it otherwise.
 struct Farewells {
-  base::Guarded<FarewellState, base::Rank::registry> state;
+  base::Guarded<FarewellState, base::Rank::peers> state;
   std::condition_variable changed;
   static Farewells& instance() {
     static Farewells& table = *new Farewells;

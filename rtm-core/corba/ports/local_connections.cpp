@@ -24,7 +24,7 @@ class Connections {
   }
 
  private:
-  base::Guarded<std::map<std::string, std::weak_ptr<Connection>>, base::Rank::registry> entries_;
+  base::Guarded<std::map<std::string, std::weak_ptr<Connection>>, base::Rank::objects> entries_;
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ struct State {
 
 // The process is what its ports have in common, so this is a global. Never destroyed: ports may die after it otherwise.
 struct Table {
-  base::Guarded<State, base::Rank::registry> state;
+  base::Guarded<State, base::Rank::peers> state;
   std::condition_variable changed;
   static Table& instance() {
     static Table& table = *new Table;

@@ -146,7 +146,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   Gate gate_;
   const std::shared_ptr<LossHandler> loss_ =
       std::make_shared<LossHandler>([this](const std::string& id) { drop_connection(id.c_str()); });  // for PeerWatch
-  base::Guarded<int, base::Rank::registry> holders_{1};
+  base::Guarded<int, base::Rank::noted> holders_{1};
   std::condition_variable released_;
 };
 

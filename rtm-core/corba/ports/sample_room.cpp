@@ -13,8 +13,8 @@ namespace {
 using Rooms = std::map<std::string, std::size_t, std::less<>>;
 
 // Of the process, as its end points are; never destroyed, since connections may go after it otherwise.
-base::Guarded<Rooms, base::Rank::registry>& rooms() {
-  static auto& all = *new base::Guarded<Rooms, base::Rank::registry>;
+base::Guarded<Rooms, base::Rank::memory>& rooms() {
+  static auto& all = *new base::Guarded<Rooms, base::Rank::memory>;
   return all;
 }
 

@@ -349,8 +349,8 @@ typename Stub::_ptr_type narrow(CORBA::Object_ptr object, const Line& line) {
 }
 
 // Connections whose peer has thrown, until they are gone. Never destroyed: ports may die after it otherwise.
-base::Guarded<std::set<std::string>, base::Rank::registry>& refusals() {
-  static auto& ids = *new base::Guarded<std::set<std::string>, base::Rank::registry>;
+base::Guarded<std::set<std::string>, base::Rank::noted>& refusals() {
+  static auto& ids = *new base::Guarded<std::set<std::string>, base::Rank::noted>;
   return ids;
 }
 

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "base/guarded.h"
 #include "base/text.h"
 
 namespace corba {
@@ -37,6 +38,7 @@ std::uint64_t in_order(std::uint64_t value, rt::ByteOrder order) {
 }  // namespace
 
 base::Result<std::unique_ptr<MemorySegment>> MemorySegment::create(const std::string& name, std::size_t size) {
+  base::expect_no_data_held();
   if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
   const int file = shm_open(path_of(name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file < 0) return failure("cannot be made", name);
@@ -48,6 +50,7 @@ base::Result<std::unique_ptr<MemorySegment>> MemorySegment::create(const std::st
 }
 
 base::Result<std::unique_ptr<MemorySegment>> MemorySegment::open(const std::string& name) {
+  base::expect_no_data_held();
   if (!is_plain(name)) return base::Error{"shared memory " + base::in_quotes(name) + ": no name for a segment"};
   // Whatever a peer has put there in place of a segment: nobody waits for a fifo.
   const int file = shm_open(path_of(name).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0);
@@ -79,6 +82,7 @@ MemorySegment::~MemorySegment() {
 }
 
 void MemorySegment::unlink() {
+  base::expect_no_data_held();
   if (is_named_) shm_unlink(path_of(name_).c_str());
   is_named_ = false;
 }

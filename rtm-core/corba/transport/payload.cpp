@@ -30,7 +30,7 @@ class StreamPool {
   }
 
  private:
-  base::Guarded<std::vector<std::unique_ptr<GatherStream>>, base::Rank::registry> free_;
+  base::Guarded<std::vector<std::unique_ptr<GatherStream>>, base::Rank::memory> free_;
 };
 
 // Shared by all ports of the process: memory only, no behaviour. Never destroyed, as threads may still send at the very end.

@@ -1,5 +1,6 @@
 #include "rtm/EventPort.h"
 
+#include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
 #include "corba/transport/event_data.h"
 
@@ -27,7 +28,7 @@ bool is_event(const ConnectorInfo& info, const std::string& event) {
 }
 
 bool EventListenerBase::take(const ConnectorInfo& info, corba::EventData& data, const DataType& type, void* value) const {
-  return is_event(info, event_) && corba::decode(type.ops(), value, data.octets(), data.order());
+  return is_event(info, event_) && corba::decode(RuntimeAccess::ops(type), value, data.octets(), data.order());
 }
 
 }  // namespace RTC::detail

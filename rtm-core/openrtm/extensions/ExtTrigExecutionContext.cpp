@@ -2,6 +2,7 @@
 
 #include <rtm/ECFactory.h>
 
+#include "component/runtime_access.h"
 #include "core/workers.h"
 
 namespace RTC {
@@ -19,10 +20,15 @@ class ExtTrigExecutionContext::Steps final : public rt::Steps {
   ExtTrigExecutionContext& context_;
 };
 
+class ExtTrigExecutionContext::Worker final : public rt::TriggeredWorker {
+ public:
+  using rt::TriggeredWorker::TriggeredWorker;
+};
+
 ExtTrigExecutionContext::ExtTrigExecutionContext()
     : ExecutionContextServant("exttrig_async_ec"),
       steps_(std::make_unique<Steps>(*this)),
-      worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
+      worker_(std::make_unique<Worker>(RuntimeAccess::context(*this), *steps_)) {
   keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);

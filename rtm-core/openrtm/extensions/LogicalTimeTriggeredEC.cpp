@@ -3,14 +3,19 @@
 #include <rtm/ECFactory.h>
 
 #include "base/clock.h"
+#include "component/runtime_access.h"
 #include "core/workers.h"
 
 namespace RTC {
 
+struct LogicalTimeTriggeredEC::Time {
+  base::ManualClock clock;
+};
+
 class LogicalTimeTriggeredEC::Steps final : public rt::Steps {
  public:
   explicit Steps(LogicalTimeTriggeredEC& context) : context_(context) {}
-  void begin_tick(std::chrono::nanoseconds time) override { context_.clock_->set(time); }
+  void begin_tick(std::chrono::nanoseconds time) override { context_.clock_->clock.set(time); }
   void transit() override { context_.invokeWorkerPreDo(); }
   void execute_and_update() override {
     context_.invokeWorkerDo();
@@ -21,11 +26,16 @@ class LogicalTimeTriggeredEC::Steps final : public rt::Steps {
   LogicalTimeTriggeredEC& context_;
 };
 
+class LogicalTimeTriggeredEC::Worker final : public rt::TriggeredWorker {
+ public:
+  using rt::TriggeredWorker::TriggeredWorker;
+};
+
 LogicalTimeTriggeredEC::LogicalTimeTriggeredEC()
     : ExecutionContextServant("logicaltime_ec"),
-      clock_(std::make_shared<base::ManualClock>()),
+      clock_(std::make_shared<Time>()),
       steps_(std::make_unique<Steps>(*this)),
-      worker_(std::make_unique<rt::TriggeredWorker>(context(), *steps_)) {
+      worker_(std::make_unique<Worker>(RuntimeAccess::context(*this), *steps_)) {
   keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
@@ -41,13 +51,13 @@ void LogicalTimeTriggeredEC::tick(CORBA::ULong sec, CORBA::ULong usec) {
 }
 
 void LogicalTimeTriggeredEC::get_time(CORBA::ULong& sec, CORBA::ULong& usec) {
-  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(clock_->now());
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(clock_->clock.now());
   sec = static_cast<CORBA::ULong>(now / std::chrono::seconds(1));
   usec = static_cast<CORBA::ULong>((now % std::chrono::seconds(1)).count());
 }
 
-const base::Clock& LogicalTimeTriggeredEC::contextClock() const { return *clock_; }
-std::shared_ptr<const base::Clock> LogicalTimeTriggeredEC::sharedClock() const { return clock_; }
+const base::Clock& LogicalTimeTriggeredEC::contextClock() const { return clock_->clock; }
+std::shared_ptr<const base::Clock> LogicalTimeTriggeredEC::sharedClock() const { return {clock_, &clock_->clock}; }
 
 RTC::ReturnCode_t LogicalTimeTriggeredEC::onStarted() {
   coil::Task::wait();

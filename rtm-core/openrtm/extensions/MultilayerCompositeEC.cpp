@@ -4,6 +4,7 @@
 #include <rtm/RTObject.h>
 
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "core/execution_context.h"
 #include "core/workers.h"
 
@@ -24,7 +25,9 @@ std::string instance_of(const std::string& member) {
 
 }  // namespace
 
-MultilayerCompositeEC::MultilayerCompositeEC() : PeriodicExecutionContext("multilayercomposite_ec"), crew_(std::make_unique<rt::Crew>()) {}
+class MultilayerCompositeEC::Crew final : public rt::Crew {};
+
+MultilayerCompositeEC::MultilayerCompositeEC() : PeriodicExecutionContext("multilayercomposite_ec"), crew_(std::make_unique<Crew>()) {}
 
 // The thread of the base works with what is here: it ends first.
 MultilayerCompositeEC::~MultilayerCompositeEC() { endThread(); }
@@ -44,7 +47,7 @@ RTC::ReturnCode_t MultilayerCompositeEC::bindComponent(RTC::RTObject_impl* rtc) 
       ++count_;
       for (const std::string& name : names) groups_.emplace(instance_of(name), count_);
     }
-    context().set_lanes(count_ + 1);
+    RTC::RuntimeAccess::context(*this).set_lanes(count_ + 1);
   }
   return PeriodicExecutionContext::bindComponent(rtc);
 }

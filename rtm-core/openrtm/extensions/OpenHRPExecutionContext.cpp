@@ -6,8 +6,10 @@
 
 namespace RTC {
 
+class OpenHRPExecutionContext::Turns final : public rt::Turns {};
+
 OpenHRPExecutionContext::OpenHRPExecutionContext(const std::string& name)
-    : ExecutionContextServant(name), turns_(std::make_unique<rt::Turns>()) {
+    : ExecutionContextServant(name), turns_(std::make_unique<Turns>()) {
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
 }

@@ -105,8 +105,10 @@ class MemberSearch {
 
 }  // namespace
 
+class PeriodicECOrganization::Turns final : public rt::Turns {};
+
 PeriodicECOrganization::PeriodicECOrganization(RTC::RTObject_impl& composite)
-    : Organization_impl(RTC::RTObject_var(composite.getObjRef())), composite_(composite), turns_(std::make_unique<rt::Turns>()) {}
+    : Organization_impl(RTC::RTObject_var(composite.getObjRef())), composite_(composite), turns_(std::make_unique<Turns>()) {}
 
 PeriodicECOrganization::~PeriodicECOrganization() = default;
 

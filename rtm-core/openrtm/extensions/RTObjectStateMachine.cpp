@@ -1,9 +1,10 @@
 #include "rtm/RTObjectStateMachine.h"
 
-#include <rtm/ExecutionContextBase.h>
-
 #include "base/clock.h"
+#include "component/runtime_access.h"
 #include "core/execution_context.h"
+
+using RTC::RuntimeAccess;
 
 namespace RTC_impl {
 
@@ -15,33 +16,36 @@ bool RTObjectStateMachine::isEquivalent(RTC::LightweightRTObject_ptr component) 
   return !CORBA::is_nil(component) && component_->_is_equivalent(component);
 }
 
-RTC::LifeCycleState RTObjectStateMachine::getState() const { return static_cast<RTC::LifeCycleState>(context_.context().state(member_)); }
+RTC::LifeCycleState RTObjectStateMachine::getState() const {
+  return static_cast<RTC::LifeCycleState>(RuntimeAccess::context(context_).state(member_));
+}
 
 RTC::LifeCycleState RTObjectStateMachine::getNextState() const {
-  return static_cast<RTC::LifeCycleState>(context_.context().next_state(member_));
+  return static_cast<RTC::LifeCycleState>(RuntimeAccess::context(context_).next_state(member_));
 }
 
 void RTObjectStateMachine::goTo(RTC::LifeCycleState state) {
-  const rt::State from = context_.context().state(member_);
+  const rt::State from = RuntimeAccess::context(context_).state(member_);
   for (const rt::Transition& transition : rt::transitions) {
-    if (transition.from == from && static_cast<int>(transition.to) == state) context_.context().request(member_, transition.event);
+    if (transition.from == from && static_cast<int>(transition.to) == state)
+      RuntimeAccess::context(context_).request(member_, transition.event);
   }
 }
 
 void RTObjectStateMachine::workerPreDo() {
-  const base::ScopedClock clock(context_.contextClock());
-  context_.context().transit_one(member_);
+  const base::ScopedClock clock(RuntimeAccess::clock(context_));
+  RuntimeAccess::context(context_).transit_one(member_);
 }
 
 void RTObjectStateMachine::workerDo() {
-  const base::ScopedClock clock(context_.contextClock());
-  context_.context().transit_one(member_);
-  context_.context().execute_one(member_);
+  const base::ScopedClock clock(RuntimeAccess::clock(context_));
+  RuntimeAccess::context(context_).transit_one(member_);
+  RuntimeAccess::context(context_).execute_one(member_);
 }
 
 void RTObjectStateMachine::workerPostDo() {
-  const base::ScopedClock clock(context_.contextClock());
-  context_.context().update_one(member_);
+  const base::ScopedClock clock(RuntimeAccess::clock(context_));
+  RuntimeAccess::context(context_).update_one(member_);
 }
 
 }  // namespace RTC_impl

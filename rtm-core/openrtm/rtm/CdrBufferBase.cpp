@@ -2,19 +2,20 @@
 
 #include <utility>
 
+#include "component/runtime_access.h"
 #include "corba/ports/data_port.h"
 
 namespace RTC {
 
-std::shared_ptr<corba::Waiting> CdrBufferBase::waiting() const {
-  std::lock_guard lock(mutex_);
-  return waiting_.lock();
+std::shared_ptr<corba::Waiting> RuntimeAccess::waiting(const CdrBufferBase& buffer) {
+  std::lock_guard lock(buffer.mutex_);
+  return std::static_pointer_cast<corba::Waiting>(buffer.waiting_.lock());
 }
 
-void CdrBufferBase::show(std::weak_ptr<corba::Waiting> waiting, std::size_t length) {
-  std::lock_guard lock(mutex_);
-  waiting_ = std::move(waiting);
-  length_ = length;
+void RuntimeAccess::show(CdrBufferBase& buffer, const std::weak_ptr<corba::Waiting>& waiting, std::size_t length) {
+  std::lock_guard lock(buffer.mutex_);
+  buffer.waiting_ = waiting;
+  buffer.length_ = length;
 }
 
 std::size_t CdrBufferBase::length() const {
@@ -23,7 +24,7 @@ std::size_t CdrBufferBase::length() const {
 }
 
 std::size_t CdrBufferBase::readable() const {
-  const auto all = waiting();
+  const auto all = RuntimeAccess::waiting(*this);
   return all ? all->unread() : 0;
 }
 
@@ -34,7 +35,7 @@ std::size_t CdrBufferBase::writable() const {
 }
 
 void CdrBufferBase::reset() {
-  if (const auto all = waiting()) all->drop_unread();
+  if (const auto all = RuntimeAccess::waiting(*this)) all->drop_unread();
 }
 
 }  // namespace RTC

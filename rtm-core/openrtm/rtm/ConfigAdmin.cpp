@@ -22,7 +22,9 @@ std::string text(const char* text) { return text ? text : ""; }
 
 }  // namespace
 
-ConfigAdmin::ConfigAdmin() : configuration_(std::make_unique<rt::Configuration>()) {}
+class ConfigAdmin::Sets final : public rt::Configuration {};
+
+ConfigAdmin::ConfigAdmin() : configuration_(std::make_unique<Sets>()) {}
 ConfigAdmin::ConfigAdmin(const coil::Properties& conf) : ConfigAdmin() { load(conf); }
 ConfigAdmin::~ConfigAdmin() = default;
 

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/guarded.h"
+#include "component/runtime_access.h"
 #include "corba/transport/transport.h"
 #include "rtm/ByteData.h"
 #include "rtm/PortBase.h"
@@ -13,7 +14,7 @@ struct ConnectorBase::Impl {
   PortBase& port;
   // Shared, because a sample may still be on its way when the port dies.
   const std::shared_ptr<ConnectorListeners> listeners;
-  base::Guarded<std::shared_ptr<ConnectorInfo>, base::Rank::buffer> info{};
+  base::Guarded<std::shared_ptr<ConnectorInfo>, base::Rank::details> info{};
 };
 
 ConnectorBase::ConnectorBase(PortBase& port, std::shared_ptr<ConnectorListeners> listeners, ConnectorInfo info)
@@ -56,13 +57,13 @@ BufferStatus to_buffer_status(rt::PortStatus status) {
 
 }  // namespace
 
-void InPortConnector::serve(std::weak_ptr<corba::Receiver> receiver, bool is_little) {
-  receiver_ = std::move(receiver);
-  is_little_ = is_little;
+void RuntimeAccess::serve(InPortConnector& connector, const std::weak_ptr<corba::Receiver>& receiver, bool is_little) {
+  connector.receiver_ = receiver;
+  connector.is_little_ = is_little;
 }
 
 BufferStatus InPortConnector::write(const ByteData& data) {
-  const auto receiver = receiver_.lock();
+  const auto receiver = std::static_pointer_cast<corba::Receiver>(receiver_.lock());
   if (!receiver) return BufferStatus::PRECONDITION_NOT_MET;
   auto block = receiver->pool().take(data.getDataLength());
   if (block->size() > 0) std::memcpy(block->data(), data.getBuffer(), block->size());
@@ -72,13 +73,13 @@ BufferStatus InPortConnector::write(const ByteData& data) {
   return to_buffer_status(receiver->receive(std::move(sample)));
 }
 
-void OutPortConnector::serve(std::weak_ptr<corba::Source> source, bool is_little) {
-  source_ = std::move(source);
-  is_little_ = is_little;
+void RuntimeAccess::serve(OutPortConnector& connector, const std::weak_ptr<corba::Source>& source, bool is_little) {
+  connector.source_ = source;
+  connector.is_little_ = is_little;
 }
 
 BufferStatus OutPortConnector::read(ByteData& data) {
-  const auto source = source_.lock();
+  const auto source = std::static_pointer_cast<corba::Source>(source_.lock());
   if (!source) return BufferStatus::PRECONDITION_NOT_MET;
   rt::Sample sample;
   const rt::PortStatus status = source->give(sample);

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "base/log.h"
+#include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
 #include "corba/transport/event_data.h"
 #include "openrtm/type_names.h"
@@ -68,7 +69,7 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& i
 }
 
 detail::TypedDataListener::ReturnCode detail::TypedDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
-  const corba::TypeOps& own = type().ops();
+  const corba::TypeOps& own = RuntimeAccess::ops(type());
   if (*data.ops().type == *own.type) {
     void* value = data.value();
     if (!value) return NO_CHANGE;

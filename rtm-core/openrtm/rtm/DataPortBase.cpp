@@ -1,6 +1,7 @@
 #include "rtm/DataPortBase.h"
 
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "corba/orb/nv_list.h"
 #include "openrtm/data_port_core.h"
 #include "openrtm/data_port_support.h"
@@ -20,9 +21,12 @@ DataPortBase<Connector>::DataPortBase(const char* name, std::unique_ptr<detail::
 template <class Connector>
 DataPortBase<Connector>::~DataPortBase() = default;
 
-template <class Connector>
-void DataPortBase<Connector>::setClock(std::shared_ptr<const base::Clock> clock) {
-  core_->set_clock(std::move(clock));
+void RuntimeAccess::set_clock(DataPortBase<InPortConnector>& port, std::shared_ptr<const base::Clock> clock) {
+  port.core_->set_clock(std::move(clock));
+}
+
+void RuntimeAccess::set_clock(DataPortBase<OutPortConnector>& port, std::shared_ptr<const base::Clock> clock) {
+  port.core_->set_clock(std::move(clock));
 }
 
 template <class Connector>

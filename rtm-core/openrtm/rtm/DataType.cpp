@@ -1,14 +1,21 @@
 #include "rtm/DataType.h"
 
 #include "base/clock.h"
+#include "component/runtime_access.h"
 #include "corba/transport/type_ops.h"
 #include "rtm/Timestamp.h"
 
-namespace RTC::detail {
+namespace RTC {
 
-DataType::DataType(std::unique_ptr<corba::TypeOps> ops) : ops_(std::move(ops)) {}
+struct detail::DataType::Ops : corba::TypeOps {};
 
-DataType::DataType(const TypeTable& table) : DataType(std::make_unique<corba::TypeOps>()) {
+const corba::TypeOps& RuntimeAccess::ops(const detail::DataType& type) { return *type.ops_; }
+
+namespace detail {
+
+DataType::DataType(std::unique_ptr<Ops> ops) : ops_(std::move(ops)) {}
+
+DataType::DataType(const TypeTable& table) : DataType(std::make_unique<Ops>()) {
   const CORBA::TypeCode_var code = table.code();
   ops_->type_id = code->id();
   ops_->type = table.type;
@@ -29,7 +36,7 @@ const char* DataType::id() const { return ops_->type_id.c_str(); }
 const DataType& DataType::any() {
   struct Nothing {};
   static const DataType type = [] {
-    corba::TypeOps ops{};
+    Ops ops{};
     ops.type_id = "Any";
     ops.type = &typeid(Nothing);
     ops.make = []() -> std::shared_ptr<void> { return std::make_shared<Nothing>(); };
@@ -37,7 +44,7 @@ const DataType& DataType::any() {
     ops.assign = [](void*, const void*) {};
     ops.encode = [](const void*, cdrStream&) {};
     ops.decode = [](void*, cdrStream&) {};
-    return DataType(std::make_unique<corba::TypeOps>(std::move(ops)));
+    return DataType(std::make_unique<Ops>(std::move(ops)));
   }();
   return type;
 }
@@ -47,6 +54,7 @@ Stamp current_stamp() {
   return {static_cast<CORBA::ULong>(now / 1'000'000'000), static_cast<CORBA::ULong>(now % 1'000'000'000)};
 }
 
-}  // namespace RTC::detail
+}  // namespace detail
+}  // namespace RTC
 
 bool RTC::inSimulatedTime() { return base::current_clock().is_simulated(); }

@@ -36,9 +36,6 @@ ExecutionContextBase::ExecutionContextBase(const std::string& name)
 
 ExecutionContextBase::~ExecutionContextBase() = default;
 
-rt::ExecutionContext& ExecutionContextBase::context() { return impl_->context; }
-const rt::ExecutionContext& ExecutionContextBase::context() const { return impl_->context; }
-
 void ExecutionContextBase::init(coil::Properties& props) {
   if (const std::string rate = props.getProperty("rate"); !rate.empty()) {
     const auto number = base::parse_number(rate);

@@ -1,20 +1,23 @@
 #include <rtm/ExecutionContextWorker.h>
-#include "component/context_impl.h"
+
+#include "component/runtime_access.h"
+
+using RTC::RuntimeAccess;
 
 namespace RTC_impl {
 
 std::vector<std::shared_ptr<RTObjectStateMachine>> ExecutionContextWorker::members() const {
   std::vector<std::shared_ptr<RTObjectStateMachine>> machines;
-  for (auto& member : context_.impl_->members()) machines.push_back(std::move(member.machine));
+  for (auto& member : RuntimeAccess::impl(context_).members()) machines.push_back(std::move(member.machine));
   return machines;
 }
 
 void ExecutionContextWorker::countCycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited) {
-  context_.context().count_cycle(took, waited);
+  RuntimeAccess::context(context_).count_cycle(took, waited);
 }
 
 RTObjectStateMachine* ExecutionContextWorker::findComponent(RTC::LightweightRTObject_ptr component) {
-  const auto member = context_.impl_->find(component);
+  const auto member = RuntimeAccess::impl(context_).find(component);
   return member ? member->machine.get() : nullptr;
 }
 
@@ -29,9 +32,9 @@ bool ExecutionContextWorker::isAllNextState(RTC::LifeCycleState state) const { r
 bool ExecutionContextWorker::isOneOfCurrentState(RTC::LifeCycleState state) const { return context_.isOneOfCurrentState(state); }
 bool ExecutionContextWorker::isOneOfNextState(RTC::LifeCycleState state) const { return context_.isOneOfNextState(state); }
 
-void ExecutionContextWorker::invokeWorker() { context_.invokeWorker(); }
-void ExecutionContextWorker::invokeWorkerPreDo() { context_.invokeWorkerPreDo(); }
-void ExecutionContextWorker::invokeWorkerDo() { context_.invokeWorkerDo(); }
-void ExecutionContextWorker::invokeWorkerPostDo() { context_.invokeWorkerPostDo(); }
+void ExecutionContextWorker::invokeWorker() { RuntimeAccess::cycle(context_); }
+void ExecutionContextWorker::invokeWorkerPreDo() { RuntimeAccess::transit(context_); }
+void ExecutionContextWorker::invokeWorkerDo() { RuntimeAccess::execute(context_); }
+void ExecutionContextWorker::invokeWorkerPostDo() { RuntimeAccess::update(context_); }
 
 }  // namespace RTC_impl

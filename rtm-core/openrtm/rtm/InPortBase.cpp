@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/waiting.h"
+#include "component/runtime_access.h"
 #include "openrtm/data_port_core.h"
 #include "rtm/DataType.h"
 #include "rtm/Timestamp.h"
@@ -11,7 +12,8 @@
 namespace RTC {
 
 InPortBase::InPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers)
-    : DataPortBase(name, std::make_unique<detail::DataPortCore>(rt::Side::in, corba::make_in_port(type.ops()), serializers)) {}
+    : DataPortBase(name, std::make_unique<detail::DataPortCore>(rt::Side::in, corba::make_in_port(RuntimeAccess::ops(type)), serializers)) {
+}
 
 InPortBase::~InPortBase() { retire(); }
 

@@ -1,5 +1,6 @@
 #include "rtm/OutPortBase.h"
 
+#include "component/runtime_access.h"
 #include "openrtm/data_port_core.h"
 #include "openrtm/data_port_support.h"
 #include "rtm/DataType.h"
@@ -7,10 +8,10 @@
 namespace RTC {
 
 OutPortBase::OutPortBase(const char* name, const detail::DataType& type, const detail::Serializers& serializers)
-    : DataPortBase(name,
-                   std::make_unique<detail::DataPortCore>(
-                       rt::Side::out, corba::make_out_port(type.ops(), [this](const std::string& id) { drop_connection(id.c_str()); }),
-                       serializers)) {}
+    : DataPortBase(name, std::make_unique<detail::DataPortCore>(
+                             rt::Side::out,
+                             corba::make_out_port(RuntimeAccess::ops(type), [this](const std::string& id) { drop_connection(id.c_str()); }),
+                             serializers)) {}
 
 OutPortBase::~OutPortBase() { retire(); }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/text.h"
+#include "component/runtime_access.h"
 #include "core/connector_settings.h"
 #include "core/workers.h"
 
@@ -28,10 +29,15 @@ class PeriodicExecutionContext::Steps final : public rt::Steps {
   PeriodicExecutionContext& context_;
 };
 
+class PeriodicExecutionContext::Worker final : public rt::PeriodicWorker {
+ public:
+  using rt::PeriodicWorker::PeriodicWorker;
+};
+
 PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
     : ExecutionContextServant(name),
       steps_(std::make_unique<Steps>(*this)),
-      worker_(std::make_unique<rt::PeriodicWorker>(context(), *steps_)) {
+      worker_(std::make_unique<Worker>(RuntimeAccess::context(*this), *steps_)) {
   keepThread();  // what components keep for their thread outlasts stop() and start()
   setObjRef(RTC::ExecutionContextService_var(_this()));
   setKind(RTC::PERIODIC);
@@ -42,11 +48,11 @@ PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
-  context().halt();  // loops of authors ask isRunning()
+  RuntimeAccess::context(*this).halt();  // loops of authors ask isRunning()
   worker_->stop();
   wakeLoop();
   coil::Task::wait();
-  context().resume();  // for the next thread
+  RuntimeAccess::context(*this).resume();  // for the next thread
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onSetRate(double) {

@@ -12,6 +12,7 @@
 #include "base/guarded.h"
 #include "base/text.h"
 #include "base/tick.h"
+#include "component/runtime_access.h"
 #include "corba/orb/gate.h"
 #include "corba/orb/nv_list.h"
 #include "core/key_limits.h"
@@ -98,7 +99,7 @@ CORBA::Boolean Configuration_impl::add_service_profile(const ServiceProfile& pro
 CORBA::Boolean Configuration_impl::add_organization(Organization_ptr organization) {
   const Inside inside(door_->gate);
   if (CORBA::is_nil(organization)) throw InvalidParameter("the organization is nil");
-  return component_.addOrganization(organization);
+  return RTC::RuntimeAccess::add_organization(component_, organization);
 }
 
 CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
@@ -110,7 +111,7 @@ CORBA::Boolean Configuration_impl::remove_service_profile(const char* id) {
 CORBA::Boolean Configuration_impl::remove_organization(const char* organization_id) {
   const Inside inside(door_->gate);
   if (organization_id[0] == '\0') throw InvalidParameter("the id is empty");
-  return component_.removeOrganization(organization_id);
+  return RTC::RuntimeAccess::remove_organization(component_, organization_id);
 }
 
 ParameterList* Configuration_impl::get_configuration_parameters() { return new ParameterList(); }
@@ -144,7 +145,7 @@ ConfigurationSet* Configuration_impl::get_configuration_set(const char* id) {
 
 CORBA::Boolean Configuration_impl::set_configuration_set_values(const ConfigurationSet& set) {
   const Inside inside(door_->gate);
-  const auto mine = door_->turn_to_change(component_.callbackTimeout());
+  const auto mine = door_->turn_to_change(RTC::RuntimeAccess::callback_timeout(component_));
   return configuration_.setConfigurationSetValues(to_properties(set));
 }
 
@@ -156,20 +157,20 @@ ConfigurationSet* Configuration_impl::get_active_configuration_set() {
 
 CORBA::Boolean Configuration_impl::add_configuration_set(const ConfigurationSet& set) {
   const Inside inside(door_->gate);
-  const auto mine = door_->turn_to_change(component_.callbackTimeout());
+  const auto mine = door_->turn_to_change(RTC::RuntimeAccess::callback_timeout(component_));
   return configuration_.addConfigurationSet(to_properties(set));
 }
 
 CORBA::Boolean Configuration_impl::remove_configuration_set(const char* id) {
   const Inside inside(door_->gate);
-  const auto mine = door_->turn_to_change(component_.callbackTimeout());
+  const auto mine = door_->turn_to_change(RTC::RuntimeAccess::callback_timeout(component_));
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   return configuration_.removeConfigurationSet(id);
 }
 
 CORBA::Boolean Configuration_impl::activate_configuration_set(const char* id) {
   const Inside inside(door_->gate);
-  const auto mine = door_->turn_to_change(component_.callbackTimeout());
+  const auto mine = door_->turn_to_change(RTC::RuntimeAccess::callback_timeout(component_));
   if (id[0] == '\0') throw InvalidParameter("the id is empty");
   if (!configuration_.activateConfigurationSet(id))
     throw InvalidParameter(("no configuration set " + base::in_quotes(id) + " that can be active").c_str());

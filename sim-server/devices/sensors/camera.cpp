@@ -155,7 +155,7 @@ class CameraWorker {
   std::vector<Channel> channels_;
   std::unique_ptr<Renderer> renderer_;
   bool has_failed_ = false;
-  base::Guarded<State, base::Rank::buffer> state_;
+  base::Guarded<State, base::Rank::worker> state_;
   std::condition_variable changed_;
   std::jthread thread_;  // last: ends before what it uses
 };

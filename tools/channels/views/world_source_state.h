@@ -91,7 +91,7 @@ struct WorldSource::State {
     bool is_ready = false;
     shm::Participant* participant = nullptr;  // of the thread, while it has one
   };
-  base::Guarded<Shared, base::Rank::registry> shared;
+  base::Guarded<Shared, base::Rank::tasks> shared;
   std::condition_variable changed;
   std::atomic<bool> is_live{true};  // relaxed: says nothing but itself
 

@@ -119,7 +119,7 @@ void run_one(const Session& session, Console& console, const Campaign& campaign,
     console.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
   if (!outcome.run.problem.empty()) console.fail({outcome.run.problem});
   for (const auto& verdict : outcome.run.verdicts) {
-    if (!verdict.problem.empty()) console.fail({verdict.expectation + ": " + verdict.problem});
+    if (!verdict.problem.empty()) console.fail({editor::failure_text(verdict)});
   }
 }
 

@@ -42,7 +42,7 @@ struct Queue {
     std::deque<Sample> samples;
     std::size_t dropped = 0;
   };
-  base::Guarded<Content, base::Rank::buffer> content;
+  base::Guarded<Content, base::Rank::samples> content;
   std::condition_variable arrived;
 };
 

@@ -6,10 +6,6 @@
 #include <memory>
 #include <mutex>
 
-namespace corba {
-class Waiting;
-}
-
 namespace RTC {
 
 class ByteData;
@@ -30,14 +26,11 @@ class BufferBase<ByteData> {
   // Throws away what waits, and the last value that would be read again.
   void reset();
 
-  // For ports.
-  void show(std::weak_ptr<corba::Waiting> waiting, std::size_t length);
-
  private:
-  std::shared_ptr<corba::Waiting> waiting() const;
+  friend class RuntimeAccess;
 
   mutable std::mutex mutex_;
-  std::weak_ptr<corba::Waiting> waiting_;
+  std::weak_ptr<void> waiting_;
   std::size_t length_ = 0;
 };
 

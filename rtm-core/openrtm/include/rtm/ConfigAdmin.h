@@ -13,10 +13,6 @@
 #include <type_traits>
 #include <vector>
 
-namespace rt {
-class Configuration;
-}
-
 namespace RTC {
 
 // The names of 1.0.
@@ -116,7 +112,8 @@ class ConfigAdmin {
   template <class Update>
   void notify(const Update& update);
 
-  std::unique_ptr<rt::Configuration> configuration_;
+  class Sets;
+  std::unique_ptr<Sets> configuration_;
   std::function<void(const std::string& line)> say_ = [](const std::string&) {};
   ConfigurationListeners listeners_;
 };

@@ -13,11 +13,6 @@
 #include "rtm/DataPortStatus.h"
 #include "rtm/idl/RTCStub.h"
 
-namespace corba {
-class Receiver;
-class Source;
-}  // namespace corba
-
 namespace RTC {
 
 class ByteData;
@@ -53,14 +48,14 @@ class ConnectorBase : public DataPortStatus {
   // Takes the whole connection apart; the object is gone afterwards.
   DataPortStatus disconnect();
 
-  // For ports.
+ private:
+  friend class RuntimeAccess;
+  struct Impl;
+
   ConnectorListeners& listeners();
   // What listeners get from now on.
   void setInfo(ConnectorInfo info);
   std::shared_ptr<ConnectorInfo> info() const;
-
- private:
-  struct Impl;
 
   const std::string name_;
   const std::string id_;
@@ -74,11 +69,11 @@ class InPortConnector : public ConnectorBase {
   // What a transport of an author has brought: waits in the port from now on. OK, FULL, TIMEOUT or BUFFER_ERROR, after the end of the
   // connection and on those of other transports PRECONDITION_NOT_MET.
   BufferStatus write(const ByteData& data);
-  void serve(std::weak_ptr<corba::Receiver> receiver, bool is_little);
   bool isLittleEndian() const { return is_little_; }
 
  private:
-  std::weak_ptr<corba::Receiver> receiver_;
+  friend class RuntimeAccess;
+  std::weak_ptr<void> receiver_;
   bool is_little_ = true;
 };
 
@@ -87,11 +82,11 @@ class OutPortConnector : public ConnectorBase {
   using ConnectorBase::ConnectorBase;
   // The next sample, for a transport of an author: OK, EMPTY, TIMEOUT or BUFFER_ERROR, else as above.
   BufferStatus read(ByteData& data);
-  void serve(std::weak_ptr<corba::Source> source, bool is_little);
   bool isLittleEndian() const { return is_little_; }
 
  private:
-  std::weak_ptr<corba::Source> source_;
+  friend class RuntimeAccess;
+  std::weak_ptr<void> source_;
   bool is_little_ = true;
 };
 

@@ -13,10 +13,6 @@
 #include "rtm/DataPortStatus.h"
 #include "rtm/PortBase.h"
 
-namespace base {
-class Clock;
-}
-
 namespace RTC {
 
 namespace detail {
@@ -58,9 +54,6 @@ class DataPortBase : public PortBase, public DataPortStatus {
   void deactivateInterfaces() override {}
 
   virtual const char* name() { return short_name_.c_str(); }
-
-  // The time for stamps on threads that no context runs. For connections that are made later; the component sets it when it takes the port.
-  void setClock(std::shared_ptr<const base::Clock> clock);
 
   // Of the last read or write, per connection in the order of connectors().
   DataPortStatus getStatus(int index) const;
@@ -104,6 +97,7 @@ class DataPortBase : public PortBase, public DataPortStatus {
   mutable coil::Mutex m_connectorsMutex;
 
  private:
+  friend class RuntimeAccess;
   template <class Match>
   Connector* find(Match match) const;
 

@@ -9,14 +9,13 @@
 #include <typeinfo>
 #include <utility>
 
-namespace corba {
-struct TypeOps;
-}
-
 // Lives in the global namespace so that the operators which omniidl writes there are found whatever order headers come in.
 struct RtmAnyProbe : CORBA::Any {};
 
 namespace RTC {
+
+class RuntimeAccess;
+
 namespace detail {
 
 // Types with a time stamp: a member `tm` of type RTC::Time.
@@ -66,7 +65,6 @@ class DataType {
   DataType(const DataType&) = delete;
   DataType& operator=(const DataType&) = delete;
 
-  const corba::TypeOps& ops() const { return *ops_; }
   // "IDL:RTC/TimedLong:1.0"
   const char* id() const;
 
@@ -74,9 +72,11 @@ class DataType {
   static const DataType& any();
 
  private:
-  explicit DataType(std::unique_ptr<corba::TypeOps> ops);
+  friend class RTC::RuntimeAccess;
+  struct Ops;
+  explicit DataType(std::unique_ptr<Ops> ops);
 
-  std::unique_ptr<corba::TypeOps> ops_;
+  std::unique_ptr<Ops> ops_;
 };
 
 template <class T>

@@ -19,9 +19,6 @@
 namespace base {
 class Clock;
 }
-namespace rt {
-class ExecutionContext;
-}
 
 namespace RTC {
 
@@ -38,37 +35,23 @@ class ExecutionContextBase {
   virtual void init(coil::Properties& props);
   // Makes the component an owner of this context.
   virtual RTC::ReturnCode_t bindComponent(RTC::RTObject_impl* rtc);
-  // Ends the membership of an owner: after return the context does not call it any more, but a callback that outlasts `patience` still
-  // runs. Returns how many owners are left.
-  std::size_t unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience = default_callback_timeout);
-  // Ends all memberships at once, without waiting for callbacks: for a context that ends.
-  void dismissMembers();
 
   // False from the moment on that stop() begins, so that loops of authors end with it.
   CORBA::Boolean isRunning() const;
   // onStartup (onShutdown) of every member is called on the calling thread. stop() waits for a callback that runs; when that does not
-  // return within callbackTimeout() the answer is RTC_ERROR, a log line names it, and the context runs on when it does return.
+  // return within the option callback_timeout [s] the answer is RTC_ERROR, a log line names it, and the context runs on when it does
+  // return.
   RTC::ReturnCode_t start();
   RTC::ReturnCode_t stop();
-  // The same with another end of its patience.
-  RTC::ReturnCode_t stopBy(std::chrono::steady_clock::time_point deadline);
-  // How long whoever ends something waits for callbacks of components: option callback_timeout [s].
   static constexpr std::chrono::seconds default_callback_timeout{5};
-  std::chrono::nanoseconds callbackTimeout() const;
-  // How long a member of another process may take for a callback before it counts as lost: option member_timeout [s], default 1.
-  // Without end one that hangs holds up the context; one that is dead does not, and a log line names who has taken more than a second.
-  static constexpr std::chrono::nanoseconds without_end = std::chrono::nanoseconds::max();
-  void setMemberTimeout(std::chrono::nanoseconds timeout);
   // [Hz]
   CORBA::Double getRate() const;
   std::chrono::nanoseconds getPeriod() const;
   RTC::ReturnCode_t setRate(CORBA::Double rate);
 
   RTC::ReturnCode_t addComponent(RTC::LightweightRTObject_ptr comp);
-  // The component is not called any more after return. A callback of it that outlasts callbackTimeout() (or the deadline) still runs; a log
-  // line names it.
+  // The component is not called any more after return. A callback of it that outlasts callback_timeout still runs; a log line names it.
   RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp);
-  RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
   // Wait for the transition unless sync_transition is off or the caller is the stepping thread.
   RTC::ReturnCode_t activateComponent(RTC::LightweightRTObject_ptr comp);
   RTC::ReturnCode_t deactivateComponent(RTC::LightweightRTObject_ptr comp);
@@ -87,8 +70,6 @@ class ExecutionContextBase {
   // The caller owns the profile.
   RTC::ExecutionContextProfile* getProfile();
   std::vector<RTC::LightweightRTObject_var> getComponents() const;
-  // Of each of them, in their order: as getComponentState() for all at once.
-  std::vector<RTC::LifeCycleState> getComponentStates() const;
   // The same as a sequence, which loops of authors step through. For one thread at a time; good until the next call.
   const RTC::RTCList& getComponentList() const;
 
@@ -104,19 +85,11 @@ class ExecutionContextBase {
   std::string getName() const;
   std::string getTypeName() const;
 
-  // Brings a member to rest before it leaves: deactivates it when it is active, resets it when it is in error; waits for that whatever
-  // sync_transition says, but not for a callback that has outlasted a wait before.
-  void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
+ protected:
   // What time it is for the components now, for threads that the context does not run, such as those that receive data for them. It may
   // outlive the context. Null: the time of the system.
   virtual std::shared_ptr<const base::Clock> sharedClock() const { return nullptr; }
 
-  // Asks for the same and returns at once; contexts without a thread do nothing.
-  void askToRest(RTC::LightweightRTObject_ptr comp);
-  // Waits until no callback of a member runs on another thread; false on time-out.
-  bool waitForQuiet(std::chrono::nanoseconds timeout);
-
- protected:
   // Called by the functions above at the moments their names say; a code other than RTC_OK ends the operation with it.
   virtual RTC::ReturnCode_t onStarting() { return RTC::RTC_OK; }
   virtual RTC::ReturnCode_t onStarted() { return RTC::RTC_OK; }
@@ -163,9 +136,12 @@ class ExecutionContextBase {
   // For onStopping, before the thread is joined: waits for the callback that runs, as long as stop() may. False, and a log line, when it
   // does not return.
   bool waitForCallbacks();
-
-  rt::ExecutionContext& context();
-  const rt::ExecutionContext& context() const;
+  // How long a member of another process may take for a callback before it counts as lost: option member_timeout [s], default 1.
+  // Without end one that hangs holds up the context; one that is dead does not, and a log line names who has taken more than a second.
+  static constexpr std::chrono::nanoseconds without_end = std::chrono::nanoseconds::max();
+  void setMemberTimeout(std::chrono::nanoseconds timeout);
+  // Of each member, in the order of getComponents(): as getComponentState() for all at once.
+  std::vector<RTC::LifeCycleState> getComponentStates() const;
 
   mutable Logger rtclog;
   RTC_impl::ExecutionContextWorker m_worker{*this};
@@ -173,11 +149,29 @@ class ExecutionContextBase {
   std::atomic<bool> m_syncActivation{true}, m_syncDeactivation{true}, m_syncReset{true};
 
  private:
-  friend class RTC_impl::RTObjectStateMachine;
-  friend class RTC_impl::ExecutionContextWorker;
+  friend class RuntimeAccess;
   struct Impl;
   class Joining;
   class Changing;
+  struct Transition;
+  RTC::ReturnCode_t make(const Transition& transition, RTC::LightweightRTObject_ptr comp);
+  // Ends the membership of an owner: after return the context does not call it any more, but a callback that outlasts `patience` still
+  // runs. Returns how many owners are left.
+  std::size_t unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience = default_callback_timeout);
+  // Ends all memberships at once, without waiting for callbacks: for a context that ends.
+  void dismissMembers();
+  // stop() with another end of its patience.
+  RTC::ReturnCode_t stopBy(std::chrono::steady_clock::time_point deadline);
+  // How long whoever ends something waits for callbacks of components: option callback_timeout [s].
+  std::chrono::nanoseconds callbackTimeout() const;
+  RTC::ReturnCode_t removeComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
+  // Brings a member to rest before it leaves: deactivates it when it is active, resets it when it is in error; waits for that whatever
+  // sync_transition says, but not for a callback that has outlasted a wait before.
+  void calmComponent(RTC::LightweightRTObject_ptr comp, std::chrono::steady_clock::time_point deadline);
+  // Asks for the same and returns at once; contexts without a thread do nothing.
+  void askToRest(RTC::LightweightRTObject_ptr comp);
+  // Waits until no callback of a member runs on another thread; false on time-out.
+  bool waitForQuiet(std::chrono::nanoseconds timeout);
   std::chrono::nanoseconds callbackPatience() const;
   // About the one that runs; nobody waits for it any more.
   void complainAboutCallback(const char* consequence);

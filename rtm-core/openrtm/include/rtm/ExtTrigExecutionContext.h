@@ -8,10 +8,6 @@
 
 #include <memory>
 
-namespace rt {
-class TriggeredWorker;
-}
-
 namespace RTC {
 
 class Manager;
@@ -40,7 +36,8 @@ class ExtTrigExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtT
  private:
   class Steps;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<rt::TriggeredWorker> worker_;
+  class Worker;
+  std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace RTC

@@ -9,11 +9,8 @@
 
 #include <memory>
 
-namespace rt {
-class TriggeredWorker;
-}
 namespace base {
-class ManualClock;
+class Clock;
 }
 
 namespace RTC {
@@ -48,9 +45,11 @@ class LogicalTimeTriggeredEC : public ExecutionContextServant<POA_OpenRTM::Logic
 
  private:
   class Steps;
-  const std::shared_ptr<base::ManualClock> clock_;
+  struct Time;
+  const std::shared_ptr<Time> clock_;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<rt::TriggeredWorker> worker_;
+  class Worker;
+  std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace RTC

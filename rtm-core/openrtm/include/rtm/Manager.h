@@ -36,10 +36,6 @@ class LocalServiceActionListener;
 struct ManagerActionListeners;
 }  // namespace RTM
 
-namespace corba {
-class Orb;
-}
-
 namespace RTC {
 
 class CorbaNaming;

@@ -13,9 +13,6 @@
 namespace RTC {
 class Manager;
 }
-namespace rt {
-enum class RemoteRights;
-}
 
 namespace RTM {
 
@@ -70,8 +67,9 @@ class ManagerServant final : public POA_RTM::Manager {
     bool is_told = false;
     std::chrono::steady_clock::time_point may_return{};
   };
-  rt::RemoteRights rights() const;
-  bool may(rt::RemoteRights needed, const std::string& what) const;
+  // For callers of other accounts and hosts: manager.remote_rights.
+  bool may_do_everything() const;
+  bool may_change(const std::string& what, bool needs_everything = false) const;
   bool may_set(const std::string& key, const std::string& value, const std::string& what) const;
   bool may_load(const std::string& module, const std::string& what) const;
   void refuse(const std::string& what, const std::string& why) const;

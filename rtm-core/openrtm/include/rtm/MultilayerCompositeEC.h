@@ -11,10 +11,6 @@
 #include <memory>
 #include <string>
 
-namespace rt {
-class Crew;
-}
-
 namespace RTC_exp {
 
 class MultilayerCompositeEC : public RTC::PeriodicExecutionContext {
@@ -35,7 +31,8 @@ class MultilayerCompositeEC : public RTC::PeriodicExecutionContext {
  private:
   std::map<std::string, std::size_t> groups_;  // by member, from 1; written before anybody else knows the context
   std::size_t count_ = 0;
-  std::unique_ptr<rt::Crew> crew_;
+  class Crew;
+  std::unique_ptr<Crew> crew_;
 };
 
 }  // namespace RTC_exp

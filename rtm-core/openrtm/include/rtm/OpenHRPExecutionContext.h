@@ -7,10 +7,6 @@
 
 #include <memory>
 
-namespace rt {
-class Turns;
-}
-
 namespace RTC {
 
 class Manager;
@@ -36,7 +32,8 @@ class OpenHRPExecutionContext : public ExecutionContextServant<POA_OpenRTM::ExtT
   void invokeWorkerPostDo();
 
  private:
-  std::unique_ptr<rt::Turns> turns_;
+  class Turns;
+  std::unique_ptr<Turns> turns_;
 };
 
 }  // namespace RTC

@@ -12,9 +12,6 @@
 
 #include "rtm/idl/RTCStub.h"
 
-namespace rt {
-class Turns;
-}
 namespace RTC {
 class RTObject_impl;
 }
@@ -52,7 +49,8 @@ class PeriodicECOrganization : public Organization_impl {
   void for_each_member(Function function);
 
   RTC::RTObject_impl& composite_;
-  const std::unique_ptr<rt::Turns> turns_;
+  class Turns;
+  const std::unique_ptr<Turns> turns_;
   bool closed_ = false;  // inside a turn only, as everything below
   std::set<std::string> wanted_ports_;
   std::map<std::string, RTC::PortService_var> exported_;  // by full name

@@ -13,10 +13,6 @@
 #include <memory>
 #include <vector>
 
-namespace rt {
-class PeriodicWorker;
-}
-
 namespace RTC {
 
 class Manager;
@@ -80,7 +76,8 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
 
   class Steps;
   std::unique_ptr<Steps> steps_;
-  std::unique_ptr<rt::PeriodicWorker> worker_;
+  class Worker;
+  std::unique_ptr<Worker> worker_;
   std::vector<unsigned> processors_;
   int priority_ = 0;
 };

@@ -34,10 +34,6 @@
 #include <type_traits>
 #include <vector>
 
-namespace rt {
-enum class Action;
-}
-
 namespace SDOPackage {
 class Organization_impl;
 }
@@ -78,11 +74,9 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   ReturnCode_t initialize() override;
   ReturnCode_t finalize() override;
   // From inside a callback it returns at once and happens after the cycle. Waits for callbacks of this component that run: those that do
-  // not return within callbackTimeout(), all together, are named in the log; the component is then gone for everybody else but must not be
-  // deleted (isHeldByCallback).
+  // not return within the property exec_cxt.callback_timeout (5 s), all together, are named in the log; the component is then gone for
+  // everybody else but must not be deleted before they return.
   ReturnCode_t exit() override;
-  // The same with another end of its patience.
-  ReturnCode_t exitBy(std::chrono::steady_clock::time_point deadline);
   CORBA::Boolean is_alive(ExecutionContext_ptr exec_context) override;
   ExecutionContext_ptr get_context(ExecutionContextHandle_t exec_handle) override;
   ExecutionContextList* get_owned_contexts() override;
@@ -144,10 +138,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   // itself is what has changed: the instance name, the event, or the state machine. Authors say what they like. Any thread.
   enum class Status { component_profile, fsm_profile, fsm_structure, user_defined };
   void notifyObservers(Status status, const std::string& hint);
-  using StatusListener = std::function<void(Status, const std::string&)>;
-  // Returns its number. A listener may be called a little longer than until it is removed.
-  int addStatusListener(StatusListener listener);
-  void removeStatusListener(int number);
   // For onInitialize and the constructor; no other thread may read the profile meanwhile.
   coil::Properties& getProperties() { return m_properties; }
   Manager* getManager() const { return m_pManager; }
@@ -187,7 +177,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   void deletePortByName(const char* port_name);
   std::vector<InPortBase*> getInPorts() const;
   std::vector<OutPortBase*> getOutPorts() const;
-  std::vector<PortBase*> getLocalPorts() const;
 
   // Read (write) every port before (after) each onExecute; `completion`: go on when one fails.
   bool readAll();
@@ -203,28 +192,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   ReturnCode_t activate(RTC::UniqueId ec_id);
   ReturnCode_t deactivate(RTC::UniqueId ec_id);
   ReturnCode_t reset(RTC::UniqueId ec_id);
-  // The contexts that this process has made for the component.
-  std::vector<ExecutionContextBase*> getOwnContexts() const;
-  // The property exec_cxt.callback_timeout [s], default 5.
-  std::chrono::nanoseconds callbackTimeout() const;
-  // Asks for deactivation (reset) wherever the component is active (in error), and waits for nothing; then waits until it is at rest.
-  void askToRest();
-  void comeToRest(std::chrono::steady_clock::time_point deadline);
-  // Callbacks that run on other threads, whoever calls them.
-  struct RunningCallback {
-    const char* callback;
-    std::chrono::steady_clock::time_point since;
-    std::thread::id thread;
-    bool is_written_off;  // has outlasted a wait; nobody waits for it again
-  };
-  std::vector<RunningCallback> runningCallbacks() const;
-  // After exit(): a thread is still in a callback; the component must not be deleted before it returns.
-  bool isHeldByCallback() const;
-  // Contexts and organizations whose process has died are left, and the component's own contexts go on. The manager's timer calls it.
-  void leaveTheDead();
-  // Contexts that could not end because of a callback are destroyed when it has returned: by the next component that ends, or here. True
-  // when none is left.
-  static bool destroyLeftContexts();
 
   // SDO services.
   bool addSdoServiceProvider(const SDOPackage::ServiceProfile& prof, SdoServiceProviderBase* provider);
@@ -232,9 +199,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   bool addSdoServiceConsumer(const SDOPackage::ServiceProfile& prof);
   bool removeSdoServiceConsumer(const char* id);
 
-  // What Configuration::add_organization and remove_organization do.
-  bool addOrganization(SDOPackage::Organization_ptr organization);
-  bool removeOrganization(const char* organization_id);
   SDOPackage::DeviceProfile getDeviceProfile() const;
   void setDeviceProfile(const SDOPackage::DeviceProfile& profile);
 
@@ -268,89 +232,56 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   template <class Object>
   PreComponentActionListener* addPreComponentActionListener(PreComponentActionListenerType type, Object& object,
                                                             void (Object::*function)(UniqueId)) {
-    using Listener = MemberListener<PreComponentActionListener, Object, decltype(function), UniqueId>;
-    auto* listener = new Listener(object, function);
-    addPreComponentActionListener(type, listener);
-    return listener;
+    return listen<PreComponentActionListener>(type, object, function, &RTObject_impl::addPreComponentActionListener);
   }
   template <class Object>
   PostComponentActionListener* addPostComponentActionListener(PostComponentActionListenerType type, Object& object,
                                                               void (Object::*function)(UniqueId, ReturnCode_t)) {
-    using Listener = MemberListener<PostComponentActionListener, Object, decltype(function), UniqueId, ReturnCode_t>;
-    auto* listener = new Listener(object, function);
-    addPostComponentActionListener(type, listener);
-    return listener;
+    return listen<PostComponentActionListener>(type, object, function, &RTObject_impl::addPostComponentActionListener);
   }
   template <class Object>
   PortActionListener* addPortActionListener(PortActionListenerType type, Object& object,
                                             void (Object::*function)(const RTC::PortProfile&)) {
-    using Listener = MemberListener<PortActionListener, Object, decltype(function), const RTC::PortProfile&>;
-    auto* listener = new Listener(object, function);
-    addPortActionListener(type, listener);
-    return listener;
+    return listen<PortActionListener>(type, object, function, &RTObject_impl::addPortActionListener);
   }
   template <class Object>
   ExecutionContextActionListener* addExecutionContextActionListener(ExecutionContextActionListenerType type, Object& object,
                                                                     void (Object::*function)(UniqueId)) {
-    using Listener = MemberListener<ExecutionContextActionListener, Object, decltype(function), UniqueId>;
-    auto* listener = new Listener(object, function);
-    addExecutionContextActionListener(type, listener);
-    return listener;
+    return listen<ExecutionContextActionListener>(type, object, function, &RTObject_impl::addExecutionContextActionListener);
   }
   template <class Object>
   PreFsmActionListener* addPreFsmActionListener(PreFsmActionListenerType type, Object& object, void (Object::*function)(const char*)) {
-    using Listener = MemberListener<PreFsmActionListener, Object, decltype(function), const char*>;
-    auto* listener = new Listener(object, function);
-    addPreFsmActionListener(type, listener);
-    return listener;
+    return listen<PreFsmActionListener>(type, object, function, &RTObject_impl::addPreFsmActionListener);
   }
   template <class Object>
   PostFsmActionListener* addPostFsmActionListener(PostFsmActionListenerType type, Object& object,
                                                   void (Object::*function)(const char*, ReturnCode_t)) {
-    using Listener = MemberListener<PostFsmActionListener, Object, decltype(function), const char*, ReturnCode_t>;
-    auto* listener = new Listener(object, function);
-    addPostFsmActionListener(type, listener);
-    return listener;
+    return listen<PostFsmActionListener>(type, object, function, &RTObject_impl::addPostFsmActionListener);
   }
   template <class Object>
   PortConnectListener* addPortConnectListener(PortConnectListenerType type, Object& object,
                                               void (Object::*function)(const char*, ConnectorProfile&)) {
-    using Listener = MemberListener<PortConnectListener, Object, decltype(function), const char*, ConnectorProfile&>;
-    auto* listener = new Listener(object, function);
-    addPortConnectListener(type, listener);
-    return listener;
+    return listen<PortConnectListener>(type, object, function, &RTObject_impl::addPortConnectListener);
   }
   template <class Object>
   PortConnectRetListener* addPortConnectRetListener(PortConnectRetListenerType type, Object& object,
                                                     void (Object::*function)(const char*, ConnectorProfile&, ReturnCode_t)) {
-    using Listener = MemberListener<PortConnectRetListener, Object, decltype(function), const char*, ConnectorProfile&, ReturnCode_t>;
-    auto* listener = new Listener(object, function);
-    addPortConnectRetListener(type, listener);
-    return listener;
+    return listen<PortConnectRetListener>(type, object, function, &RTObject_impl::addPortConnectRetListener);
   }
   template <class Object>
   ConfigurationParamListener* addConfigurationParamListener(ConfigurationParamListenerType type, Object& object,
                                                             void (Object::*function)(const char*, const char*)) {
-    using Listener = MemberListener<ConfigurationParamListener, Object, decltype(function), const char*, const char*>;
-    auto* listener = new Listener(object, function);
-    addConfigurationParamListener(type, listener);
-    return listener;
+    return listen<ConfigurationParamListener>(type, object, function, &RTObject_impl::addConfigurationParamListener);
   }
   template <class Object>
   ConfigurationSetListener* addConfigurationSetListener(ConfigurationSetListenerType type, Object& object,
                                                         void (Object::*function)(const coil::Properties&)) {
-    using Listener = MemberListener<ConfigurationSetListener, Object, decltype(function), const coil::Properties&>;
-    auto* listener = new Listener(object, function);
-    addConfigurationSetListener(type, listener);
-    return listener;
+    return listen<ConfigurationSetListener>(type, object, function, &RTObject_impl::addConfigurationSetListener);
   }
   template <class Object>
   ConfigurationSetNameListener* addConfigurationSetNameListener(ConfigurationSetNameListenerType type, Object& object,
                                                                 void (Object::*function)(const char*)) {
-    using Listener = MemberListener<ConfigurationSetNameListener, Object, decltype(function), const char*>;
-    auto* listener = new Listener(object, function);
-    addConfigurationSetNameListener(type, listener);
-    return listener;
+    return listen<ConfigurationSetNameListener>(type, object, function, &RTObject_impl::addConfigurationSetNameListener);
   }
 
   // State machines tell their listeners with these.
@@ -395,8 +326,47 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   };
   struct Impl;
   struct Port;
-  friend class Manager;
-  friend class ManagedComponent;
+  class Callbacks;
+  friend class RuntimeAccess;
+
+  template <class Listener, class Type, class Object, class Result, class... Args>
+  Listener* listen(Type type, Object& object, Result (Object::*function)(Args...), void (RTObject_impl::*add)(Type, Listener*, bool)) {
+    auto* listener = new MemberListener<Listener, Object, decltype(function), Args...>(object, function);
+    (this->*add)(type, listener, true);
+    return listener;
+  }
+
+  // exit() with another end of its patience.
+  ReturnCode_t exitBy(std::chrono::steady_clock::time_point deadline);
+  // Returns its number. A listener may be called a little longer than until it is removed.
+  using StatusListener = std::function<void(Status, const std::string&)>;
+  int addStatusListener(StatusListener listener);
+  void removeStatusListener(int number);
+  std::vector<PortBase*> getLocalPorts() const;
+  // The contexts that this process has made for the component.
+  std::vector<ExecutionContextBase*> getOwnContexts() const;
+  std::chrono::nanoseconds callbackTimeout() const;
+  // Asks for deactivation (reset) wherever the component is active (in error), and waits for nothing; then waits until it is at rest.
+  void askToRest();
+  void comeToRest(std::chrono::steady_clock::time_point deadline);
+  // Callbacks that run on other threads, whoever calls them.
+  struct RunningCallback {
+    const char* callback;
+    std::chrono::steady_clock::time_point since;
+    std::thread::id thread;
+    bool is_written_off;  // has outlasted a wait; nobody waits for it again
+  };
+  std::vector<RunningCallback> runningCallbacks() const;
+  // After exit(): a thread is still in a callback; the component must not be deleted before it returns.
+  bool isHeldByCallback() const;
+  // Contexts and organizations whose process has died are left, and the component's own contexts go on. The manager's timer calls it.
+  void leaveTheDead();
+  // Contexts that could not end because of a callback are destroyed when it has returned: by the next component that ends, or here. True
+  // when none is left.
+  static bool destroyLeftContexts();
+  // What Configuration::add_organization and remove_organization do.
+  bool addOrganization(SDOPackage::Organization_ptr organization);
+  bool removeOrganization(const char* organization_id);
 
   void prepareBinding();
   void takeNames();
@@ -419,11 +389,6 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
   bool waitForCallbacks(std::chrono::steady_clock::time_point deadline);
   void complainAboutCallbacks(const char* consequence) const;
   void waitForExiter();
-  // Calls the author's function when its turn comes; what it throws is logged and RTC_ERROR.
-  template <class Function>
-  ReturnCode_t callAction(rt::Action action, ExecutionContextHandle_t exec_handle, Function function);
-  template <class Refusal, class Function, class Done>
-  ReturnCode_t callInTurn(const char* name, bool is_outside, Refusal refusal, Function function, Done done);
   // Says no to a caller from outside; few lines, however many calls.
   ReturnCode_t refuse(const char* operation, const std::string& why, ReturnCode_t code) const;
   bool mayBeChangedByCaller(const char* operation) const;
