@@ -386,7 +386,7 @@ eventually: [{model: pioneer2dx, region: [5, 5, 6, 6]}]
 
 # Models of a folder above the world's, of a Fuel cache and of a merged model.config are models for a sweep as they are for the simulator.
 def models_as_simulated():
-    box = "<sdf version='1.9'><model name='{0}'>{1}<link name='l'><collision name='c'><geometry><box><size>0.4 0.4 0.4</size></box></geometry></collision>" \
+    box = "<sdf version='1.9'><model name='{0}'>{1}<link name='l'><inertial><mass>1</mass></inertial><collision name='c'><geometry><box><size>0.4 0.4 0.4</size></box></geometry></collision>" \
           "<visual name='v'><geometry><mesh><uri>{2}</uri></mesh></geometry></visual></link></model></sdf>"
     (folder / "place/worlds").mkdir(parents=True)
     for name, place in (("crate", "place/crate"), ("barrel", "fuel/fuel.gazebosim.org/openrobotics/models/barrel/2")):
