@@ -1,7 +1,9 @@
 // Has mutations of meshes and pictures read as a simulator reads them (by rtm-asset-reader, checked), and gives what comes of them to ODE,
 // Embree and the bending of skins: none may end, hang or corrupt this process. The reader may die, which is counted.
-//   asset_fuzz [--seed N] [--runs N] [--limit MS] FILE...
-// N mutations of each file, each given up after MS milliseconds (2000). A crash leaves the last one in asset_fuzz_last.EXTENSION.
+//   asset_fuzz [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...
+// N mutations of each file, each given up after MS milliseconds (2000); bodies fall on every Nth mesh (1). A crash leaves the last one in
+// asset_fuzz_last.EXTENSION; --keep keeps those that ended the reader. One reader reads until a file ends it. Prints counts by file and by
+// format. For a campaign beside an instrumented reader: a folder with this program and the rtm-asset-reader of another build.
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,7 +38,23 @@ void require(bool holds, const char* what) {
 }
 
 struct Count {
-  long files = 0, results = 0, errors = 0;
+  long files = 0, results = 0, errors = 0, deaths = 0, late = 0;
+  void add(const Count& other) {
+    files += other.files, results += other.results, errors += other.errors, deaths += other.deaths, late += other.late;
+  }
+  void print(const std::string& name) const {
+    std::printf("%-28s %ld files: %ld with a result, %ld with an error; %ld ended the reader, %ld were not read in time\n", name.c_str(),
+                files, results, errors, deaths, late);
+    std::fflush(stdout);
+  }
+};
+
+struct Options {
+  unsigned seed = 1;
+  long runs = 50;
+  std::chrono::milliseconds limit{2000};
+  long bodies = 1;
+  fs::path keep;
 };
 
 // A ball, a box, a cylinder and a capsule on the mesh, and another one of it in the air.
@@ -84,16 +102,22 @@ void fall_on(const sim::MeshShape& shape, const sim::TriangleMesh& triangles) {
     require(!physics.exists(id) || physics.model_pose(id).matrix().allFinite(), "a pose is not finite");
 }
 
-void run(const std::string& file, std::chrono::milliseconds limit, Count& count) {
-  const sim::ReadDeadline deadline(std::chrono::steady_clock::now() + limit);
+// True: it has ended the reader.
+bool run(const std::string& file, const Options& options, Count& count) {
+  const sim::ReadDeadline deadline(std::chrono::steady_clock::now() + options.limit);
   ++count.files;
   const std::string extension = fs::path(file).extension().string();
   const auto is_one_line = [](const base::Error& error) {
     return !error.message.empty() && error.message.find('\n') == std::string::npos && error.message.size() < 6000;
   };
-  bool has_result = false;
+  bool has_result = false, is_deadly = false, is_late = false;
   const auto look = [&](const auto& result) {
-    if (!result.ok()) require(is_one_line(result.error()), "an error is not one line");
+    if (!result.ok()) {
+      const std::string& why = result.error().message;
+      require(is_one_line(result.error()), "an error is not one line");
+      is_deadly = is_deadly || why.find("its reader") != std::string::npos || why.find("of processor time") != std::string::npos;
+      is_late = is_late || why.find("in time") != std::string::npos;
+    }
     has_result = has_result || result.ok();
     return result.ok();
   };
@@ -104,7 +128,7 @@ void run(const std::string& file, std::chrono::milliseconds limit, Count& count)
   } else {
     const sim::MeshShape shape{file, "", false, {1, 1, 1}};
     sim::TriangleCache cache;
-    if (const auto triangles = cache.triangles(shape); look(triangles)) fall_on(shape, **triangles);
+    if (const auto triangles = cache.triangles(shape); look(triangles) && count.files % options.bodies == 0) fall_on(shape, **triangles);
     if (const auto mesh = sim::read_mesh_file(shape); look(mesh)) {
       for (const auto index : mesh.value().mesh.indices) require(index < mesh.value().mesh.vertices.size(), "an index is out of range");
       for (const auto& image : mesh.value().images) look(sim::decode_image(image.bytes, image.name));
@@ -119,6 +143,9 @@ void run(const std::string& file, std::chrono::milliseconds limit, Count& count)
     }
   }
   ++(has_result ? count.results : count.errors);
+  count.deaths += is_deadly ? 1 : 0;
+  count.late += is_late ? 1 : 0;
+  return is_deadly;
 }
 
 const std::vector<std::string> words{"nan",
@@ -193,56 +220,76 @@ std::string mutate(std::string text, const std::string& other, const Below& belo
   return text;
 }
 
+struct Seed {
+  fs::path file;
+  std::string content;
+};
+
+std::vector<Seed> seeds_of(std::vector<fs::path> files) {
+  std::erase_if(files, [](const fs::path& file) { return file.extension() == ".mtl" || file.extension() == ".py"; });
+  std::sort(files.begin(), files.end());
+  std::vector<Seed> seeds;
+  for (const fs::path& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    seeds.push_back({file, {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}});
+  }
+  return seeds;
+}
+
+Count run_seed(const std::vector<Seed>& seeds, std::size_t which, const Options& options) {
+  const std::string extension = seeds[which].file.extension().string();
+  std::mt19937 random(options.seed + static_cast<unsigned>(which));
+  const Below below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  Count count;
+  run(seeds[which].file.string(), options, count);
+  const std::string last = "asset_fuzz_last" + extension;
+  for (long i = 0; i < options.runs; ++i) {
+    fs::remove(last);
+    std::ofstream(last, std::ios::binary) << mutate(seeds[which].content, seeds[below(seeds.size())].content, below);
+    const bool is_deadly = run(fs::absolute(last).string(), options, count);
+    if (!is_deadly || options.keep.empty()) continue;
+    const std::string name = seeds[which].file.stem().string() + "_" + std::to_string(options.seed) + "_" + std::to_string(i) + extension;
+    fs::copy_file(last, options.keep / name, fs::copy_options::overwrite_existing);
+  }
+  fs::remove(last);
+  return count;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  unsigned seed = 1;
-  long runs = 50;
-  std::chrono::milliseconds limit{2000};
+  Options options;
   std::vector<fs::path> files;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    const auto number = [&](long otherwise) { return static_cast<long>(base::parse_integer(argv[++i]).value_or(otherwise)); };
     if (word == "--seed" && i + 1 < argc) {
-      seed = static_cast<unsigned>(base::parse_integer(argv[++i]).value_or(1));
+      options.seed = static_cast<unsigned>(number(1));
     } else if (word == "--runs" && i + 1 < argc) {
-      runs = static_cast<long>(base::parse_integer(argv[++i]).value_or(50));
+      options.runs = number(50);
     } else if (word == "--limit" && i + 1 < argc) {
-      limit = std::chrono::milliseconds(base::parse_integer(argv[++i]).value_or(2000));
+      options.limit = std::chrono::milliseconds(number(2000));
+    } else if (word == "--bodies" && i + 1 < argc) {
+      options.bodies = std::max(1L, number(1));
+    } else if (word == "--keep" && i + 1 < argc) {
+      options.keep = argv[++i];
     } else if (fs::is_directory(word)) {
       for (const auto& entry : fs::directory_iterator(word)) files.push_back(entry.path());
     } else {
       files.emplace_back(word);
     }
   }
-  std::erase_if(files, [](const fs::path& file) { return file.extension() == ".mtl" || file.extension() == ".py"; });
-  std::sort(files.begin(), files.end());
-  if (files.empty()) return std::fprintf(stderr, "usage: asset_fuzz [--seed N] [--runs N] [--limit MS] FILE...\n"), 2;
-  std::vector<std::string> contents;
-  for (const fs::path& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    contents.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  const auto seeds = seeds_of(std::move(files));
+  if (seeds.empty()) {
+    std::fprintf(stderr, "usage: asset_fuzz [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...\n");
+    return 2;
   }
-  std::map<std::string, Count> counts;
-  const auto started = [] { return sim::AssetReader::mine().started(); };
-  for (std::size_t which = 0; which < files.size(); ++which) {
-    const std::string extension = files[which].extension().string();
-    std::mt19937 random(seed + static_cast<unsigned>(which));
-    const Below below = [&](std::size_t n) {
-      return n == 0 ? std::size_t{0} : std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-    };
-    const std::size_t before = started();
-    Count count;
-    run(files[which].string(), limit, count);
-    const std::string last = "asset_fuzz_last" + extension;
-    for (long i = 0; i < runs; ++i) {
-      fs::remove(last);
-      std::ofstream(last, std::ios::binary) << mutate(contents[which], contents[below(contents.size())], below);
-      run(fs::absolute(last).string(), limit, count);
-    }
-    fs::remove(last);
-    std::printf("%-16s seed %u: %ld files, %ld with a result, %ld with an error, %zu readers ended\n", files[which].filename().c_str(),
-                seed, count.files, count.results, count.errors, started() - before - (before == 0 ? 1 : 0));
-    std::fflush(stdout);
+  std::map<std::string, Count> formats;
+  for (std::size_t which = 0; which < seeds.size(); ++which) {
+    const Count count = run_seed(seeds, which, options);
+    count.print(seeds[which].file.filename().string() + " seed " + std::to_string(options.seed));
+    formats[seeds[which].file.extension().string()].add(count);
   }
+  for (const auto& [extension, count] : formats) count.print("all " + extension);
   return 0;
 }

@@ -28,6 +28,20 @@ write("colors.png", colors)
 write("deep.png", png(9, 9, 16, 0, lambda y: b"".join(struct.pack(">H", 700 * x * y) for x in range(9))))
 write("packed.dds", struct.pack("<4s7I44x", b"DDS ", 124, 0x1007, 8, 8, 8, 0, 0) + struct.pack("<8I", 32, 4, 0x31545844, 0, 0, 0, 0, 0)
       + struct.pack("<5I", 0x1000, 0, 0, 0, 0) + bytes(range(32)))
+# 16 x 16 pixels as libjpeg-turbo writes them: sequential with halved colours, and in scans that refine each other.
+write("colors.jpg", base64.b64decode(
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDAAYEBQYFBAYGBQYHBwYIChAKCgkJChQODwwQFxQYGBcUFhYaHSUfGhsjHBYWICwgIyYnKSopGR8tMC0oMCUoKSj/2wBDAQcHBwoIChMKChMoGhYaKCgoKC"
+    "goKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCj/wAARCAAQABADASIAAhEBAxEB/8QAHwAAAQUBAQEBAQEAAAAAAAAAAAECAwQFBgcICQoL/8QAtRAAAgEDAwIEAwUF"
+    "BAQAAAF9AQIDAAQRBRIhMUEGE1FhByJxFDKBkaEII0KxwRVS0fAkM2JyggkKFhcYGRolJicoKSo0NTY3ODk6Q0RFRkdISUpTVFVWV1hZWmNkZWZnaGlqc3R1dnd4eXqDhIWGh4iJipKTlJWWl5iZmq"
+    "KjpKWmp6ipqrKztLW2t7i5usLDxMXGx8jJytLT1NXW19jZ2uHi4+Tl5ufo6erx8vP09fb3+Pn6/8QAHwEAAwEBAQEBAQEBAQAAAAAAAAECAwQFBgcICQoL/8QAtREAAgECBAQDBAcFBAQAAQJ3AAEC"
+    "AxEEBSExBhJBUQdhcRMiMoEIFEKRobHBCSMzUvAVYnLRChYkNOEl8RcYGRomJygpKjU2Nzg5OkNERUZHSElKU1RVVldYWVpjZGVmZ2hpanN0dXZ3eHl6goOEhYaHiImKkpOUlZaXmJmaoqOkpaanqK"
+    "mqsrO0tba3uLm6wsPExcbHyMnK0tPU1dbX2Nna4uPk5ebn6Onq8vP09fb3+Pn6/9oADAMBAAIRAxEAPwDyrSfDvT5P0rs9J8OdPk/Sux0nw70+T9K7PSfDvT5P0rXHZ3vqLhXiP4dT/9k="))
+write("progressive.jpg", base64.b64decode(
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDAAYEBQYFBAYGBQYHBwYIChAKCgkJChQODwwQFxQYGBcUFhYaHSUfGhsjHBYWICwgIyYnKSopGR8tMC0oMCUoKSj/2wBDAQcHBwoIChMKChMoGhYaKCgoKC"
+    "goKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCj/wgARCAAQABADASIAAhEBAxEB/8QAFQABAQAAAAAAAAAAAAAAAAAABQb/xAAVAQEBAAAAAAAAAAAAAAAAAAABAv/a"
+    "AAwDAQACEAMQAAABlGmGqP/EABYQAAMAAAAAAAAAAAAAAAAAAAADBP/aAAgBAQABBQJU4qcVOKnP/8QAFhEBAQEAAAAAAAAAAAAAAAAABQAx/9oACAEDAQE/ASkcv//EABYRAAMAAAAAAAAAAAAAAA"
+    "AAAAADBP/aAAgBAgEBPwF9p//EABQQAQAAAAAAAAAAAAAAAAAAACD/2gAIAQEABj8CH//EABUQAQEAAAAAAAAAAAAAAAAAAABh/9oACAEBAAE/IZpppv/aAAwDAQACAAMAAAAQr//EABURAQEAAAAA"
+    "AAAAAAAAAAAAAABR/9oACAEDAQE/EKn/xAAWEQADAAAAAAAAAAAAAAAAAAAAITH/2gAIAQIBAT8Qqz//xAAWEAADAAAAAAAAAAAAAAAAAAAAMcH/2gAIAQEAAT8QRImREiJP/9k="))
 write("cube.obj", "mtllib cube.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "vt 0 0\nvt 1 0\nvt 1 1\nusemtl m\n"
       + "".join("f " + " ".join(f"{i + 1}/{k + 1}" for k, i in enumerate(f)) + "\n" for f in faces))
 write("cube.mtl", "newmtl m\nKd 1 0.5 0\nmap_Kd colors.png\n")
