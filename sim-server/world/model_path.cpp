@@ -74,11 +74,20 @@ std::string folder_spelling(std::string_view name) {
   return slash == std::string_view::npos ? first : first.append(name.substr(slash));
 }
 
-std::optional<fs::path> usable(const fs::path& path) {
-  if (!is_there(path)) return std::nullopt;
+// The path without links. A file whose target has another extension (as in the store of git-annex) keeps the name that was asked for: the
+// extension is its format. The target's folder is not its place then.
+fs::path without_links(const fs::path& path) {
   std::error_code problem;
   fs::path clean = fs::weakly_canonical(path, problem);
-  return problem ? path : clean;
+  if (problem) return path;
+  if (clean.extension() == path.extension() || fs::is_directory(clean, problem)) return clean;
+  fs::path folder = fs::weakly_canonical(path.parent_path(), problem);
+  return problem ? path : folder / path.filename();
+}
+
+std::optional<fs::path> usable(const fs::path& path) {
+  if (!is_there(path)) return std::nullopt;
+  return without_links(path);
 }
 
 std::optional<fs::path> find_model(const std::string& name, const fs::path& folder, const std::vector<fs::path>& folders) {
@@ -184,7 +193,7 @@ std::optional<fs::path> ModelPath::find(std::string_view uri, const fs::path& fo
   if (!found || !is_confined_) return found;
   std::error_code problem;
   const fs::path real = fs::canonical(*found, problem);
-  return !problem && holds(real) ? std::optional(real) : std::nullopt;
+  return !problem && holds(real) ? std::optional(without_links(*found)) : std::nullopt;
 }
 
 std::string ModelPath::other_version(std::string_view uri, const fs::path& found) const {

@@ -448,6 +448,22 @@ TEST(WorldSpawn, the_models_of_the_path_are_listed_once_and_sorted) {
   EXPECT_THAT(ModelPath{}.models(), testing::IsEmpty());
 }
 
+TEST(WorldSpawn, a_link_to_a_file_with_another_extension_keeps_its_name) {
+  const WorldFiles files, others;
+  files.write("store/0123abcd", "v 0 0 0\n");
+  files.write("meshes/plain.obj", "v 0 0 0\n");
+  const auto meshes = std::filesystem::canonical(files.folder() / "meshes");
+  std::filesystem::create_symlink("../store/0123abcd", meshes / "box.obj");
+  std::filesystem::create_symlink("plain.obj", meshes / "same.obj");
+  std::filesystem::create_symlink(others.write("0123abcd", "v 0 0 0\n"), meshes / "outside.obj");
+  for (const ModelPath& path : {ModelPath({files.folder()}), ModelPath({files.folder()}).confined()}) {
+    EXPECT_EQ(path.find("meshes/box.obj", {}), meshes / "box.obj");
+    EXPECT_EQ(path.find("meshes/same.obj", {}), meshes / "plain.obj");
+  }
+  EXPECT_TRUE(ModelPath({files.folder()}).find("meshes/outside.obj", {}));
+  EXPECT_FALSE(ModelPath({files.folder()}).confined().find("meshes/outside.obj", {}));
+}
+
 TEST(WorldSpawn, takes_urdf) {
   base::Result<LoadedModel> loaded = load_model(
       "<robot name='cart'><link name='base'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' "
