@@ -4,26 +4,33 @@
 #include <new>
 #include <utility>
 
+#include "base/content_hash.h"
 #include "base/plain_file.h"
 #include "base/text.h"
 
 namespace sim {
 
-void FileLog::add(FileStamp stamp) {
-  for (const FileStamp& known : stamps_)
-    if (known.path == stamp.path) return;
-  if (stamps_.size() < most_stamps && stamp.path.size() <= most_path) stamps_.push_back(std::move(stamp));
+FileStamp* FileLog::add(FileStamp stamp) {
+  for (FileStamp& known : stamps_)
+    if (known.path == stamp.path) return &known;
+  if (stamps_.size() >= most_stamps || stamp.path.size() > most_path) return nullptr;
+  return &stamps_.emplace_back(std::move(stamp));
 }
 
 base::Result<std::string> FileLog::read(const std::string& path, std::uint64_t most_bytes) {
-  add(stamp_of(path));  // before: what changes meanwhile is found to be another file
-  return base::read_plain_file(path, most_bytes);
+  FileStamp* stamp = add(stamp_of(path));  // before: what changes meanwhile is found to be another file
+  auto bytes = base::read_plain_file(path, most_bytes);
+  if (bytes && stamp != nullptr && stamp->content.empty()) {
+    base::ContentHash hash;
+    hash.add(*bytes);
+    stamp->content = hash.text();
+  }
+  return bytes;
 }
 
 bool FileLog::exists(const std::string& path) {
-  const FileStamp stamp = stamp_of(path);
-  add(stamp);
-  return stamp.exists && base::is_plain_file(path);
+  const FileStamp* stamp = add(stamp_of(path));
+  return (stamp == nullptr || stamp->exists) && base::is_plain_file(path);
 }
 
 base::Result<void> read_asset(AssetKind kind, Job& job) {
@@ -41,6 +48,10 @@ base::Result<void> read_asset(AssetKind kind, Job& job) {
         return read_picture(job);
       case AssetKind::heights:
         return read_levels(job);
+      case AssetKind::content: {
+        const auto bytes = job.files.read(job.path, most_image_file);
+        return bytes ? base::Result<void>() : bytes.error();
+      }
     }
     return base::Error{"is of no kind that is read"};
   } catch (const std::bad_alloc&) {

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-// Opens files by the rules of worlds (base/plain_file.h), and keeps the stamps of all that were asked for.
+// Opens files by the rules of worlds (base/plain_file.h), and keeps the stamps of all that were asked for, with hashes of what was read.
 class FileLog {
  public:
   base::Result<std::string> read(const std::string& path, std::uint64_t most_bytes);
@@ -20,7 +20,8 @@ class FileLog {
   const FileStamps& stamps() const { return stamps_; }
 
  private:
-  void add(FileStamp stamp);
+  // The one of the path; null: there are too many.
+  FileStamp* add(FileStamp stamp);
   FileStamps stamps_;
 };
 

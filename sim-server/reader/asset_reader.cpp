@@ -261,6 +261,23 @@ void AssetReader::stop() { state_->is_stopped.store(true, std::memory_order_rele
 pid_t AssetReader::process() const { return state_->process.load(std::memory_order_relaxed); }
 std::size_t AssetReader::started() const { return state_->started.load(std::memory_order_relaxed); }
 
+std::optional<FileStamps> AssetReader::unchanged(const FileStamps& files) {
+  FileStamps all;
+  for (const FileStamp& file : files) {
+    FileStamp now = stamp_of(file.path);
+    const bool is_same = is_same_state(file, now);
+    if (is_same && (file.content.empty() || is_settled(file))) {
+      all.push_back(file);
+      continue;
+    }
+    if (file.content.empty() || !now.exists || now.size != file.size) return std::nullopt;
+    const Answer answer = ask({AssetKind::content, file.path, "file", {}});
+    if (answer.error || answer.files.empty() || answer.files.front().content != file.content) return std::nullopt;
+    all.push_back(answer.files.front());
+  }
+  return all;
+}
+
 AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits& limits) {
   base::expect_no_data_held();
   const auto mine = state_->turn.take();
@@ -269,7 +286,7 @@ AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits&
   const auto fail = [&](const std::string& why, FileStamps files) { return Answer{base::Error{who + why}, nullptr, {}, std::move(files)}; };
   const FileStamp stamp = is_file ? stamp_of(question.path) : FileStamp{};
   if (const auto known = state_->deadly.find(question.path); is_file && known != state_->deadly.end()) {
-    if (known->second.stamp == stamp) return fail(known->second.reason, {stamp});
+    if (is_same_state(known->second.stamp, stamp)) return fail(known->second.reason, {stamp});
     state_->deadly.erase(known);
   }
 

@@ -80,6 +80,10 @@ class AssetReader {
   };
   Answer ask(const Question& question, const ReadLimits& limits = {});
 
+  // The stamps as they are now, if the files still have the content that they had: those that another state leaves in doubt are read. Empty
+  // otherwise.
+  std::optional<FileStamps> unchanged(const FileStamps& files);
+
   // What `take` makes of the answer; false: it makes no sense. One line for that, and when the memory is not enough for it.
   template <class T, class Take>
   static base::Result<T> decoded(const Question& question, const Answer& answer, const Take& take) {
@@ -110,8 +114,9 @@ class AssetReader {
   std::unique_ptr<State> state_;
 };
 
-// Results by question, each with the stamps of its files: what is still the same is not read again. Values that somebody keeps stay for as
-// long; of the others those that were asked for last, up to a limit. Any thread; no data may be held.
+// Results by question, each with the stamps of its files: what still has the same content is not made again. A file that nobody has touched
+// costs a stat. Values that somebody keeps stay for as long; of the others those that were asked for last, up to a limit. Any thread; no
+// data may be held.
 template <class T>
 class AssetShelf {
  public:
@@ -138,7 +143,14 @@ class AssetShelf {
         entry->second.used = ++state->uses;
       }
     }
-    if (kept && are_unchanged(kept->files)) return *kept;
+    if (kept) {
+      if (auto now = AssetReader::mine().unchanged(kept->files)) {
+        auto state = state_.lock();
+        const auto entry = state->entries.find(key);
+        if (entry != state->entries.end() && version_of(entry->second.files) == version_of(*now)) entry->second.files = *now;
+        return {std::move(kept->value), std::move(*now)};
+      }
+    }
     Made made = make();
     if (!made.value) {
       if (made.is_lasting) put(key, {nullptr, {}, made.value.error(), made.files, 0, 0});

@@ -2,12 +2,19 @@
 
 #include <sys/stat.h>
 
-#include <algorithm>
+#include <chrono>
+#include <tuple>
 
 namespace sim {
+namespace {
+
+constexpr std::size_t most_hash = 64;  // characters
+
+}  // namespace
 
 FileStamp stamp_of(const std::string& path) {
   FileStamp stamp{path};
+  stamp.seen_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
   struct stat is {};
   if (::stat(path.c_str(), &is) != 0) return stamp;
   const auto ns = [](const timespec& t) { return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec; };
@@ -20,8 +27,15 @@ FileStamp stamp_of(const std::string& path) {
   return stamp;
 }
 
-bool are_unchanged(const FileStamps& files) {
-  return std::all_of(files.begin(), files.end(), [](const FileStamp& file) { return stamp_of(file.path) == file; });
+bool is_same_state(const FileStamp& a, const FileStamp& b) {
+  const auto state = [](const FileStamp& s) { return std::tie(s.exists, s.device, s.inode, s.size, s.modified_ns, s.changed_ns); };
+  return state(a) == state(b);
+}
+
+// The kernel's clock of files is some milliseconds coarse; some file systems keep seconds, or pairs of them.
+bool is_settled(const FileStamp& stamp) {
+  const bool has_seconds = stamp.changed_ns % 1'000'000'000 == 0;
+  return !stamp.exists || stamp.seen_ns - stamp.changed_ns > (has_seconds ? 2'000'000'000 : 50'000'000);
 }
 
 std::uint64_t version_of(const FileStamps& files) {
@@ -32,6 +46,8 @@ std::uint64_t version_of(const FileStamps& files) {
   };
   for (const FileStamp& file : files) {
     for (const char c : file.path) add(static_cast<unsigned char>(c));
+    for (const char c : file.content) add(static_cast<unsigned char>(c));
+    if (!file.content.empty()) continue;
     for (const auto word : {std::uint64_t{file.exists}, file.device, file.inode, file.size}) add(word);
     add(static_cast<std::uint64_t>(file.modified_ns));
     add(static_cast<std::uint64_t>(file.changed_ns));
@@ -49,6 +65,8 @@ void put(ArrayWriter& out, const FileStamps& files) {
     out.number(file.size);
     out.number(file.modified_ns);
     out.number(file.changed_ns);
+    out.number(file.seen_ns);
+    out.text(file.content);
   }
 }
 
@@ -62,6 +80,8 @@ FileStamps take_stamps(ArrayReader& in) {
     file.size = in.number<std::uint64_t>();
     file.modified_ns = in.number<std::int64_t>();
     file.changed_ns = in.number<std::int64_t>();
+    file.seen_ns = in.number<std::int64_t>();
+    file.content = in.text(most_hash);
   }
   return files;
 }

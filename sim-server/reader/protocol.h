@@ -19,7 +19,8 @@
 
 namespace sim {
 
-enum class AssetKind : std::uint32_t { triangles = 1, mesh, skin, animation, image, heights };
+// `content`: no result, the stamp alone.
+enum class AssetKind : std::uint32_t { triangles = 1, mesh, skin, animation, image, heights, content };
 
 struct RequestHead {
   std::uint32_t magic = 0;
@@ -42,19 +43,23 @@ inline constexpr std::uint64_t most_image_file = std::uint64_t{1} << 30U;
 inline constexpr std::size_t most_path = 4096;
 inline constexpr std::size_t most_stamps = 4096;
 
-// The state of a file when it was opened: equal stamps, equal content.
+// A file as it was when it was opened, or looked for.
 struct FileStamp {
   std::string path;
   bool exists = false;
   std::uint64_t device = 0, inode = 0, size = 0;
   std::int64_t modified_ns = 0, changed_ns = 0;
-  bool operator==(const FileStamp&) const = default;
+  std::int64_t seen_ns = 0;  // when it was looked at
+  std::string content;       // hash of what was read (base/content_hash.h); empty: nothing was
 };
-// As it is now.
+// As it is now, without its content.
 FileStamp stamp_of(const std::string& path);
+// Of one path: nothing of what the system says about the file has changed.
+bool is_same_state(const FileStamp& a, const FileStamp& b);
+// False while the file was so young that another change could leave it with the same times: then the same state is not the same content.
+bool is_settled(const FileStamp& stamp);
 using FileStamps = std::vector<FileStamp>;
-bool are_unchanged(const FileStamps& files);
-// Differs when the files differ; never 0.
+// Differs when the contents differ, or the states of files that were not read; never 0.
 std::uint64_t version_of(const FileStamps& files);
 
 void put(ArrayWriter& out, const FileStamps& files);

@@ -136,6 +136,41 @@ TEST(AssetReader, a_file_is_read_once_and_again_when_it_has_changed) {
   EXPECT_EQ(*first.triangles(shape), *one);  // what is there keeps its shape
 }
 
+TEST(AssetReader, a_file_that_was_written_again_with_the_same_content_stays_the_same_mesh) {
+  const WorldFiles files;
+  const MeshShape shape{files.write("a.obj", obj(1)), "", false, {1, 1, 1}};
+  const auto one = TriangleCache().triangles(shape);
+  ASSERT_TRUE(one) << one.error().message;
+  std::filesystem::remove(files.folder() / "a.obj");
+  files.write("a.obj", obj(1));
+  const auto same = TriangleCache().triangles(shape);
+  ASSERT_TRUE(same);
+  EXPECT_EQ(*one, *same);
+}
+
+// The clock of a file system is coarse: most of these changes leave size and times of the file as they were.
+TEST(AssetReader, a_file_that_changes_right_after_it_was_read_is_read_again) {
+  const WorldFiles files;
+  for (int i = 0; i < 200; ++i) {
+    const double size = 1 + i % 8;
+    const auto mesh = TriangleCache().triangles(MeshShape{files.write("a.obj", obj(size)), "", false, {1, 1, 1}});
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_DOUBLE_EQ((*mesh)->vertices[1].x(), size) << i;
+  }
+}
+
+TEST(AssetReader, a_file_is_settled_once_the_clock_of_its_file_system_has_moved_on) {
+  FileStamp stamp{"a.obj", true};
+  stamp.changed_ns = 1'700'000'000'123'456'789;
+  stamp.seen_ns = stamp.changed_ns + 10'000'000;
+  EXPECT_FALSE(is_settled(stamp));
+  stamp.seen_ns = stamp.changed_ns + 100'000'000;
+  EXPECT_TRUE(is_settled(stamp));
+  stamp.changed_ns = 1'700'000'000'000'000'000;  // a file system that keeps seconds
+  stamp.seen_ns = stamp.changed_ns + 1'500'000'000;
+  EXPECT_FALSE(is_settled(stamp));
+}
+
 TEST(AssetReader, a_mesh_is_read_again_when_a_file_that_it_names_has_come) {
   const WorldFiles files;
   const MeshShape shape{files.write("a.obj", "mtllib a.mtl\nusemtl red\n" + obj(1)), "", false, {1, 1, 1}};
