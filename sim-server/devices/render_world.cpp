@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <unordered_set>
+#include <utility>
 
 #include "base/log.h"
+#include "base/text.h"
 
 namespace sim {
 namespace {
@@ -19,6 +23,21 @@ void add_poses(const SceneActor& seen, const ActorDef& actor, const ActorMoment&
     seconds = by_distance ? time_at_distance(*animation, now.distance) : std::fmod(now.seconds, animation->length);
   }
   for (const auto& bone : bone_poses(seen.skin->skin, animation, seconds, !actor.trajectories.empty())) poses.push_back(now.pose * bone);
+}
+
+bool needs_files(const GeometryDef& geometry) {
+  return std::holds_alternative<MeshShape>(geometry) || std::holds_alternative<HeightmapShape>(geometry);
+}
+bool needs_files(const VisualDef& visual) {
+  const auto& material = visual.material;
+  return needs_files(visual.geometry) ||
+         (material && !(material->texture.empty() && material->normal_map.empty() && material->emissive_map.empty()));
+}
+bool needs_files(const ModelDef& model, Scene::Content content) {
+  return std::ranges::any_of(model.links, [&](const LinkDef& link) {
+    if (content == Scene::Content::visuals) return std::ranges::any_of(link.visuals, [](const auto& v) { return needs_files(v); });
+    return std::ranges::any_of(link.collisions, [](const auto& c) { return needs_files(c.geometry); });
+  });
 }
 
 }  // namespace
@@ -52,13 +71,93 @@ void RenderWorld::build(Built& built, Scene::Content content) {
   }
   for (const auto& actor : world_.actors) parts.actors.push_back(&actor);
   built.scene = Scene::build(parts, assets_, content);
+  built.read.clear();
+  built.has_actors = true;
   ++built.version;
   for (const auto& complaint : assets_.take_complaints()) base::log(base::Level::warn, "render", "{}", complaint);
 }
 
+RenderWorld::Unread RenderWorld::unread(Scene::Content content) {
+  Unread files{content, {}, {}};
+  const Built& built = of(content);
+  std::unordered_set<const ModelDef*> known;
+  for (const auto* models : {&built.defs, &built.read})
+    for (const auto& model : *models) known.insert(model.get());
+  for (ModelId id = 0; id < physics_.model_slots(); ++id) {
+    if (!physics_.exists(id) || known.contains(&physics_.def(id)) || !needs_files(physics_.def(id), content)) continue;
+    files.models.push_back(physics_.shared_def(id));
+  }
+  for (const auto& actor : world_.actors)
+    if (!built.has_actors) files.actors.push_back(&actor);
+  return files;
+}
+
+void RenderWorld::start_reading(Unread files) {
+  Scene::Parts parts{world_.scene, {}, {}, files.actors};
+  for (const auto& model : files.models) parts.models.push_back(model.get());
+  std::packaged_task<Assets()> task([parts = std::move(parts), content = files.content, path = world_.model_path] {
+    Assets assets(path);
+    (void)Scene::build(parts, assets, content);
+    return assets;
+  });
+  result_ = task.get_future();
+  reading_ = std::move(files);  // keeps the models of `parts`
+  thread_ = std::jthread([task = std::move(task), call = on_read_]() mutable {
+    task();
+    if (call) call();
+  });
+}
+
+void RenderWorld::take_read() {
+  if (!reading_ || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  const Unread files = *std::exchange(reading_, std::nullopt);
+  try {
+    assets_.adopt(result_.get());
+  } catch (const std::exception& e) {  // such as a lack of memory
+    base::log(base::Level::error, "render", "files of meshes and images: {}", base::in_quotes(e.what()));
+  }
+  Built& built = of(files.content);
+  built.read.insert(built.read.end(), files.models.begin(), files.models.end());
+  built.has_actors = built.has_actors || !files.actors.empty();
+}
+
+bool RenderWorld::prepare(Scene::Content content) {
+  if (is_current(of(content))) return true;
+  take_read();
+  if (reading_) return false;
+  Unread files = unread(content);
+  if (files.models.empty() && files.actors.empty()) return true;
+  start_reading(std::move(files));
+  return false;
+}
+
+void RenderWorld::on_read(std::function<void()> call) {
+  if (thread_.joinable()) thread_.join();
+  on_read_ = std::move(call);
+}
+
+void RenderWorld::has_read(ModelId model, Scene::Content content) {
+  auto& read = of(content).read;
+  std::erase_if(read, [](const auto& def) { return def.use_count() == 1; });  // deleted since
+  read.push_back(physics_.shared_def(model));
+}
+
+std::vector<Scene::Content> RenderWorld::contents() const {
+  std::vector<Scene::Content> contents;
+  for (const auto content : {Scene::Content::visuals, Scene::Content::collisions}) {
+    const Built& built = content == Scene::Content::visuals ? visuals_ : collisions_;
+    if (built.scene || (reading_ && reading_->content == content)) contents.push_back(content);
+  }
+  return contents;
+}
+
 Snapshot RenderWorld::snapshot(std::chrono::nanoseconds time, Scene::Content content) {
-  Built& built = content == Scene::Content::visuals ? visuals_ : collisions_;
-  if (!is_current(built)) build(built, content);
+  Built& built = of(content);
+  if (!is_current(built)) {
+    if (reading_) result_.wait();
+    take_read();
+    build(built, content);
+  }
   auto poses = std::make_shared<std::vector<Eigen::Isometry3d>>();
   poses->reserve(built.scene->links.size());
   for (const auto id : built.models) {

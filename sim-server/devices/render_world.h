@@ -1,9 +1,21 @@
 // The world as pictures see it: a scene that follows what comes and goes in the physics, and where everything is. The stepping thread only;
 // what it hands out never changes and any thread may keep it.
+//
+// The files of meshes and images are read with the first picture. They may take as long as thousands of steps, so a thread of its own reads
+// them (prepare). States of a content, visuals or collisions:
+//   unread    some file of its models has not been read. prepare() -> reading
+//   reading   prepare() answers false. The thread calls on_read's function when it is done -> read
+//   read      prepare() answers true; snapshot() reads no file, until a model comes that brings files -> unread
+// snapshot() is right in each state: it waits for the thread, and reads what is left itself. So time that waits for pictures (lock step)
+// does not depend on how long files take. What cannot be read counts as read. Nothing that the thread reads is seen before it is done.
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <future>
 #include <memory>
+#include <optional>
+#include <thread>
 #include <vector>
 
 #include "devices/actor_motion.h"
@@ -24,13 +36,19 @@ class RenderWorld {
  public:
   RenderWorld(const Physics& physics, const WorldDef& world);
 
+  // Whether snapshot() reads no file; else a thread begins to read them.
+  bool prepare(Scene::Content content);
+  // Called in the reading thread when it is done. Waits for that thread.
+  void on_read(std::function<void()> call);
+
   // The world as it is now. Builds the scene anew when models have come or gone; what could not be read is logged, once each.
   Snapshot snapshot(std::chrono::nanoseconds time, Scene::Content content = Scene::Content::visuals);
 
-  // Whether a scene of this content has been built: then a model that is spawned should bring what is drawn of it.
-  bool has_scene(Scene::Content content) const { return (content == Scene::Content::visuals ? visuals_ : collisions_).scene != nullptr; }
-  // Read by another thread for a model that is to be spawned.
+  // The contents that somebody has asked for: a model that is spawned should bring what is drawn of it.
+  std::vector<Scene::Content> contents() const;
+  // Read by another thread for a model that is to be spawned; then all that is drawn of it has been read.
   void adopt(Assets&& assets) { assets_.adopt(std::move(assets)); }
+  void has_read(ModelId model, Scene::Content content);
 
   // True (lock step, as fast as possible): pictures are finished before time goes on. False: each camera draws in its own time.
   void set_synchronous(bool on) { is_synchronous_ = on; }
@@ -41,10 +59,23 @@ class RenderWorld {
     std::shared_ptr<const Scene> scene;
     std::vector<ModelId> models;
     std::vector<std::shared_ptr<const ModelDef>> defs;
+    std::vector<std::shared_ptr<const ModelDef>> read;  // since the scene was built
+    bool has_actors = false;                            // theirs were read
     std::uint64_t version = 0;
   };
+  // Of which files are read in the thread.
+  struct Unread {
+    Scene::Content content;
+    std::vector<std::shared_ptr<const ModelDef>> models;
+    std::vector<const ActorDef*> actors;
+  };
+  Built& of(Scene::Content content) { return content == Scene::Content::visuals ? visuals_ : collisions_; }
   bool is_current(const Built& built) const;
   void build(Built& built, Scene::Content content);
+  Unread unread(Scene::Content content);
+  void start_reading(Unread files);
+  // What the thread has read, if it is done.
+  void take_read();
 
   const Physics& physics_;
   const WorldDef& world_;
@@ -52,6 +83,10 @@ class RenderWorld {
   Assets assets_;
   Built visuals_, collisions_;
   bool is_synchronous_ = false;
+  std::function<void()> on_read_;
+  std::optional<Unread> reading_;
+  std::future<Assets> result_;  // of reading_
+  std::jthread thread_;         // last: ends before what it uses
 };
 
 }  // namespace sim

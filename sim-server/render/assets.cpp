@@ -293,6 +293,8 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
   std::string key = "height|" + key_of(shape);
   for (const auto& layer : shape.textures) key += fmt::format("|{},{}", layer.diffuse, layer.size);
   if (const auto kept = textures_.find(key); kept != textures_.end()) return kept->second;
+  auto grid = triangles_.heights(shape);
+  if (!grid) return textures_[key] = nullptr;
   std::vector<Image> layers;
   FileStamps files;
   for (const auto& layer : shape.textures) {
@@ -301,8 +303,6 @@ std::shared_ptr<const Texture> Assets::height_texture(const HeightmapShape& shap
     if (!picture) complaints_.push_back(picture.error().message + "; a chequer stands in");
     layers.push_back(picture ? std::move(*picture) : chequer());
   }
-  auto grid = triangles_.heights(shape);
-  if (!grid) return nullptr;
   constexpr int side = 2048;
   Image out{side, side, std::vector<std::uint8_t>(static_cast<std::size_t>(side) * side * 4, 255)};
   for (int y = 0; y < side; ++y) {
@@ -335,6 +335,8 @@ void Assets::adopt(Assets&& other) {
   };
   // Shapes that both have made for themselves stay: what is drawn from them is shared.
   for (auto& [key, mesh] : other.meshes_) meshes_.try_emplace(key, std::move(mesh));
+  for (auto& [key, skin] : other.skins_) skins_.try_emplace(key, std::move(skin));
+  for (auto& [key, animation] : other.animations_) animations_.try_emplace(key, std::move(animation));
   move_to(textures_, other.textures_);
   move_to(embedded_, other.embedded_);
   triangles_.adopt(std::move(other.triangles_));

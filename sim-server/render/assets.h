@@ -47,8 +47,8 @@ class Assets {
   // The layers of a height map blended by height into one picture that covers it; null when it has no readable layer.
   std::shared_ptr<const Texture> height_texture(const HeightmapShape& shape);
 
-  // Takes what another one has read, for a model that is to be spawned: its pictures replace those of the same names. What this one has
-  // handed out stays as it is.
+  // Takes what another one has read, in another thread: its pictures replace those of the same names. What this one has handed out stays as
+  // it is.
   void adopt(Assets&& other);
 
   // What could not be read since the last call, one line each.

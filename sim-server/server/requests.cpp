@@ -145,8 +145,7 @@ struct ServerLoop::Handler {
     const ModelPath& path = loop.model_path_;
     if (!loop.spawn_desk_) loop.spawn_desk_ = std::make_unique<SpawnDesk>([board = &loop.board_] { board->wake(); });
     loop.spawn_desk_->take({ticket, request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path,
-                            simulation.world().model_path, simulation.pictures().has_scene(Scene::Content::visuals),
-                            simulation.pictures().has_scene(Scene::Content::collisions)});
+                            simulation.world().model_path, simulation.pictures().contents()});
     return {};
   }
   shm::Reply operator()(const shm::DeleteRequest& request) {
@@ -273,6 +272,7 @@ shm::Reply ServerLoop::spawn(SpawnDesk::Done&& done) {
   const auto id = simulation_.spawn(model, notes);
   for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
   if (!id) return failed(id.error());
+  for (const auto content : done.drawn) simulation_.pictures().has_read(*id, content);
   shm::Reply reply;
   reply.message = simulation_.physics().def(*id).name;
   return reply;
@@ -301,6 +301,17 @@ shm::Reply ServerLoop::handle(const shm::Request& request, const shm::RequestTic
   return std::visit(Handler{*this, ticket}, request);
 }
 
+bool ServerLoop::are_files_read(const shm::Request& request) {
+  RenderWorld& pictures = simulation_.pictures();
+  if (pictures.is_synchronous()) return true;
+  if (const auto* shot = std::get_if<shm::ScreenshotRequest>(&request))
+    return pictures.prepare(shot->with_collisions ? Scene::Content::collisions : Scene::Content::visuals);
+  if (!is_one_of<shm::ExportRequest, shm::PosesRequest>(request)) return true;
+  const auto* file = std::get_if<shm::ExportRequest>(&request);
+  return pictures.prepare(Scene::Content::visuals) &&
+         (file == nullptr || !file->with_collisions || pictures.prepare(Scene::Content::collisions));
+}
+
 void ServerLoop::handle_requests(When when) {
   if (desk_) {
     for (const auto& done : desk_->finished()) board_.reply(done.ticket, done.reply);
@@ -327,6 +338,10 @@ void ServerLoop::handle_requests(When when) {
         board_.reply(asked.ticket,
                      refused(shm::RequestStatus::failed, "time stands still: " + late_participants() + " has not ended its tick"));
       }
+      continue;
+    }
+    if (!are_files_read(asked.request)) {
+      postponed_.push_back({std::move(asked), Clock::now()});
       continue;
     }
     base::log(base::Level::debug, "sim-server", "request {} of pid {}", shm::request_name(asked.request), asked.pid);

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/log.h"
+#include "reader/asset_reader.h"
 
 namespace sim {
 namespace {
@@ -40,13 +41,18 @@ ServerLoop::ServerLoop(Simulation& simulation, shm::Server& server, shm::IfaceWr
     return !is_stopping_.load(std::memory_order_acquire);  // pairs with the release in stop
   };
   barrier_ = std::make_unique<shm::Barrier>(iface, server, barrier);
+  simulation_.pictures().on_read([this] { board_.wake(); });
   prctl(PR_SET_TIMERSLACK, 1);
 }
 
-ServerLoop::~ServerLoop() = default;
+ServerLoop::~ServerLoop() {
+  AssetReader::mine().stop();  // the server ends: nobody waits for files
+  simulation_.pictures().on_read(nullptr);
+}
 
 void ServerLoop::stop() {
   is_stopping_.store(true, std::memory_order_release);  // pairs with the acquires in the loop
+  AssetReader::mine().stop();                           // the loop may be waiting for files
   board_.wake();
 }
 
@@ -71,6 +77,7 @@ void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
 
 bool ServerLoop::run() {
   start_pace();
+  choose_pictures();
   count();
   publish_clock();
   wait_for_participants();
@@ -79,6 +86,7 @@ bool ServerLoop::run() {
     times_.begin_step(simulation_.steps());
     if (mode_.stands_still() && !barrier_->settle()) break;
     const bool stood_still = mode_.stands_still();
+    choose_pictures();
     handle_requests(When::between_steps);
     tend();
     if (waits_for_spawn()) {
@@ -146,9 +154,10 @@ void ServerLoop::step() {
   for (const auto& complaint : simulation_.physics().take_complaints()) base::log(base::Level::warn, "sim-server", "{}", complaint);
 }
 
+void ServerLoop::choose_pictures() { simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries()); }
+
 bool ServerLoop::finish_moment() {
-  // Nobody waits for the wall clock: pictures must not be late in simulated time.
-  simulation_.pictures().set_synchronous(options_.is_lockstep || pace_.is_free() || mode_.hurries());
+  choose_pictures();
   if (!simulation_.sense(times_, [this] { return barrier_->settle(); })) return false;
   look_at_poses();
   if (hashes_) hashes_->record(simulation_, barrier_->has_turn(simulation_.time()));

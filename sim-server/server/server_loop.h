@@ -58,6 +58,11 @@ class ServerLoop {
   struct Handler;
   void look_at_poses();
 
+  // When nobody waits for the wall clock, pictures must not be late in simulated time.
+  void choose_pictures();
+  // Whether what the request shows of the world has been read from its files. Else reading has begun, and the request waits for it: the
+  // simulation does not. Time that waits for pictures waits for their files, too.
+  bool are_files_read(const shm::Request& request);
   void wait_for_participants();
   // What belongs to a moment: sensors, clock, participants.
   bool finish_moment();

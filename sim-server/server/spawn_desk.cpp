@@ -1,36 +1,47 @@
 #include "server/spawn_desk.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <utility>
 
 #include "base/text.h"
 #include "reader/asset_reader.h"
-#include "render/scene.h"
 
 namespace sim {
 namespace {
 
 constexpr std::chrono::seconds time_to_read{8};  // for all files of a model: clients wait for ten seconds
 
+// A mesh file that has changed is another mesh in pictures, too.
+void set_versions(ModelDef& model, const ModelPath& path) {
+  for (LinkDef& link : model.links) {
+    for (VisualDef& visual : link.visuals) {
+      auto* shape = std::get_if<MeshShape>(&visual.geometry);
+      if (shape == nullptr || shape->path == missing_file) continue;
+      if (const auto file = read_mesh_file(*shape, path)) shape->version = version_of(file.value().files);
+    }
+  }
+}
+
 // What Scene::build() will ask for when the model has come.
 std::unique_ptr<Assets> pictures_of(const ModelDef& model, const SpawnDesk::Order& order) {
-  if (!order.has_visuals && !order.has_collisions) return nullptr;
+  if (order.drawn.empty()) return nullptr;
   auto assets = std::make_unique<Assets>(order.world_path);
   const Scene::Parts parts{{}, {}, {&model}, {}};
-  if (order.has_visuals) (void)Scene::build(parts, *assets, Scene::Content::visuals);
-  if (order.has_collisions) (void)Scene::build(parts, *assets, Scene::Content::collisions);
+  for (const auto content : order.drawn) (void)Scene::build(parts, *assets, content);
   return assets;
 }
 
 SpawnDesk::Done read(const SpawnDesk::Order& order) {
   const ReadDeadline deadline(std::chrono::steady_clock::now() + time_to_read);
-  SpawnDesk::Done done{order.ticket, base::Error{}, order.name.empty(), {}, {}};
+  SpawnDesk::Done done{order.ticket, base::Error{}, order.name.empty(), {}, {}, order.drawn};
   const auto fail = [&](const std::string& why) { done.model = base::Error{"model: " + why}; };
   try {
     done.model = load_model(order.model, order.name, order.pose, order.model_path);
     if (!done.model) return done;
     done.triangles.prepare(done.model.value().model);
+    if (std::ranges::count(order.drawn, Scene::Content::visuals) > 0) set_versions(done.model.value().model, order.world_path);
     done.pictures = pictures_of(done.model.value().model, order);
   } catch (const std::bad_alloc&) {
     fail("is too large for the memory");
@@ -47,7 +58,6 @@ SpawnDesk::SpawnDesk(std::function<void()> on_done) : on_done_(std::move(on_done
 SpawnDesk::~SpawnDesk() {
   state_.lock()->is_ending = true;
   changed_.notify_all();
-  AssetReader::mine().stop();  // the server ends
 }
 
 void SpawnDesk::take(Order order) {

@@ -15,6 +15,7 @@
 
 #include "base/guarded.h"
 #include "render/assets.h"
+#include "render/scene.h"
 #include "shm/request_board.h"
 #include "world/triangles.h"
 #include "world/world_loader.h"
@@ -25,7 +26,7 @@ class SpawnDesk {
  public:
   // Called in the desk's thread after each model.
   explicit SpawnDesk(std::function<void()> on_done);
-  // The file that is being read is given up.
+  // Waits for the model that is being read: AssetReader::stop() before gives it up.
   ~SpawnDesk();
   SpawnDesk(const SpawnDesk&) = delete;
   SpawnDesk& operator=(const SpawnDesk&) = delete;
@@ -36,8 +37,8 @@ class SpawnDesk {
     std::string name;   // empty: its own
     std::optional<Eigen::Isometry3d> pose;
     ModelPath model_path;
-    ModelPath world_path;                              // of pictures that mesh files name
-    bool has_visuals = false, has_collisions = false;  // what is drawn now: their files are read, too
+    ModelPath world_path;               // of pictures that mesh files name
+    std::vector<Scene::Content> drawn;  // now: their files are read, too
   };
   void take(Order order);
 
@@ -46,7 +47,8 @@ class SpawnDesk {
     base::Result<LoadedModel> model;
     bool has_own_name = false;
     TriangleCache triangles;
-    std::unique_ptr<Assets> pictures;  // null: nothing is drawn
+    std::unique_ptr<Assets> pictures;   // null: nothing is drawn
+    std::vector<Scene::Content> drawn;  // what the pictures are of
   };
   // One load when nothing is ordered.
   std::vector<Done> finished();

@@ -180,9 +180,10 @@ class CameraDevice final : public Device, public CameraPlaceSource {
       rest_when_long_idle(moment.time);
       return false;
     }
-    // In its own time: while a picture is drawn the next one stays due. Time that waits for pictures waits for that one, too.
+    // In its own time: while a picture is drawn, or files are read for it, the next one stays due. Time that waits for pictures waits for
+    // that one, too.
     if (world_.pictures->is_synchronous()) worker_.wait();
-    if (!worker_.is_idle()) return false;
+    if (!worker_.is_idle() || !is_ready()) return false;
     job_ = Job{world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, std::move(wanted)};
     return true;
   }
@@ -194,7 +195,8 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     if (world_.pictures->is_synchronous()) worker_.wait();
   }
   bool owes_sample() override {
-    return std::any_of(channels_.begin(), channels_.end(), [](const Channel& channel) { return channel.writer->owes_sample(); });
+    return std::any_of(channels_.begin(), channels_.end(), [](const Channel& channel) { return channel.writer->owes_sample(); }) &&
+           is_ready();
   }
   void show(const Moment& moment) override {
     worker_.wait();
@@ -209,6 +211,8 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   }
 
  private:
+  bool is_ready() { return world_.pictures->is_synchronous() || world_.pictures->prepare(Scene::Content::visuals); }
+
   void rest_when_long_idle(std::chrono::nanoseconds now) {
     constexpr std::chrono::seconds long_idle{10};
     if (!last_picture_ || now - *last_picture_ < long_idle) return;
