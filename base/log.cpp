@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/guarded.h"
+#include "base/terminal.h"
 
 namespace base {
 namespace {
@@ -71,7 +72,7 @@ void log_text(Level level, std::string_view name, std::string_view message) {
   auto& log = the_log();
   expect_no_data_held();
   if (const auto sink = log.sink.snapshot()) return (*sink)({level, name, message});
-  log.standard_error->log(spdlog::level::info, "{}: {}: {}", level_name(level), name, message);
+  log.standard_error->log(spdlog::level::info, "{}: {}: {}", level_name(level), for_terminal(name), for_terminal(message));
 }
 
 }  // namespace base

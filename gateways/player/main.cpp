@@ -5,6 +5,7 @@
 
 #include "base/command_line.h"
 #include "base/log.h"
+#include "base/terminal.h"
 #include "device_kinds.h"
 #include "gateway.h"
 
@@ -27,7 +28,7 @@ const base::Check is_key{[](const std::string& text) {
                          "KEY"};
 
 int fail(const base::Error& error) {
-  std::cerr << "player-gateway: " << error.message << '\n';
+  std::cerr << base::for_terminal("player-gateway: " + error.message + "\n");
   return 1;
 }
 

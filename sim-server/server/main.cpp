@@ -12,6 +12,7 @@
 #include "base/command_line.h"
 #include "base/guarded.h"
 #include "base/log.h"
+#include "base/terminal.h"
 #include "base/text.h"
 #include "base/warm_start.h"
 #include "render/assets.h"
@@ -46,8 +47,11 @@ std::filesystem::path installed_worlds() {
   return std::filesystem::is_directory(beside, error) ? beside : std::filesystem::path(RTMSIM_WORLDS_DIR);
 }
 
+// Names in a world must not control a terminal.
+void print_line(const std::string& line) { std::fprintf(stderr, "%s\n", base::for_terminal(line).c_str()); }
+
 int fail(const std::string& message) {
-  std::fprintf(stderr, "sim-server: %s\n", message.c_str());
+  print_line("sim-server: " + message);
   return 1;
 }
 
@@ -116,7 +120,7 @@ int run(const Options& options, Signals& signals) {
   for (const auto& finding : loaded->findings) {
     if (finding.severity == Finding::Severity::dropped) ++dropped;
     const int wanted = finding.severity == Finding::Severity::dropped ? 0 : finding.severity == Finding::Severity::warning ? 1 : 2;
-    if (options.check || options.verbosity >= wanted) std::fprintf(stderr, "%s\n", finding.text().c_str());
+    if (options.check || options.verbosity >= wanted) print_line(finding.text());
   }
   auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
 
@@ -150,7 +154,7 @@ int run(const Options& options, Signals& signals) {
     // Plugins know their place in the files; models are told by name.
     for (const auto& line : *lines) {
       const char* separator = line.starts_with("model ") ? ": " : "";
-      std::fprintf(stderr, "%s%s%s\n", *separator != 0 ? options.world.c_str() : "", separator, line.c_str());
+      print_line((*separator != 0 ? options.world : "") + separator + line);
     }
   }
   dropped += left_out.size();
@@ -159,7 +163,7 @@ int run(const Options& options, Signals& signals) {
     Assets assets(world->model_path);
     Scene::build(*world, assets);
     for (const auto& line : assets.take_complaints()) {
-      std::fprintf(stderr, "%s: %s\n", options.world.c_str(), line.c_str());
+      print_line(options.world + ": " + line);
       ++dropped;
     }
     return loaded->dropped || dropped > 0 ? 1 : 0;

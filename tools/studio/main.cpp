@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "base/command_line.h"
+#include "base/terminal.h"
 #include "base/text.h"
 #include "recording/ring.h"
 #include "studio/hall.h"
@@ -55,11 +56,11 @@ void add_options(base::Command& app, Settings& settings) {
 
 class ErrorStream final : public editor::Reporter {
  public:
-  void warn(const std::string& text) override { std::cerr << "rtm-studio: " + text + "\n"; }
+  void warn(const std::string& text) override { std::cerr << base::for_terminal("rtm-studio: " + text + "\n"); }
 };
 
 int fail(const base::Error& error) {
-  std::cerr << "rtm-studio: " << error.message << '\n';
+  std::cerr << base::for_terminal("rtm-studio: " + error.message + "\n");
   return 1;
 }
 

@@ -18,6 +18,7 @@
 #include "base/clock.h"
 #include "base/guarded.h"
 #include "base/log.h"
+#include "base/terminal.h"
 #include "base/text.h"
 
 namespace RTC {
@@ -98,9 +99,9 @@ std::string format_line(const LogSettings& settings, const LogRecord& record) {
   }
   line += Logger::getLevelString(record.level);
   line += ": ";
-  line += record.name;
+  line += base::for_terminal(record.name);  // names and values come from peers, and people look at logs in terminals
   line += ": ";
-  line += record.message;
+  line += base::for_terminal(record.message);
   if (settings.colored) line += "\x1b[0m";
   line += '\n';
   return line;
