@@ -18,6 +18,8 @@
 //     on_execute, on_state_update, on_deactivated   while that context has it active
 //     on_error          while that context has it not active
 //     on_startup, on_shutdown, on_rate_changed, on_aborting, on_reset   at any time
+// A handle is not bound to a caller: a tool may attach a context that another process has, and a context calls over several connections.
+// It says which context calls; who may call is the matter of the rights above.
 // Active is from on_activated to on_deactivated, on_aborting or on_reset. OpenRTM-aist and this runtime call on_deactivated, then
 // on_aborting when a callback fails; a context that gave up one of the calls can reset the component.
 //
@@ -27,7 +29,8 @@
 //   64 callers wait already          PRECONDITION_NOT_MET
 //   the component ends               PRECONDITION_NOT_MET, or OBJECT_NOT_EXIST
 //   a callback calls another process, which calls back into the component by a thread of the ORB    as "the component's callback runs": the
-//                                    call that comes back fails in time, and the callback goes on
+//                                    call that comes back fails in time, and the callback goes on. CORBA passes on no chain of calls, so
+//                                    such a call cannot be told from one that comes by chance; to let it in is to let callbacks overlap
 // A context of this process waits as long as the component's callbacks may take when it ends (exec_cxt.callback_timeout, at least a second;
 // in lock step `simulated_patience`). Then its call fails like a callback that returns RTC_ERROR.
 // A component that was compiled with headers before these rules passes the gate too, but all its calls count as calls of this process.
