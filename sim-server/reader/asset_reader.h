@@ -143,6 +143,7 @@ class AssetShelf {
         entry->second.used = ++state->uses;
       }
     }
+    if (kept && are_untouched(kept->files)) return *kept;
     if (kept) {
       if (auto now = AssetReader::mine().unchanged(kept->files)) {
         auto state = state_.lock();

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <chrono>
 #include <tuple>
 
@@ -36,6 +37,11 @@ bool is_same_state(const FileStamp& a, const FileStamp& b) {
 bool is_settled(const FileStamp& stamp) {
   const bool has_seconds = stamp.changed_ns % 1'000'000'000 == 0;
   return !stamp.exists || stamp.seen_ns - stamp.changed_ns > (has_seconds ? 2'000'000'000 : 50'000'000);
+}
+
+bool are_untouched(const FileStamps& files) {
+  return std::ranges::all_of(
+      files, [](const FileStamp& file) { return is_same_state(file, stamp_of(file.path)) && (file.content.empty() || is_settled(file)); });
 }
 
 std::uint64_t version_of(const FileStamps& files) {

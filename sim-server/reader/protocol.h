@@ -59,6 +59,8 @@ bool is_same_state(const FileStamp& a, const FileStamp& b);
 // False while the file was so young that another change could leave it with the same times: then the same state is not the same content.
 bool is_settled(const FileStamp& stamp);
 using FileStamps = std::vector<FileStamp>;
+// True when stat alone says that all have the content that they had.
+bool are_untouched(const FileStamps& files);
 // Differs when the contents differ, or the states of files that were not read; never 0.
 std::uint64_t version_of(const FileStamps& files);
 
