@@ -23,6 +23,9 @@ class ContactGroups {
   // A contact with a force; `b` is null for what does not move. Both have been added. `depth` [m] is what is to be pushed back.
   void touch(ModelInstance& a, ModelInstance* b, bool has_mesh, double depth, const dSurfaceParameters& surface);
 
+  // An exact solution for the models that touch this one makes no sense (solver_choice.h).
+  void note_ill_conditioned(const ModelInstance& model) { members_[root(model.group_place)].size.is_ill_conditioned = true; }
+
   // After the contacts: which models go to the iterative solver (ModelInstance::is_iterative), and which are tried with TreeSolver first
   // (is_tree_solved).
   void share_out();

@@ -65,6 +65,18 @@ bool is_too_deep(const ShapeInstance& a, const ShapeInstance& b, const dContactG
                      [&](const dContactGeom& one) { return one.depth > std::max(too_deep * size / 2, least_too_deep); });
 }
 
+// How easily a push at a point [m] moves and turns the body, over three directions [1/kg].
+double compliance_at(dBodyID body, const dReal* at) {
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  dVector3 local;
+  dBodyGetPosRelPoint(body, at[0], at[1], at[2], local);
+  const Eigen::Matrix3d inertia = Eigen::Map<const Eigen::Matrix<dReal, 3, 4, Eigen::RowMajor>>(mass.I).leftCols<3>();
+  Eigen::Matrix3d arm;
+  arm << 0, -local[2], local[1], local[2], 0, -local[0], -local[1], local[0], 0;
+  return 1 / mass.mass + (arm.transpose() * inertia.inverse() * arm).trace();
+}
+
 bool is_mesh(const ShapeInstance& shape) { return dGeomGetClass(shape.geom.id()) == dTriMeshClass; }
 
 // Made when two meshes meet for the first time: most never do.
@@ -364,6 +376,10 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   const double lighter = weight_a > 0 && weight_b > 0 ? std::min(weight_a, weight_b) : std::max(weight_a, weight_b);
   const auto usual_contacts = static_cast<double>(std::max<std::size_t>(model_a.previous_contacts.size(), 1));
   resist_sliding(joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), lighter / usual_contacts);
+  for (const dBodyID body : {dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id())}) {
+    if (body != nullptr && is_ill_conditioned(compliance_at(body, geometry.pos), dWorldGetCFM(world_.id()) / physics_.step))
+      groups_.note_ill_conditioned(model_a);
+  }
   const dJointID joint = dJointCreateContact(world_.id(), contact_joints_.id(), &joint_contact);
   dJointAttach(joint, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()));
   if (has_many_joints_) made_contacts_.push_back({joint, joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), &model_a});

@@ -26,9 +26,14 @@ double iterative_work(double rows, double iterations) { return 18 * rows * itera
 
 }  // namespace
 
+bool is_ill_conditioned(double compliance, double cfm) {
+  constexpr double rounding = 1e-13;       // of a sum of some hundred terms
+  return !(compliance * rounding <= cfm);  // nor when it is no number
+}
+
 SolverChoice choose_solver(const PhysicsDef& physics, const GroupSize& group) {
   using Solver = PhysicsDef::Solver;
-  if (physics.solver == Solver::iterative) return {.is_iterative = true};
+  if (physics.solver == Solver::iterative || group.is_ill_conditioned) return {.is_iterative = true};
   const double joints = group.joint_rows, contacts = group.contact_rows;
   const double most = worth * iterative_work(joints + contacts, std::clamp(physics.iterations, 1, 10000));
   const bool is_heap = group.moving_contacts >= stacked_contacts || dense_work(joints, contacts) > most;

@@ -17,10 +17,12 @@ struct GroupSize {
   std::uint32_t moving_contacts = 0;  // between models that both move
   bool has_many_joints = false;       // a model of at least TreeSolver::least_bodies
   bool has_trees_only = true;
+  bool is_ill_conditioned = false;  // rounding takes more of its matrix than softness puts in
 
   GroupSize& operator+=(const GroupSize& other) {
     bodies += other.bodies, joint_rows += other.joint_rows;
     contact_rows += other.contact_rows, moving_contacts += other.moving_contacts;
+    is_ill_conditioned = is_ill_conditioned || other.is_ill_conditioned;
     has_many_joints = has_many_joints || other.has_many_joints, has_trees_only = has_trees_only && other.has_trees_only;
     return *this;
   }
@@ -30,6 +32,10 @@ struct SolverChoice {
   bool is_iterative = false;    // where TreeSolver is not tried or finds nothing
   bool is_tree_solved = false;  // TreeSolver is tried first
 };
+
+// Whether ODE's exact solver would meet pivots that are 0 or below, with which it ends the process. `compliance` [1/kg]: how far a push on
+// a contact moves and turns its body; `cfm` [1/kg]: what softness adds to it.
+bool is_ill_conditioned(double compliance, double cfm);
 
 SolverChoice choose_solver(const PhysicsDef& physics, const GroupSize& group);
 

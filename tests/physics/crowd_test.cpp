@@ -122,6 +122,8 @@ TEST(SolverChoice, goes_by_the_work_of_all_rows_and_not_by_contacts_alone) {
   EXPECT_FALSE(choose_solver(physics, {.bodies = 75, .joint_rows = 370}).is_iterative) << "many joints alone";
   EXPECT_TRUE(choose_solver(physics, {.bodies = 75, .joint_rows = 370, .contact_rows = 180}).is_iterative) << "and what they touch";
   EXPECT_TRUE(choose_solver(physics, {.bodies = 5, .contact_rows = 12, .moving_contacts = 4}).is_iterative) << "a stack";
+  EXPECT_TRUE(choose_solver(physics, {.bodies = 1, .contact_rows = 9, .is_ill_conditioned = true}).is_iterative)
+      << "ODE would end the process";
   PhysicsDef many = physics;
   many.iterations = 500;
   EXPECT_FALSE(choose_solver(many, {.bodies = 75, .joint_rows = 370, .contact_rows = 180}).is_iterative) << "the other is no cheaper";
