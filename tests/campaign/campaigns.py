@@ -460,6 +460,12 @@ hunt:
     lines = pathlib.Path(find["plan"]).read_text().splitlines()
     way.write_text("\n".join(line for line in lines if "drop" not in line and line != "faults:"))
     rtse("sweep", way, "--row", 1)
+    # What failed is a comment of the plan, however many lines its text has.
+    failing = "expect:\n  - command: |\n      true\n      duration: 99\n      exit 3\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n"
+    find = json.loads(rtse("--json", "hunt", plan(failing, "lines.yaml"), "--finds", 1, "--cases", 4, "-j", 2, code=1).stdout)["finds"][0]
+    text = pathlib.Path(find["plan"]).read_text()
+    assert text.startswith("# command") and "duration: 99" in text.splitlines()[0], text
+    assert "exit code 3" in rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1).stderr
     # A system that nobody can start is no find.
     system = pathlib.Path(f"{source}/tests/campaign/hunt/hunt_subject.xml").read_text()
     (folder / "nobody.xml").write_text(system.replace(":HuntSubject:", ":NoSubject:"))
