@@ -48,7 +48,7 @@ pathlib.Path(__file__).resolve().with_name("leader_follower.sdf").write_text(f""
       <real_time_factor>1</real_time_factor>
     </physics>
     <scene>
-      <ambient>0.4 0.4 0.4 1</ambient>
+      <ambient>0.6 0.6 0.6 1</ambient>
       <background>0.7 0.78 0.88 1</background>
       <shadows>true</shadows>
     </scene>
