@@ -31,4 +31,4 @@ def robot(name, x, rgb):
 
 (sdf_text.here / "leader_follower.sdf").write_text(
     sdf_text.world("make_leader_follower.py", "leader_follower", [robot("leader", -3.2, "0.15 0.3 0.75"), robot("follower", -4.4, "0.15 0.6 0.25"), *lines],
-                   look=sdf_text.scene("0.4 0.4 0.4", "0.7 0.78 0.88")))
+                   look=sdf_text.scene("0.6 0.6 0.6", "0.7 0.78 0.88")))

@@ -85,7 +85,8 @@ def pioneer():
       {collision("body", box(*body), whole)}
       {collision("top", box(*top), plate)}
       {visual("body", box(*body), (0.72, 0.08, 0.07), whole)}
-      {visual("top", box(*top), (0.1, 0.1, 0.11), plate)}
+      {visual("top", box(*top), (0.86, 0.12, 0.08), plate)}
+      {visual("arrow", box(0.16, 0.05, 0.004), (0.95, 0.95, 0.92), f"{body_x} 0 {top_z + top[2] / 2 + 0.001} 0 0 0")}
       {visual("front_sonars", box(0.05, 0.24, 0.025), (0.12, 0.12, 0.13), f"0.125 0 {sonar_z} 0 0 0")}
       {visual("rear_sonars", box(0.05, 0.24, 0.025), (0.12, 0.12, 0.13), f"-0.215 0 {sonar_z} 0 0 0")}
       {visual("nose", box(0.02, 0.12, 0.03), (0.9, 0.85, 0.2), f"0.18 0 {body_z} 0 0 0")}

@@ -38,4 +38,4 @@ robot = """    <include>
       <pose>-4.5 -4.5 0 0 0 0.785</pose>
     </include>"""
 (sdf_text.here / "obstacle_course.sdf").write_text(
-    sdf_text.world("make_obstacle_course.py", "obstacle_course", [robot, *lines], look=sdf_text.scene("0.4 0.4 0.4", "0.7 0.78 0.88")))
+    sdf_text.world("make_obstacle_course.py", "obstacle_course", [robot, *lines], look=sdf_text.scene("0.6 0.6 0.6", "0.7 0.78 0.88")))

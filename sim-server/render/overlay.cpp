@@ -163,6 +163,10 @@ std::optional<Eigen::Vector2d> project(const View& view, const Eigen::Vector3d& 
   return Eigen::Vector2d(x * view.width, y * view.height);
 }
 
+// Where a name is tried: above right first, as in maps [unit vectors in pixels, y down].
+const std::array<Eigen::Vector2d, 4> label_sides = {Eigen::Vector2d{0.7071, -0.7071}, Eigen::Vector2d{-0.7071, -0.7071},
+                                                    Eigen::Vector2d{0.7071, 0.7071}, Eigen::Vector2d{-0.7071, 0.7071}};
+
 class LabelDrawer {
  public:
   LabelDrawer(const View& view, std::vector<OverlayVertex>& out) : view_(view), out_(out) {}
@@ -177,9 +181,6 @@ class LabelDrawer {
     }
   }
 
- private:
-  static Eigen::Vector2d to_pixels(const Eigen::Vector2d& p, double unit) { return {p.x() * unit, -p.y() * unit}; }
-
   void line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double width, const Color& color, double alpha) {
     Eigen::Vector2d along = b - a;
     along = along.norm() > 1e-9 ? Eigen::Vector2d(along.normalized()) : Eigen::Vector2d(1, 0);
@@ -188,6 +189,10 @@ class LabelDrawer {
     cap(a, 0.5 * width, color, alpha);
     cap(b, 0.5 * width, color, alpha);
   }
+
+ private:
+  static Eigen::Vector2d to_pixels(const Eigen::Vector2d& p, double unit) { return {p.x() * unit, -p.y() * unit}; }
+
   void cap(const Eigen::Vector2d& p, double radius, const Color& color, double alpha) {
     constexpr int corners = 8;
     for (int i = 0; i < corners; ++i) {
@@ -268,16 +273,58 @@ std::vector<OverlayVertex> overlay_triangles(const Overlay& overlay, const View&
   return out;
 }
 
+std::vector<LabelPlace> label_places(const Overlay& overlay, const View& view, double pixel_scale) {
+  struct Named {
+    std::size_t label;
+    Eigen::Vector2d at;
+    double radius;  // [pixel]
+  };
+  std::vector<Named> all;
+  std::vector<Eigen::AlignedBox2d> taken;
+  for (std::size_t i = 0; i < overlay.labels.size(); ++i) {
+    const auto& label = overlay.labels[i];
+    const auto at = project(view, label.at);
+    if (!at) continue;
+    const double radius = label.radius / pixel_at(view, label.at - view.pose.translation());
+    all.push_back({i, *at, radius});
+    taken.emplace_back(*at - Eigen::Vector2d::Constant(0.7 * radius), *at + Eigen::Vector2d::Constant(0.7 * radius));
+  }
+  const Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(), Eigen::Vector2d(view.width, view.height));
+  std::vector<LabelPlace> out;
+  for (const auto& named : all) {
+    const auto& label = overlay.labels[named.label];
+    const double unit = label.size * pixel_scale / 6;
+    const Eigen::Vector2d size((5.6 * static_cast<double>(label.text.size()) - 1.6) * unit, 6 * unit);
+    std::optional<LabelPlace> best;
+    for (const Eigen::Vector2d& side : label_sides) {
+      // A thing is seldom as wide everywhere as the circle round it.
+      LabelPlace place{named.label, {}, named.at + side * 0.6 * named.radius, named.at + side * (named.radius + 2 * unit)};
+      const Eigen::Vector2d corner = place.line_to + Eigen::Vector2d(side.x() > 0 ? unit : -size.x() - unit, -0.5 * size.y());
+      place.text = {corner, corner + size};
+      const bool is_inside = picture.contains(place.text);
+      const bool is_free = std::none_of(taken.begin(), taken.end(), [&](const auto& box) { return box.intersects(place.text); });
+      if (!best || (is_inside && !picture.contains(best->text))) best = place;
+      if (!is_inside || !is_free) continue;
+      best = place;
+      break;
+    }
+    taken.push_back(best->text);
+    out.push_back(*best);
+  }
+  return out;
+}
+
 std::vector<OverlayVertex> label_triangles(const Overlay& overlay, const View& view, double pixel_scale) {
   std::vector<OverlayVertex> out;
   LabelDrawer drawer(view, out);
-  for (const auto& label : overlay.labels) {
-    const auto place = project(view, label.at);
-    if (!place) continue;
+  for (const auto& place : label_places(overlay, view, pixel_scale)) {
+    const auto& label = overlay.labels[place.label];
     const double unit = label.size * pixel_scale / 6;
-    const double width = (5.6 * static_cast<double>(label.text.size()) - 1.6) * unit;
-    const Eigen::Vector2d base = *place + Eigen::Vector2d(-0.5 * width, -3 * unit);
-    drawer.text(label.text, base, unit, 2.6 * unit, {0.05F, 0.05F, 0.08F, 1}, 1);
+    const Eigen::Vector2d base(place.text.min().x(), place.text.max().y());
+    const Color rim{0.05F, 0.05F, 0.08F, 1};
+    drawer.line(place.line_from, place.line_to, 1.6 * unit, rim, 1);
+    drawer.text(label.text, base, unit, 2.6 * unit, rim, 1);
+    drawer.line(place.line_from, place.line_to, 0.6 * unit, label.color, 1);
     drawer.text(label.text, base, unit, 0.95 * unit, label.color, 1);
   }
   return out;

@@ -160,8 +160,8 @@ Overlay overlay_of(Simulation& simulation, const Snapshot& world) {
     const auto color = colors.find(world.models[i]);
     if (color == colors.end()) continue;
     const SceneModel& model = world.scene->models[i];
-    const Vector3d place = (*world.poses)[model.canonical_link].translation();
-    overlay.labels.push_back({place + Vector3d(0, 0, model.height + 0.05), model.name, {1, 1, 1, 1}, 13});
+    const Vector3d middle = (*world.poses)[model.canonical_link].translation() + Vector3d(0, 0, 0.5 * model.height);
+    overlay.labels.push_back({middle, model.radius, model.name, {1, 1, 1, 1}, 13});
     if (world.models[i] >= simulation.trails().size()) continue;
     Overlay::Trail trail;
     trail.color = color->second;

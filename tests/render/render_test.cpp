@@ -297,7 +297,7 @@ TEST(Render, overlays_show_fans_trails_and_names) {
   Overlay overlay;
   overlay.fans.push_back({{0, 0, 0}, {{1, 1, 0}, {1, 0, 0}, {1, -1, 0}}, overlay_color(0)});
   overlay.trails.push_back({{{-1, -1, 0}, {-1, 1, 0}}, overlay_color(1), 3});
-  overlay.labels.push_back({{-1.5, 0, 0}, "robot", {1, 0, 0, 1}, 12});
+  overlay.labels.push_back({{-1.5, 0, 0}, 0.1, "robot", {1, 0, 0, 1}, 12});
   const Image image = studio.picture(View::pinhole(looking_down(), 1.0, 200, 200), &overlay);
   int blue = 0, green = 0, red = 0;
   for (int y = 0; y < 200; ++y)
@@ -310,6 +310,32 @@ TEST(Render, overlays_show_fans_trails_and_names) {
   EXPECT_GT(blue, 500);
   EXPECT_GT(green, 100);
   EXPECT_GT(red, 40);
+}
+
+// A name in the middle of a robot hid the robot, which is what a picture is made for.
+TEST(Render, a_name_is_beside_what_it_names_and_off_all_others) {
+  Overlay overlay;
+  // Far from the edges; at the right edge; two close together; behind the camera.
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.0, -2.3}, {-1.0, 1.0}, {-0.8, 1.0}})
+    overlay.labels.push_back({{x, y, 0}, 0.2, "pioneer2dx", {1, 1, 1, 1}, 12});
+  overlay.labels.push_back({{0, 0, 100}, 0.2, "behind", {1, 1, 1, 1}, 12});
+  View view = View::pinhole(looking_down(), 1.0, 600, 600);
+  const auto places = label_places(overlay, view, 1);
+  ASSERT_EQ(places.size(), 4U);
+  const Eigen::AlignedBox2d picture(Eigen::Vector2d(0, 0), Eigen::Vector2d(600, 600));
+  const double focal = 300 / std::tan(0.5), height = view.pose.translation().z();
+  for (const auto& place : places) {
+    EXPECT_TRUE(picture.contains(place.text)) << place.label;
+    for (const auto& label : overlay.labels) {
+      if (label.text == "behind") continue;
+      const Eigen::Vector2d middle(300 - focal * label.at.y() / height, 300 - focal * label.at.x() / height);
+      EXPECT_GT(place.text.exteriorDistance(middle), 0.7 * focal * 0.2 / height) << place.label;
+    }
+    for (const auto& other : places) {
+      EXPECT_EQ(other.text.intersects(place.text), other.label == place.label) << other.label << " " << place.label;
+    }
+    EXPECT_GT((place.line_to - place.line_from).norm(), 5);
+  }
 }
 
 TEST(Render, a_mesh_file_is_drawn_with_its_own_materials) {
