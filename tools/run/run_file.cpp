@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 
@@ -132,6 +133,7 @@ Result<std::vector<ForeignProcess>> parse_run_file(const std::string& text, cons
 }
 
 Result<std::vector<ForeignProcess>> read_run_file(const std::string& file) {
+  if (const auto problem = base::file_problem(file); !problem.empty()) return Error{"run file " + base::in_quotes(file) + ": " + problem};
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
