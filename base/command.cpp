@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 
 namespace base {
@@ -26,7 +27,13 @@ Check number_between(double low, double high) {
           "FLOAT in [" + range + "]"};
 }
 
-Check existing_file() { return like(CLI::ExistingFile); }
+Check existing_file() {
+  return {[](const std::string& file) {
+            if (const auto problem = file_problem(file); !problem.empty()) throw BadFile{"file " + in_quotes(file) + ": " + problem};
+            return std::string();
+          },
+          "FILE"};
+}
 
 Check one_of(std::vector<std::string> words, Case letters) {
   return like(letters == Case::matters ? CLI::IsMember(std::move(words)) : CLI::IsMember(std::move(words), CLI::ignore_case));

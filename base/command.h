@@ -25,6 +25,10 @@ struct Check {
 Check integer_between(int low, int high);
 // No NaN either.
 Check number_between(double low, double high);
+// A file that can be read. What is wrong with it is a BadFile, which parse_command_line tells: the form of the command line is right.
+struct BadFile {
+  std::string message;
+};
 Check existing_file();
 enum class Case { matters, does_not_matter };
 Check one_of(std::vector<std::string> words, Case letters = Case::matters);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/descriptors.h"
+#include "base/suggestion.h"
 #include "base/text.h"
 
 namespace base {
@@ -126,8 +127,9 @@ std::optional<int> parse_command_line(Command& program, const std::string& name,
     for (const auto& offer : completion.offers) std::cout << offer.text << '\t' << offer.description << '\n';
     return 0;
   }
-  if (const auto word = unknown_command(program, {argv + 1, argv + argc}); !word.empty()) {
-    std::cerr << name << ": unknown command " << in_quotes(word) << "; see " << name << " --help\n";
+  if (const auto unknown = unknown_command(program, {argv + 1, argv + argc})) {
+    std::cerr << name << ": unknown command " << in_quotes(unknown->word) << suggestion(unknown->word, unknown->known) << "; see " << name
+              << " --help\n";
     return 2;
   }
   try {
@@ -135,6 +137,9 @@ std::optional<int> parse_command_line(Command& program, const std::string& name,
     return std::nullopt;
   } catch (const Printed&) {
     return 0;
+  } catch (const BadFile& e) {
+    std::cerr << name << ": " << e.message << '\n';
+    return 2;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.inner().exit(e);
     std::cerr << name << ": " << e.what() << "; see " << name << " --help\n";

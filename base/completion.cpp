@@ -114,22 +114,30 @@ void offer_options(const CLI::App& app, Completion& completion) {
 
 }  // namespace
 
-std::string unknown_command(const Command& program, const std::vector<std::string>& words) {
+std::optional<UnknownCommand> unknown_command(const Command& program, const std::vector<std::string>& words) {
   const CLI::App& app = program.inner();
-  const auto commands = commands_of(app);
+  const CLI::App* place = &app;
   bool is_value = false;
   for (const auto& word : words) {
     if (std::exchange(is_value, false)) continue;
     if (word.size() > 1 && word.front() == '-') {
-      const auto* option = find_option(app, word);
-      if (!option && word.find('=') == std::string::npos) return "";  // it is what is wrong
+      const auto* own = find_option(*place, word);
+      const auto* option = own ? own : find_option(app, word);
+      if (!option && word.find('=') == std::string::npos) return std::nullopt;  // it is what is wrong
       is_value = option && takes_value(option);
       continue;
     }
-    const bool is_known = commands.empty() || std::ranges::any_of(commands, [&](const CLI::App* one) { return one->get_name() == word; });
-    return is_known ? "" : word;
+    const auto commands = commands_of(*place);
+    if (commands.empty() || (place != &app && !options_of(*place, true).empty())) return std::nullopt;
+    const auto found = std::ranges::find_if(commands, [&](const CLI::App* one) { return one->get_name() == word; });
+    if (found == commands.end()) {
+      UnknownCommand unknown{word, {}};
+      for (const auto* command : commands) unknown.known.push_back(command->get_name());
+      return unknown;
+    }
+    place = *found;
   }
-  return "";
+  return std::nullopt;
 }
 
 Completion complete(const Command& program, const std::vector<std::string>& words, const Offers& offers) {

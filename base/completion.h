@@ -34,8 +34,12 @@ Completion complete(const Command& app, const std::vector<std::string>& words, c
 // The subcommands that --help shows.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
-// The word that stands where a command of the program is expected, and is none; empty when there is no such.
-std::string unknown_command(const Command& app, const std::vector<std::string>& words);
+// The word that stands where a command is expected, of the program or of one of its commands, and is none; with those that there are.
+struct UnknownCommand {
+  std::string word;
+  std::vector<std::string> known;
+};
+std::optional<UnknownCommand> unknown_command(const Command& app, const std::vector<std::string>& words);
 
 // The script for bash or zsh.
 std::string completion_script(const std::string& name, const std::string& shell);

@@ -5,6 +5,10 @@
 
 #include <cerrno>
 #include <system_error>
+#include <vector>
+
+#include "base/suggestion.h"
+#include "base/text.h"
 
 #include "base/guarded.h"
 
@@ -56,6 +60,31 @@ Result<std::string> read_plain_file(const std::filesystem::path& file, std::uint
   bytes.resize(done);  // it has become shorter meanwhile
   if (status != nullptr) *status = is;
   return bytes;
+}
+
+namespace {
+
+// Of a file that is not there: what in its folder has nearly its name.
+std::string meant_instead(const std::filesystem::path& file) {
+  constexpr std::size_t most_compared = 1000;
+  std::vector<std::string> names;
+  std::error_code error;
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder, error)) return "; there is no folder " + in_quotes(folder.string());
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < most_compared;
+       entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  return suggestion(file.filename().string(), names);
+}
+
+}  // namespace
+
+std::string file_problem(const std::filesystem::path& file) {
+  struct stat is {};
+  if (::stat(file.c_str(), &is) != 0)
+    return errno == ENOENT || errno == ENOTDIR ? "no such file" + meant_instead(file) : unreadable(errno).message;
+  if (S_ISDIR(is.st_mode)) return "is a folder; a file is expected";
+  return ::access(file.c_str(), R_OK) == 0 ? "" : unreadable(errno).message;
 }
 
 bool is_plain_file(const std::filesystem::path& file) {

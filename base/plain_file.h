@@ -18,6 +18,10 @@ namespace base {
 // which the caller puts in front. `status` (may be null) receives what the bytes belong to.
 Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t most_bytes, struct stat* status = nullptr);
 
+// Why a file that a person has named cannot be read, in the words of read_plain_file(), with the name in the same folder that was most
+// likely meant; empty when nothing speaks against it.
+std::string file_problem(const std::filesystem::path& file);
+
 // Whether read_plain_file() would try.
 bool is_plain_file(const std::filesystem::path& file);
 

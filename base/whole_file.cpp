@@ -1,6 +1,7 @@
 #include "base/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,10 +40,16 @@ int write_all(int file, std::string_view octets) {
   return 0;
 }
 
-int make_file(const fs::path& file, std::string_view octets) {
-  const int handle = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+// `before`: the file that it takes the place of, which may be for its owner alone; null: there is none.
+int make_file(const fs::path& file, std::string_view octets, const struct stat* before) {
+  constexpr mode_t own = 0600, usual = 0666, permissions = 07777;
+  const int handle = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, before != nullptr ? own : usual);
   if (handle < 0) return errno;
-  const int problem = write_all(handle, octets);
+  int problem = 0;
+  // Its owner only where that may be changed; a mode is that of the new owner then.
+  if (before != nullptr) (void)!::fchown(handle, before->st_uid, before->st_gid);
+  if (before != nullptr && ::fchmod(handle, before->st_mode & permissions) != 0) problem = errno;
+  if (problem == 0) problem = write_all(handle, octets);
   const int closing = ::close(handle) == 0 ? 0 : errno;  // some disks tell only here that they are full
   return problem != 0 ? problem : closing;
 }
@@ -58,7 +65,9 @@ Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
   if (fs::exists(status) && !fs::is_regular_file(status)) return bad("is no ordinary file");
   const fs::path target = behind_links(file);
   const fs::path part = target.string() + ".part" + std::to_string(::getpid());
-  int problem = make_file(part, octets);
+  struct stat before {};
+  const bool has_before = ::stat(target.c_str(), &before) == 0;
+  int problem = make_file(part, octets, has_before ? &before : nullptr);
   if (problem == 0 && ::rename(part.c_str(), target.c_str()) != 0) problem = errno;
   if (problem == 0) return {};
   ::unlink(part.c_str());

@@ -8,7 +8,8 @@
 
 namespace base {
 
-// A symbolic link stays one; what is there and no ordinary file (a folder, a device, a pipe) is refused. On failure nothing is left behind.
+// A file that is replaced keeps its mode. A symbolic link stays one; what is there and no ordinary file (a folder, a device, a pipe) is
+// refused. On failure nothing is left behind.
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view octets);
 
 }  // namespace base

@@ -86,6 +86,7 @@ struct Iface::State {
   bool has_lease() const { return lease && load(own_lease().owner) == owner; }
   base::Result<void> prepare();
   base::Result<void> ensure_lease();
+  bool copy_sample(std::uint64_t number);
   Status status(bool is_hurried);
 };
 
@@ -293,18 +294,32 @@ bool Iface::is_subscribed() const { return state_->is_subscribed && state_->has_
 
 std::uint64_t Iface::sequence() const { return load(state_->header().sequence); }  // pairs with the release in publish
 
+// Copies a sample out of its cell; false when the cell has another one by now.
+bool Iface::State::copy_sample(std::uint64_t number) {
+  const Area& cells = segment.area(AreaIndex::cells);
+  const std::byte* cell = segment.at(AreaIndex::cells, number % cells.count);
+  const auto& lock = *reinterpret_cast<const std::uint64_t*>(cell);
+  if (load(lock) != 2 * number + 2) return false;  // pairs with the release in publish
+  copy_out(buffer.data(), cell + sizeof lock, buffer.size() * 8);
+  return load(lock, std::memory_order_relaxed) == 2 * number + 2;
+}
+
 bool Iface::read() {
-  State& state = *state_;
-  const Area& cells = state.segment.area(AreaIndex::cells);
-  if (cells.count == 0) return false;
+  if (state_->segment.area(AreaIndex::cells).count == 0) return false;
   for (int attempt = 0; attempt < read_attempts; ++attempt) {
     const std::uint64_t latest = sequence();
     if (latest == 0) return false;
-    const std::byte* cell = state.segment.at(AreaIndex::cells, latest % cells.count);
-    const auto& lock = *reinterpret_cast<const std::uint64_t*>(cell);
-    if (load(lock) != 2 * latest + 2) continue;  // pairs with the release in publish
-    copy_out(state.buffer.data(), cell + sizeof lock, state.buffer.size() * 8);
-    if (load(lock, std::memory_order_relaxed) == 2 * latest + 2) return true;
+    if (state_->copy_sample(latest)) return true;
+  }
+  return false;
+}
+
+bool Iface::read_after(std::uint64_t than) {
+  const std::uint64_t cells = state_->segment.area(AreaIndex::cells).count;
+  if (cells == 0) return false;
+  for (std::uint64_t number = than + 1; number <= sequence(); ++number) {
+    number = std::max(number, sequence() - std::min(sequence(), cells - 1));
+    if (state_->copy_sample(number)) return true;
   }
   return false;
 }
@@ -385,7 +400,7 @@ std::optional<HeldFrame> Iface::hold() {
   return std::nullopt;
 }
 
-base::Result<void> Iface::command(CommandKind kind, std::span<const double> values) {
+base::Result<void> Iface::command(CommandKind kind, std::span<const double> values, std::chrono::nanoseconds duration) {
   State& state = *state_;
   const auto fail = [&](const std::string& what) { return base::Error{describe(type(), name()) + ": command " + what}; };
   const std::size_t most = state.segment.facts().command_values;
@@ -401,6 +416,7 @@ base::Result<void> Iface::command(CommandKind kind, std::span<const double> valu
   CommandHead fresh{};
   fresh.sequence = load(lease.command.sequence, std::memory_order_relaxed) + 1;
   fresh.kind = static_cast<std::uint32_t>(kind);
+  if (duration.count() > 0) fresh.flags = RTMSIM_COMMAND_TIMED, fresh.sim_time_ns = duration.count();
   const std::uint64_t lock = load(lease.command_lock, std::memory_order_relaxed) & ~std::uint64_t{1};
   store(lease.command_lock, lock + 1, std::memory_order_relaxed);  // seen by whoever sees a word of the copy
   copy_in(&lease.command, &fresh, sizeof fresh);

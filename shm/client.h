@@ -94,6 +94,8 @@ class Iface {
   // Copies the latest sample into this handle's buffer. False when there is none yet (or, against all odds, the writer was faster than
   // eight attempts). No system call.
   bool read();
+  // The same with the oldest sample newer than `than` that the shared memory still has.
+  bool read_after(std::uint64_t than);
   // For who reads many ifaces, one after the other: bring() a few before its turn asks the processor for the memory that read() looks at,
   // and expect(), still earlier, for that which bring() does. Neither waits, nor does anything else.
   void expect() const;
@@ -127,7 +129,8 @@ class Iface {
 
   // ---- commands ----
   // The latest command of all clients counts. Missing values are 0. Refuses values that are not finite, and more than the iface has.
-  base::Result<void> command(CommandKind kind, std::span<const double> values);
+  // `duration`: simulated time after which the simulator ends the command by itself, counted from the first step that follows it; 0: none.
+  base::Result<void> command(CommandKind kind, std::span<const double> values, std::chrono::nanoseconds duration = {});
   base::Result<void> command_velocity(double vx, double vy, double va);
   // True while this handle's command is the one in force.
   bool is_commander() const;

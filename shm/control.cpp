@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 
@@ -51,7 +52,7 @@ Result<SpawnRequest> spawn_request(const std::string& what, bool is_shared) {
   if (!request.is_path || what.find("://") != std::string::npos) return request;
   std::error_code error;
   const bool is_there = std::filesystem::exists(what, error);
-  if (!is_there && what.find('/') != std::string::npos) return Error{"file " + base::in_quotes(what) + ": does not exist"};
+  if (!is_there && what.find('/') != std::string::npos) return Error{"file " + base::in_quotes(what) + ": " + base::file_problem(what)};
   request.sdf = is_there ? std::filesystem::absolute(what, error).string() : "model://" + what;
   if (is_shared && std::filesystem::is_regular_file(what, error)) {
     std::ifstream in(what, std::ios::binary);

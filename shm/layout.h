@@ -2,6 +2,7 @@
 // data; no thread rule.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,7 +50,8 @@ enum class CommandKind : std::uint32_t { stop = RTMSIM_COMMAND_STOP, velocity = 
 struct Command {
   std::uint64_t sequence = 0;  // counts the commands of one client
   CommandKind kind = CommandKind::stop;
-  std::span<const double> values;  // as many as the iface has, finite; valid until the writer polls again
+  std::span<const double> values;        // as many as the iface has, finite; valid until the writer polls again
+  std::chrono::nanoseconds duration{0};  // simulated; 0: until another command, or until the client leaves
 };
 
 // The values of the command of a lease, which lies in shared memory.

@@ -108,10 +108,13 @@ enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one l
  * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
-  int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0 */
+  int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
   uint32_t kind;       /* RTMSIM_COMMAND_* */
-  uint32_t flags;      /* 0 */
+  uint32_t flags;      /* RTMSIM_COMMAND_TIMED, or 0 */
 } rtmsim_command;
+
+/* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had left. */
+enum { RTMSIM_COMMAND_TIMED = 1 };
 
 enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2 };
 

@@ -1,8 +1,20 @@
 #include "shm/specs.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace shm {
+namespace {
+
+// Small samples are many in a time: a reader that was asleep for a while finds those it missed. Worlds have thousands of truths, which are
+// read for the present.
+std::uint32_t cells_for(IfaceType type, std::size_t sample_size) {
+  constexpr std::size_t least = 4, most = 32, room = 16384;  // [bytes]
+  if (type == IfaceType::truth || sample_size == 0) return least;
+  return static_cast<std::uint32_t>(std::clamp(room / sample_size, least, most));
+}
+
+}  // namespace
 
 IfaceSpec iface_spec(IfaceType type, const std::string& name, std::span<const std::byte> info) {
   const IfaceRow& row = row_of(type);
@@ -12,6 +24,7 @@ IfaceSpec iface_spec(IfaceType type, const std::string& name, std::span<const st
   if (info.size() < row.info_size) return spec;  // which cannot be made: it has no samples
   const auto count = plausible_count(row, info.data());
   spec.geometry.sample_size = count && info.size() >= info_size(row, *count) ? sample_size(row, *count) : 0;
+  spec.geometry.cells = cells_for(type, spec.geometry.sample_size);
   return spec;
 }
 

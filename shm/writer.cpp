@@ -19,6 +19,7 @@ bool IfaceWriter::is_subscribed() const { return impl_->leases.subscribers() > 0
 bool IfaceWriter::owes_sample() const {
   return is_subscribed() && impl_->leases.times_switched_on() != impl_->served.load(std::memory_order_relaxed);
 }
+std::uint32_t IfaceWriter::times_switched_on() const { return impl_->leases.times_switched_on(); }
 std::byte* IfaceWriter::staging() { return reinterpret_cast<std::byte*>(impl_->staging.data()); }
 void IfaceWriter::set_resets(std::uint32_t resets) { impl_->resets = resets; }
 std::uint64_t IfaceWriter::sequence() const { return impl_->sequence; }
@@ -94,7 +95,9 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   impl.commander = owner;
   impl.commander_lease = index;
   impl.command_values.swap(impl.fresh_values);
-  command = {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.command_values};
+  const bool is_timed = (fresh.flags & RTMSIM_COMMAND_TIMED) != 0 && fresh.sim_time_ns > 0;
+  command = {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.command_values,
+             std::chrono::nanoseconds(is_timed ? fresh.sim_time_ns : 0)};
   return CommandChange::fresh;
 }
 

@@ -38,6 +38,9 @@ class IfaceWriter {
   // True while somebody is subscribed and nothing has been published since the first of them came. Any thread.
   bool owes_sample() const;
 
+  // How often somebody subscribed while nobody was. Any thread.
+  std::uint32_t times_switched_on() const;
+
   // ---- samples: fill the private sample, then publish a copy of it ----
   template <class Sample>
   Sample& sample() {

@@ -13,6 +13,8 @@ foreach(case of_a_run killed again reset taken full_disk of_a_killed_recorder)
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recorded_rings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(recorded_rings.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
+add_test(NAME recordings.of_others COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings_of_others.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+set_tests_properties(recordings.of_others PROPERTIES LABELS integration TIMEOUT 300)
 foreach(case astray bombs broken_ring flipped large letters many_broken pictures names targets terminal)
   add_test(NAME hostile_recordings.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hostile_recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

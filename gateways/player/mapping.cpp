@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "device_kinds.h"
@@ -98,30 +98,14 @@ std::uint16_t port_of(const YAML::Node& node) {
   return static_cast<std::uint16_t>(*port);
 }
 
-// Distance of two words: letters to change, add or take away.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j)
-      diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1, diagonal + (a[i] == b[j] ? 0 : 1)}));
-  }
-  return row.back();
-}
-
 // An interface that Player has but not this gateway is no misspelling.
 std::string why_not_served(const std::string& name) {
   std::vector<std::string> served;
   for (const DeviceKind& kind : device_kinds()) served.emplace_back(player::to_text(kind.interface));
   if (player::is_interface_name(name))
     return base::in_quotes(name) + " is an interface of Player that is not served here; served are " + base::join(served, ", ");
-  const auto word = base::to_lower(std::string_view(name).substr(0, 40));
-  const auto nearest =
-      std::min_element(served.begin(), served.end(), [&](const auto& a, const auto& b) { return distance(word, a) < distance(word, b); });
-  const bool is_near = distance(word, *nearest) <= 1 + nearest->size() / 4;
-  return base::in_quotes(name) + " is no interface of Player; " +
-         (is_near ? "did you mean " + *nearest + "?" : "expected one of " + base::join(served, ", "));
+  const auto meant = base::suggestion(name, served);
+  return base::in_quotes(name) + " is no interface of Player" + (meant.empty() ? "; expected one of " + base::join(served, ", ") : meant);
 }
 
 player::Address address_of(const YAML::Node& node) {

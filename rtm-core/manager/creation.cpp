@@ -162,7 +162,8 @@ base::Result<RTObject_impl*> ManagerImpl::create(std::string argument) {
   }
   if (!place) {
     return base::Error{"component " + base::in_quotes(argument) +
-                       ": no factory of that type is registered and no module of that name is in " + value("manager.modules.load_path")};
+                       ": no factory of that type is registered and no module of that name is in " +
+                       described_load_path(value("manager.modules.load_path"))};
   }
   if (auto* existing = existing_component(*parsed, place->factory->profile())) {
     state.lock()->records.erase(place->id);

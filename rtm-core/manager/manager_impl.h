@@ -29,6 +29,9 @@ class ManagerServant;
 
 namespace RTC {
 
+// The value of manager.modules.load_path for a message, with a hint when it looks like a PATH.
+std::string described_load_path(const std::string& value);
+
 class ManagerConfig;
 class ModuleManager;
 class NamingManager;

@@ -304,6 +304,10 @@ std::string ModuleManager::initFunction(const std::string& file) {
   return stem + "Init";
 }
 
+std::string described_load_path(const std::string& value) {
+  return value + (value.find(':') == std::string::npos ? "" : " (its folders are separated by commas, not by colons)");
+}
+
 ReturnCode_t ModuleManager::load(const std::string& text, const std::string& init_function, std::string& error) {
   auto [name, function] = split_module(text, init_function);
   const auto complain = [&](const std::string& why) {
@@ -312,7 +316,8 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
   };
   if (name.empty() || name.size() > 4096) return complain("not the name of a file"), BAD_PARAMETER;
   const auto file = findFile(name);
-  if (file.empty()) return complain("not found; looked in " + impl_->manager->configValue("manager.modules.load_path")), BAD_PARAMETER;
+  if (file.empty())
+    return complain("not found; looked in " + described_load_path(impl_->manager->configValue("manager.modules.load_path"))), BAD_PARAMETER;
   if (!base::parse_bool(impl_->manager->configValue("manager.modules.abs_path_allowed")).value_or(true)) {
     const char* const forbidden = " is not allowed by manager.modules.abs_path_allowed";
     if (fs::path(name).is_absolute()) return complain(std::string("an absolute path") + forbidden), PRECONDITION_NOT_MET;

@@ -34,13 +34,19 @@ struct Moment {
 class Schedule {
  public:
   explicit Schedule(double rate = 0);  // [Hz]; 0: every step
-  bool is_due(std::chrono::nanoseconds now) const { return now >= next_; }
-  void done(std::chrono::nanoseconds now);
-  void restart() { next_ = std::chrono::nanoseconds(0); }
+  // For the subscribers of this era: an era begins when somebody subscribes to a device that nobody was subscribed to.
+  bool is_due(std::chrono::nanoseconds now, std::uint64_t era = 0) const;
+  void done(std::chrono::nanoseconds now) { next_ = after(now); }
+  // A sample was made out of turn while time stood still, for the subscribers of this era: their next one is due at the next multiple.
+  // At time 0 all are due once more, as after a reset.
+  void shown(std::chrono::nanoseconds now, std::uint64_t era);
+  void restart() { next_ = shown_at_ = std::chrono::nanoseconds(0); }
   std::chrono::nanoseconds period() const { return period_; }
 
  private:
-  std::chrono::nanoseconds period_{0}, next_{0};
+  std::chrono::nanoseconds after(std::chrono::nanoseconds now) const;  // the next multiple of the period
+  std::chrono::nanoseconds period_{0}, next_{0}, shown_at_{0};
+  std::uint64_t shown_era_ = 0;
 };
 
 struct DeviceWorld {

@@ -3,12 +3,15 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "server/server_loop.h"
 #include "world/world_loader.h"
 
 namespace sim {
 namespace {
+
+constexpr std::size_t most_compared = 2000;  // names, for a suggestion: it is made between two steps
 
 shm::Reply refused(shm::RequestStatus status, std::string message) {
   shm::Reply reply;
@@ -17,7 +20,26 @@ shm::Reply refused(shm::RequestStatus status, std::string message) {
   return reply;
 }
 shm::Reply failed(const base::Error& error) { return refused(shm::RequestStatus::failed, error.message); }
-shm::Reply no_model(const std::string& name) { return refused(shm::RequestStatus::not_found, "no model or link " + name); }
+
+shm::Reply no_model(const Physics& physics, const std::string& name) {
+  std::vector<std::string> known;
+  for (ModelId id = 0; id < physics.model_slots() && known.size() < most_compared; ++id) {
+    if (!physics.exists(id)) continue;
+    const ModelDef& model = physics.def(id);
+    known.push_back(model.name);
+    if (name.find("::") == std::string::npos) continue;
+    for (const auto& link : model.links) known.push_back(model.name + "::" + link.name);
+  }
+  return refused(shm::RequestStatus::not_found, "no model or link " + name + base::suggestion(name, known));
+}
+
+shm::Reply no_iface(const Simulation& simulation, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& device : simulation.devices()) {
+    if (known.size() < most_compared) known.push_back(device->iface().name());
+  }
+  return refused(shm::RequestStatus::not_found, "no iface " + name + base::suggestion(name, known));
+}
 
 void put(double* values, const shm::Pose& p) {
   const double all[7] = {p.x, p.y, p.z, p.qw, p.qx, p.qy, p.qz};
@@ -81,7 +103,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::GetPoseRequest& request) {
     const auto link = physics.find_link(request.name);
-    if (!link) return no_model(request.name);
+    if (!link) return no_model(physics, request.name);
     const auto model = physics.find(request.name);
     shm::Reply reply;
     put(reply.values, to_pose(model ? physics.model_pose(*model) : physics.link_pose(*link)));
@@ -89,7 +111,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::SetPoseRequest& request) {
     const auto model = physics.find(request.model);
-    if (!model) return no_model(request.model);
+    if (!model) return no_model(physics, request.model);
     Eigen::Isometry3d pose = from_pose(request.pose);
     if (request.is_planar) {
       const Eigen::Isometry3d now = physics.model_pose(*model);
@@ -102,7 +124,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::GetVelocityRequest& request) {
     const auto link = physics.find_link(request.name);
-    if (!link) return no_model(request.name);
+    if (!link) return no_model(physics, request.name);
     const Twist twist = physics.link_twist(*link);
     shm::Reply reply;
     for (int i = 0; i < 3; ++i) reply.values[i] = twist.linear[i], reply.values[i + 3] = twist.angular[i];
@@ -110,13 +132,13 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::SetVelocityRequest& request) {
     const auto model = physics.find(request.model);
-    if (!model) return no_model(request.model);
+    if (!model) return no_model(physics, request.model);
     const auto done = physics.set_model_twist(*model, {vector(request.linear), vector(request.angular)});
     return done ? shm::Reply{} : failed(done.error());
   }
   shm::Reply operator()(const shm::WrenchRequest& request) {
     const auto link = physics.find_link(request.name);
-    if (!link) return no_model(request.name);
+    if (!link) return no_model(physics, request.name);
     const auto duration = std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e6) * 1e9));
     const auto done = simulation.add_wrench(*link, vector(request.force), vector(request.torque), duration);
     return done ? shm::Reply{} : failed(done.error());
@@ -127,7 +149,7 @@ struct ServerLoop::Handler {
     return reply;
   }
   shm::Reply operator()(const shm::TreeRequest& request) {
-    if (!request.model.empty() && !physics.find(request.model)) return no_model(request.model);
+    if (!request.model.empty() && !physics.find(request.model)) return no_model(physics, request.model);
     shm::Reply reply;
     reply.text = tree_text(simulation, request.model);
     return reply;
@@ -165,7 +187,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::DeleteRequest& request) {
     const auto model = physics.find(request.model);
-    if (!model) return no_model(request.model);
+    if (!model) return no_model(physics, request.model);
     loop.deleted_.keep(physics, *model);
     simulation.remove(*model);
     return {};
@@ -178,7 +200,8 @@ struct ServerLoop::Handler {
     }
     const auto& actors = simulation.world().actors;
     const bool is_actor = std::any_of(actors.begin(), actors.end(), [&](const ActorDef& a) { return a.name == request.follow; });
-    if (request.view == shm::ScreenshotRequest::View::follow && !is_actor && !physics.find(request.follow)) return no_model(request.follow);
+    if (request.view == shm::ScreenshotRequest::View::follow && !is_actor && !physics.find(request.follow))
+      return no_model(physics, request.follow);
     auto plan = plan_picture(simulation, request);
     if (!plan) return failed(plan.error());
     order(PictureDesk::Picture{std::move(*plan), request.path}, {});
@@ -219,19 +242,19 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::ResetOdometryRequest& request) {
     Device* device = simulation.device(request.iface);
-    if (device == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (device == nullptr) return no_iface(simulation, request.iface);
     const shm::Pose pose = request.is_3d ? request.pose : shm::planar_pose(request.x, request.y, 0, request.a);
     if (!device->set_odometry(from_pose(pose))) return refused(shm::RequestStatus::unsupported, request.iface + " has no odometry");
     return {};
   }
   shm::Reply operator()(const shm::SetMotorsRequest& request) {
     Device* device = simulation.device(request.iface);
-    if (device == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (device == nullptr) return no_iface(simulation, request.iface);
     if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");
     return {};
   }
   shm::Reply operator()(const shm::FaultRequest& request) {
-    if (simulation.device(request.iface) == nullptr) return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
     const shm::FaultRow& row = *shm::find_fault(request.kind);
     FaultOrder fault{request.iface, row.kind, request.amount.value_or(row.amount.value_or(0)), simulation.time()};
     if (request.duration > 0) fault.until = fault.from + std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e9) * 1e9));
@@ -239,16 +262,14 @@ struct ServerLoop::Handler {
     return added ? shm::Reply{} : failed(added.error());
   }
   shm::Reply operator()(const shm::EndFaultsRequest& request) {
-    if (!request.iface.empty() && simulation.device(request.iface) == nullptr)
-      return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (!request.iface.empty() && simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
     const shm::FaultRow* row = shm::find_fault(request.kind);
     shm::Reply reply;
     reply.count = static_cast<std::int64_t>(simulation.end_faults(request.iface, row ? std::optional(row->kind) : std::nullopt));
     return reply;
   }
   shm::Reply operator()(const shm::FaultsRequest& request) {
-    if (!request.iface.empty() && simulation.device(request.iface) == nullptr)
-      return refused(shm::RequestStatus::not_found, "no iface " + request.iface);
+    if (!request.iface.empty() && simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
     shm::Reply reply;
     reply.text = faults_text(simulation, request.iface);
     return reply;
@@ -261,7 +282,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::ContactsRequest& request) {
     const auto model = physics.find(request.model);
-    if (!model) return no_model(request.model);
+    if (!model) return no_model(physics, request.model);
     shm::Reply reply;
     const auto total = physics.contacts_so_far(*model);
     reply.count = static_cast<std::int64_t>(total - std::exchange(loop.contacts_told_[*model], total));

@@ -270,7 +270,7 @@ pugi::xml_node ModelFiles::included(pugi::xml_node include, const fs::path& fold
   if (const auto line = is_new && path ? model_path_.other_version(uri, *path) : ""; !line.empty())
     complaints_.warn(include, "model " + base::in_quotes(uri) + ": " + line);
   if (!path) {
-    complaints_.drop(include, "model " + base::in_quotes(uri) + " is not found and is left out");
+    complaints_.drop(include, "model " + base::in_quotes(uri) + " is not found and is left out" + model_path_.suggestion_for(uri));
     return {};
   }
   base::Result<pugi::xml_node> found = entity(*path);

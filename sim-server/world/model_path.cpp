@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 
 namespace sim {
@@ -207,6 +208,12 @@ std::string ModelPath::other_version(std::string_view uri, const fs::path& found
     return "version " + parts[4].string() + " of it is taken instead of version " + address.version + ", which is not here";
   }
   return {};
+}
+
+std::string ModelPath::suggestion_for(std::string_view uri) const {
+  constexpr std::string_view scheme = "model://";
+  if (uri.starts_with(scheme)) uri.remove_prefix(scheme.size());
+  return uri.find_first_of("/<") == std::string_view::npos ? base::suggestion(uri, models()) : "";
 }
 
 std::vector<std::string> ModelPath::models() const {

@@ -42,6 +42,8 @@ class ModelPath {
   // `most_listed` of them; unreadable folders have none. Fuel caches are not looked into.
   static constexpr std::size_t most_listed = 10'000;
   std::vector<std::string> models() const;
+  // "; did you mean NAME?" for a URI that find() knows nothing for, when a model has nearly the name in it; else empty.
+  std::string suggestion_for(std::string_view uri) const;
 
  private:
   std::optional<std::filesystem::path> look_for(std::string_view uri, const std::filesystem::path& folder) const;

@@ -372,7 +372,8 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   } else {
     const std::optional<fs::path> path = model_path_.find(trimmed, fs::current_path());
     if (!path)
-      return base::Error{"model " + base::in_quotes(trimmed) + " is not found; text, a file, a folder or model://name is expected"};
+      return base::Error{"model " + base::in_quotes(trimmed) + " is not found; text, a file, a folder or model://name is expected" +
+                         model_path_.suggestion_for(trimmed)};
     base::Result<pugi::xml_node> entity = files_.entity(*path);
     if (!entity) return entity.error();
     found = *entity;

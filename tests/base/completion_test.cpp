@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace base {
 namespace {
 
@@ -60,9 +62,12 @@ TEST(Completion, asks_the_program_for_each_positional_and_offers_files_otherwise
 
 TEST(Completion, knows_the_word_that_is_no_command) {
   const Program program;
-  EXPECT_EQ(unknown_command(program.app, {"--json", "-s", "list", "lost", "x"}), "lost");
-  EXPECT_EQ(unknown_command(program.app, {"-s", "7", "list", "lost"}), "");
-  EXPECT_EQ(unknown_command(program.app, {"--json"}), "");
+  const auto unknown = unknown_command(program.app, {"--json", "-s", "list", "lost", "x"});
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->word, "lost");
+  EXPECT_TRUE(std::ranges::find(unknown->known, "list") != unknown->known.end());
+  EXPECT_FALSE(unknown_command(program.app, {"-s", "7", "list", "lost"}));
+  EXPECT_FALSE(unknown_command(program.app, {"--json"}));
 }
 
 }  // namespace

@@ -37,6 +37,18 @@ measure:
     # Rows that are the same run once, and count as often as they stand in the plan.
     twins = json.loads(rtse("--json", "sweep", plan("vary: {seed: [1, 2, 1]}\n", "twins.yaml")).stdout)
     assert (twins["rows"], twins["passed"], twins["failed"]) == (3, 3, 0), twins
+    # Why rows run again is said: a file that has changed, another question; not for rows that are new.
+    system = folder / "system.xml"
+    system.write_text(pathlib.Path(f"{source}/worlds/systems/obstacle_avoidance.xml").read_text())
+    p = pathlib.Path(plan("repeat: 1\n", "why.yaml"))
+    p.write_text(p.read_text().replace(f"{source}/worlds/systems/obstacle_avoidance.xml", str(system)))
+    assert "run again" not in rtse("sweep", p).stderr
+    p.write_text(p.read_text().replace("repeat: 1", "repeat: 2"))
+    assert "run again" not in rtse("sweep", p).stderr
+    system.write_text(system.read_text() + "<!-- changed -->\n")
+    p.write_text(p.read_text().replace("duration: 1", "duration: 1.5"))
+    said = rtse("sweep", p).stderr
+    assert f"2 rows run again, because these have changed since the results were made: {system}, the plan's duration, deeds or expectations\n" in said, said
     # A number that no sample has is no number that is not there by chance, also of a port whose type the profile does not tell.
     for text in ("measure: [{value: {port: PORT, member: data.wx, take: min}}]\n", "never: [{port: PORT, member: data.wx, min: 1}]\n"):
         done = rtse("sweep", plan(text.replace("PORT", '"RTCPosition2d0:actual_velocity"'), "member.yaml"), code=1)
@@ -437,6 +449,23 @@ def faults():
     assert "LaserObstacleAvoid0: did not finish its tick" in done.stderr, done.stderr
 
 
+# A fault that only the third activation shows is found, and the find has no more than what is needed; what is being shrunk is said first.
+def hunts_restarts():
+    p = pathlib.Path(plan(f"""properties: ["HuntSubject0:kind=speed_doubles_in_the_third_activation", "HuntSubject0:faulty=YES"]
+module_path: {lib_dir}
+expect: [{{value: {{port: "HuntSubject0:velocity", member: data.vx, min: -0.31, max: 0.31}}}}]
+hunt:
+  faults: [{{sensor: "pioneer2dx::laser"}}]
+  events: [{{deactivate: HuntSubject0}}, {{activate: HuntSubject0}}, {{set: {{component: HuntSubject0, parameter: speed, value: 0.1}}}}]
+""", "restarts.yaml"))
+    p.write_text(p.read_text().replace(f"{source}/worlds/systems/obstacle_avoidance.xml", f"{source}/tests/campaign/hunt/hunt_subject.xml").replace("duration: 1", "duration: 6"))
+    said = rtse("hunt", p, "--finds", 1, "--cases", 64, "-j", 2, "--budget", "10m", code=1).stdout
+    shrinking, found = said.index("shrinking it: "), said.index("find 1 after ")
+    what = said[found:].splitlines()[1]
+    assert shrinking < found and "data.vx" in said[:shrinking], said
+    assert what.count("deactivate") == 2 and what.count("activate") == 4, said
+
+
 # A small component that divides by zero when its laser goes on without news is found, with one fault, by one command.
 def hunts():
     p = pathlib.Path(plan(f"""properties: ["HuntSubject0:kind=same_scan_twice", "HuntSubject0:faulty=YES"]
@@ -476,6 +505,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts}[case]()
+    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts, "hunts_restarts": hunts_restarts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

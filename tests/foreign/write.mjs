@@ -19,6 +19,7 @@ async function write(path, options) {
   for (const topic of ["/a", "/b"]) {
     channels.push(await writer.registerChannel({ topic, schemaId, messageEncoding: "json", metadata: new Map([["of", topic]]) }));
   }
+  if (options.silentChannel) await writer.registerChannel({ topic: "/silent", schemaId, messageEncoding: "json", metadata: new Map() });
   for (let n = 0; n < 100; n++) {
     await writer.addMessage({
       channelId: channels[n % 2],
@@ -36,6 +37,7 @@ async function write(path, options) {
 
 const folder = process.argv[2];
 await write(`${folder}/chunks.mcap`, { chunkSize: 300 });
+await write(`${folder}/silent.mcap`, { chunkSize: 300, silentChannel: true });
 await write(`${folder}/no_chunks.mcap`, { useChunks: false });
 await write(`${folder}/bare.mcap`, {
   useChunks: true, chunkSize: 300, useStatistics: false, useSummaryOffsets: false, repeatChannels: false, repeatSchemas: false,

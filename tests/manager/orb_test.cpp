@@ -74,6 +74,25 @@ TEST(Orb, an_end_point_in_use_is_one_line) {
   EXPECT_NE(second.error().message.find(occupant.address()), std::string::npos) << second.error().message;
 }
 
+// The words are ours: an ORB says EADDRNOTAVAIL in its own way.
+TEST(Orb, an_end_point_that_cannot_be_says_why_in_one_line) {
+  const int port = support::free_port();
+  const auto holder = started({.endpoints = {":" + std::to_string(port)}});
+  for (const auto& [endpoint, why] : std::initializer_list<std::pair<std::string, std::string>>{
+           {":" + std::to_string(port), "port " + std::to_string(port) + " is taken by another process"},
+           {"192.0.2.1:0", "no network interface of this machine has the address 192.0.2.1"},
+           {"[2001:db8::1]:0", "no network interface of this machine has the address 2001:db8::1"},
+           {"no-such-host.invalid:0", "host \"no-such-host.invalid\" is not known"},
+           {"giop:smoke:127.0.0.1:0", "expected giop:tcp:HOST:PORT, giop:ssl:HOST:PORT or giop:unix:FILE"}}) {
+    const auto refused = Orb::start({.endpoints = {endpoint}});
+    ASSERT_FALSE(refused) << endpoint;
+    const std::string& line = refused.error().message;
+    EXPECT_NE(line.find(why), std::string::npos) << line;
+    EXPECT_EQ(line.find("omniORB"), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  }
+}
+
 TEST(Orb, nonsense_settings_are_refused) {
   EXPECT_FALSE(Orb::start({.endpoints = {"host:port"}}).ok());
   const auto nonsense = Orb::start({.endpoints = {"nonsense:::"}});

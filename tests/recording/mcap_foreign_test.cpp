@@ -53,6 +53,18 @@ TEST_F(Foreign, a_file_with_chunks_and_summary_is_read) { expect_all("chunks.mca
 TEST_F(Foreign, a_file_without_chunks_is_read) { expect_all("no_chunks.mcap"); }
 TEST_F(Foreign, a_file_without_any_index_is_read) { expect_all("bare.mcap"); }
 
+TEST_F(Foreign, a_repair_keeps_a_channel_that_the_summary_alone_has) {
+  const std::string file = folder_ + "/silent.mcap";
+  ASSERT_EQ(Reader::open(file)->channels().size(), 3U);
+  const auto repaired = repair(file, file);
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  auto reader = Reader::open(file);
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_EQ(reader->channels().size(), 3U);
+  EXPECT_EQ(reader->statistics().channels, 3U);
+  expect_all("silent.mcap");
+}
+
 TEST_F(Foreign, reads_our_file_whose_last_chunk_has_channels_alone) {
   const std::string file = folder_ + "/ours.mcap";
   auto writer = Writer::create(file);

@@ -37,6 +37,79 @@ def wrong_usage():
     refused("--json", "bogus", "x", code=2, says='unknown command "bogus"')
 
 
+# What a profile does not require may be missing: a line each, and the rest is done.
+def optional_components():
+    up("SourceAll", "SinkAll")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "wire")
+    rig.rtse("con", "SourceAll0:short", "SinkAll0:short", "-i", "another")
+    profile = rig.path("system.xml")
+    rig.rtse("save", profile)
+    text = open(profile).read()
+    optional = rig.path("optional.xml")
+    for name in ("SinkAll0", "Nobody0"):
+        with open(optional, "w") as file:
+            file.write(text.replace("SinkAll0", name).replace('isRequired="true"', 'isRequired="false"'))
+        for verb in ("load", "start", "stop", "check", "teardown"):
+            done = rig.try_rtse(verb, optional)
+            said = [line for line in done.stderr.splitlines() if "Nobody0" in line]
+            assert done.returncode == 0, (name, verb, done)
+            assert len(said) == (1 if name == "Nobody0" else 0), (name, verb, done.stderr)
+            assert all("is not on the name server; it is left out, as the profile does not require it" in line for line in said), said
+    # A port that the component does not have: the line says which it has.
+    with open(optional, "w") as file:
+        file.write(text.replace("SourceAll0.long", "SourceAll0.logn"))
+    for verb in ("load", "check"):
+        refused(verb, optional, says='SourceAll0.rtc has no port "logn"; it has ')
+
+
+# Where a host cannot listen, and where it looks for modules in vain: one line in words of our own.
+def wrong_places():
+    rig.naming()
+    port = rig.names.split(":")[1]
+    for options, says in ((("-o", "corba.endpoints:192.0.2.1:0"), "no network interface of this machine has the address 192.0.2.1"),
+                          (("-o", f"corba.endpoints::{port}"), f"port {port} is taken by another process"),
+                          (("-o", "corba.endpoints:no-such-host.invalid:0"), 'host "no-such-host.invalid" is not known'),
+                          (("-o", "manager.modules.load_path:/a:/b", "NoSuchComponent"), "/a:/b (its folders are separated by commas, not by colons)")):
+        done = subprocess.run([f"{rig.bin_dir}/rtcd", "-o", f"corba.nameservers:{rig.names}", "-o", "manager.shutdown_on_nortcs:YES", *options], capture_output=True, text=True,
+                              timeout=60, cwd=rig.work)
+        said = [line for line in (done.stdout + done.stderr).splitlines() if says in line]
+        assert done.returncode != 0 and said and "omniORB" not in done.stdout + done.stderr, (options, done)
+    for server in ("[::1", "127.0.0.1:port", "127.0.0.1:99999", "no-such-host.invalid:1"):
+        done = subprocess.run([f"{rig.bin_dir}/rtse", "--ns", server, "ls"], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1 and done.stderr.startswith(f"rtse: name server {server} ") and "omniORB" not in done.stderr, done
+
+
+# A value that a port would replace by its default is refused, with what is allowed.
+def misunderstood_values():
+    up("SourceAll", "SinkAll")
+    ports = ("SourceAll0:long", "SinkAll0:long")
+    for value, allowed in (("publisher.push_policy=nope", "one of all, fifo, skip, new"), ("buffer.length=abc", "an integer from 1"), ("buffer.length=0", "an integer from 1"),
+                           ("inport.buffer.write.full_policy=drop", "one of overwrite, do_nothing, block"), ("buffer.read.timeout=-1", "seconds"),
+                           ("sync_readwrite=perhaps", "YES or NO"), ("subscription_type=periodic", "a rate above 0 [Hz]"), ("io_mode=often", "flush, new or periodic")):
+        key, given = value.split("=")
+        line = refused("con", *ports, "-p", value, says=allowed).stderr
+        assert line.count("\n") == 1 and (f'got "{given}"' in line or given == "periodic"), line
+    assert json.loads(rig.rtse("--json", "cat", "SourceAll0:long"))["connectors"] == []
+    rig.rtse("con", *ports, "-i", "wire", "-p", "publisher.push_policy=FIFO", "-p", "buffer.length=20", "-p", "my.own=thing")
+    # A profile of others is loaded all the same, and the line says what is not understood.
+    rig.rtse("save", rig.path("system.xml"))
+    text = open(rig.path("system.xml")).read().replace('"FIFO"', '"nope"')
+    with open(rig.path("others.xml"), "w") as file:
+        file.write(text)
+    rig.rtse("dis", "-i", "wire")
+    done = rig.try_rtse("load", rig.path("others.xml"))
+    assert done.returncode == 0 and "connection wire: dataport.publisher.push_policy must be one of all, fifo, skip, new" in done.stderr, done
+
+
+# A name with a slip has the one that was meant in its message.
+def suggestions():
+    up("SourceAll")
+    for words, code, meant in ((["lst"], 2, "ls"), (["activte", "X"], 2, ""), (["recrod"], 2, "record"), (["cat", "SourceAl0"], 1, "SourceAll0"), (["act", "SuorceAll0"], 1, "SourceAll0"),
+                               (["recording", "inof", "x"], 2, "info")):
+        line = refused(*words, code=code).stderr
+        assert line.count("\n") == 1 and (f"; did you mean {meant}?" in line if meant else "did you mean" not in line), line
+
+
 # A command whose reader has gone ends, also when nothing is left to print.
 def closed_pipe():
     up("SourceAll")

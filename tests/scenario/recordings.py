@@ -297,6 +297,12 @@ def replayed():
     turned = next(s for s in lines("cat", path, "LaserObstacleAvoid0:velocity") if s["value"]["data"]["va"] != 0)
     place = f"first difference at tick {round(turned['time'] * 10)} ({turned['time']:g} s): data.va: "
     assert other.returncode == 1 and place in other.stderr, (place, other)
+    # Another module than the one that was asked for says nothing.
+    empty = rig.path("empty")
+    os.mkdir(empty)
+    refused(*call, "--module-path", empty, says="LaserObstacleAvoid.so is not in --module-path")
+    refused("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "1", "--module-path", empty,
+            says=f'module path "{empty}": holds no modules (*.so)')
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
     refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
     refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
@@ -482,7 +488,7 @@ def bad_input():
     refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 4 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
     refused("record", "-o", "/no/such/folder/x.mcap", "RTCLaser0:range", says="cannot be written")
-    refused("recording", "info", "/no/such/file", says="cannot be read: No such file or directory")
+    refused("recording", "info", "/no/such/file", says='"/no/such/file": no such file; there is no folder "/no/such"')
     with open(file, "w") as out:
         out.write("no recording")
     refused("recording", "cat", file, says="is not an MCAP file")

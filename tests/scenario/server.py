@@ -107,6 +107,19 @@ def motion():
     stop(process)
 
 
+# A name with a slip has the one that was meant in its message.
+def suggestions():
+    process = started("-u")
+    for words, meant in ((["pose", "pionner2dx"], robot), (["velocity", "pioneer2dx::chasis"], f"{robot}::chassis"), (["delete", "pioner2dx"], robot), (["contacts", "Pioneer2DX"], robot),
+                         (["motors", f"{robot}::positon2d", "off"], f"{robot}::position2d"), (["fault", "lasr", "off"], f"{robot}::laser"), (["echo", f"{robot}::lasr"], f"{robot}::laser"),
+                         (["info", "position2"], f"{robot}::position2d"), (["spawn", "pionner2dx"], robot), (["spawn", "model://sick_lms20"], "sick_lms200"),
+                         (["screenshot", f"{work.name}/x.png", "--follow", "pioneer2x"], robot)):
+        refused(*words, says=f"; did you mean {meant}?")
+    refused("pose", "something_else", says="no model or link something_else")
+    refused("lits", code=2, says="; did you mean list?")
+    stop(process)
+
+
 # Boxes that fall over each other in several places: resting robots would be equal too easily.
 def heaps():
     shape = "<geometry><box><size>.3 .3 .3</size></box></geometry>"
@@ -367,4 +380,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, output_that_takes_no_more, motion, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, rate, paused_is_idle)

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <cmath>
 #include <thread>
 
@@ -31,6 +32,38 @@ TEST(SegmentName, names_that_no_file_can_have_are_refused_with_the_reason) {
   EXPECT_FALSE(check_name("a\nb"));
   EXPECT_TRUE(check_name(std::string(200, 'x')));
   EXPECT_TRUE(check_name("pioneer2dx::laser"));
+}
+
+TEST(Iface, samples_are_read_one_after_the_other_as_long_as_the_memory_has_them) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::position2d, "robot::base", Position2dInfo{}));
+  auto reader = f.open(IfaceType::position2d, "robot::base");
+  const auto cells = reader.segment().area(AreaIndex::cells).count;
+  ASSERT_GE(cells, 10U);
+  EXPECT_FALSE(reader.read_after(0));
+  for (int i = 1; i <= 5; ++i) writer->publish(std::chrono::milliseconds(i));
+  for (std::uint64_t than = 0; than < 5; ++than) {
+    ASSERT_TRUE(reader.read_after(than));
+    EXPECT_EQ(reader.sample<Stamp>().sequence, than + 1);
+  }
+  EXPECT_FALSE(reader.read_after(5));
+  for (std::uint64_t i = 6; i <= 2 * cells; ++i) writer->publish(std::chrono::milliseconds(i));
+  ASSERT_TRUE(reader.read_after(5));
+  EXPECT_EQ(reader.sample<Stamp>().sequence, cells + 1);  // the oldest that is left
+}
+
+TEST(Iface, a_command_with_a_duration_tells_it_to_the_simulator) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::position2d, "robot::base", Position2dInfo{}));
+  auto reader = f.open(IfaceType::position2d, "robot::base");
+  Command command;
+  const std::array velocity{0.5, 0.0, 0.1};
+  ASSERT_TRUE(reader.command(CommandKind::velocity, velocity, 2s));
+  ASSERT_EQ(writer->poll_command(command), CommandChange::fresh);
+  EXPECT_EQ(command.duration, 2s);
+  ASSERT_TRUE(reader.command(CommandKind::velocity, velocity));
+  ASSERT_EQ(writer->poll_command(command), CommandChange::fresh);
+  EXPECT_EQ(command.duration, 0s);
 }
 
 TEST(Iface, a_published_scan_is_read_as_it_was_written) {

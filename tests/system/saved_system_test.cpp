@@ -79,13 +79,16 @@ TEST_F(SavedSystemTest, a_missing_component_that_is_optional_is_left_out_with_it
   const auto changes = load(session_, only_a, system_, {.dry_run = true, .with_states = true});
   EXPECT_THAT(messages(changes), IsEmpty());
   EXPECT_THAT(changes.actions, ElementsAre("bring /localhost/A0.rtc from Inactive to Active"));
+  EXPECT_THAT(changes.warnings,
+              ElementsAre("component localhost/B0.rtc: is not on the name server; it is left out, as the profile does not "
+                          "require it"));
 }
 
 TEST_F(SavedSystemTest, a_port_that_is_not_there_does_not_keep_other_changes_from_being_made) {
   system_.connectors.insert(system_.connectors.begin(), saved_connector());
   system_.connectors[0].source.port_name = "A0.wrong";
   const auto changes = plan_load();
-  EXPECT_THAT(messages(changes), ElementsAre("connection id1: there is no port A0.wrong"));
+  EXPECT_THAT(messages(changes), ElementsAre("connection id1: /localhost/A0.rtc has no port \"wrong\"; it has out"));
   EXPECT_THAT(changes.actions, ElementsAre("connect A0.out to B0.in"));
 }
 

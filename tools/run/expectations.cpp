@@ -9,6 +9,7 @@
 #include <functional>
 #include <utility>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "run/flow_text.h"
@@ -230,6 +231,7 @@ Result<std::vector<Expectation>> to_expectations(const std::function<std::vector
 }  // namespace
 
 Result<std::vector<Expectation>> read_expectations(const std::string& file) {
+  if (const auto problem = base::file_problem(file); !problem.empty()) return Error{"file " + base::in_quotes(file) + ": " + problem};
   return to_expectations([&] { return YAML::LoadAllFromFile(file); },
                          [&](int line, int column) {
                            const auto at = line > 0 ? ":" + std::to_string(line) + ":" + std::to_string(column) : "";

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "run/yaml_shape.h"
@@ -113,6 +114,7 @@ Result<std::vector<ForeignProcess>> parse_run_file(const std::string& text, cons
 }
 
 Result<std::vector<ForeignProcess>> read_run_file(const std::string& file) {
+  if (const auto problem = base::file_problem(file); !problem.empty()) return Error{"run file " + base::in_quotes(file) + ": " + problem};
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();

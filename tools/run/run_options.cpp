@@ -39,6 +39,18 @@ Result<void> check_folders(const std::string& kind, const std::vector<std::strin
   return {};
 }
 
+// An empty folder is most likely another than was meant, and the modules of the installation would be taken instead.
+Result<void> check_modules(const std::vector<std::string>& paths) {
+  for (const auto& path : paths) {
+    std::error_code error;
+    const std::filesystem::directory_iterator entries(path, error);
+    const auto is_module = [](const auto& entry) { return entry.path().extension() == ".so"; };
+    if (std::none_of(begin(entries), end(entries), is_module))
+      return Error{"module path " + base::in_quotes(path) + ": holds no modules (*.so)"};
+  }
+  return {};
+}
+
 std::string json_name(const RunOptionRow& row) {
   std::string name(row.name);
   std::ranges::replace(name, '-', '_');
@@ -223,8 +235,8 @@ Result<ComponentProperty> parse_property(const std::string& text) {
 }
 
 Result<std::vector<ComponentProperty>> check_against(const RunOptions& options, const SavedSystem& system) {
-  for (const auto& checked :
-       {check_rates(system), check_folders("module", options.module_paths), check_folders("resource", options.resource_paths)}) {
+  for (const auto& checked : {check_rates(system), check_folders("module", options.module_paths), check_modules(options.module_paths),
+                              check_folders("resource", options.resource_paths)}) {
     if (!checked) return checked.error();
   }
   std::vector<ComponentProperty> properties;

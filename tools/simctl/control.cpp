@@ -1,15 +1,13 @@
 // Requests and commands: step, pose, velocity, spawn, screenshot, contacts.
-#include <unistd.h>
-
+#include <chrono>
 #include <cmath>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "base/suggestion.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "shm/control.h"
 #include "simctl/simctl.h"
 
@@ -59,10 +57,11 @@ std::optional<shm::Iface> Control::open(const std::string& text, std::optional<s
     if (const auto type = shm::parse_type(text.substr(0, colon))) return open(*type, text.substr(colon + 1));
   }
   std::vector<shm::Found> matches;
-  std::vector<std::string> names;
+  std::vector<std::string> names, known;
   for (const auto& found : shm::find_segments(server_id_)) {
     if (found.name.iface == text) matches.push_back(found);
     names.push_back(std::string(shm::to_text(found.name.type)) + ":" + found.name.iface);
+    known.push_back(found.name.iface);
   }
   if (matches.size() == 1) return open(matches.front().name.type, text);
   for (const auto& match : matches) {
@@ -73,13 +72,14 @@ std::optional<shm::Iface> Control::open(const std::string& text, std::optional<s
     for (const auto& match : matches) choices.push_back(std::string(shm::to_text(match.name.type)) + ":" + match.name.iface);
     return fail("iface " + base::in_quotes(text) + ": several types have this name, name one: " + base::join(choices, ", ")), std::nullopt;
   }
+  const auto meant = base::suggestion(text, known);
   constexpr std::size_t most = 12;
   if (names.size() > most) {
     names.resize(most);
     names.emplace_back("...");
   }
   fail("server " + std::to_string(server_id_) + ": " +
-       (names.empty() ? "is not there" : "has no iface " + base::in_quotes(text) + "; there are " + base::join(names, ", ")));
+       (names.empty() ? "is not there" : "has no iface " + base::in_quotes(text) + "; there are " + base::join(names, ", ") + meant));
   return std::nullopt;
 }
 
@@ -106,6 +106,25 @@ void pose(Control& control, const std::string& model, const std::vector<double>&
   std::printf("%.6f %.6f %.6f  yaw %.6f\n", p.x, p.y, p.z, shm::yaw_of(p));
 }
 
+namespace {
+
+// Until the command is over; without a duration, until an interrupt. The simulator counts from the step that first sees the command: the
+// one after the time on the clock, or the one after that.
+void await_end(Control& control, const shm::Iface& iface, shm::Iface& simulation, std::chrono::nanoseconds duration) {
+  const auto stamp = [&] { return simulation.read() ? simulation.sample<shm::SimulationSample>().stamp : shm::Stamp{}; };
+  const auto begin = stamp();
+  const auto end = begin.sim_time_ns + duration.count() + simulation.info<shm::SimulationInfo>().step_ns;
+  while (!is_interrupted()) {
+    const auto now = stamp();
+    if (duration.count() > 0 && now.sim_time_ns >= end) return;
+    if (now.resets != begin.resets) return control.fail("iface " + iface.name() + ": the world was reset, which ends the command");
+    if (!iface.is_commander()) return control.fail("iface " + iface.name() + ": another client commands it now");
+    if (simulation.wait(now.sequence, std::chrono::milliseconds(100)) == shm::Wait::closed) return control.fail("the simulator has exited");
+  }
+}
+
+}  // namespace
+
 void velocity(Control& control, const std::string& name, const std::vector<double>& values, double seconds) {
   auto iface = control.open(name);
   if (!iface) return;
@@ -119,17 +138,12 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
   } else if (values.size() != 3) {
     return control.fail("velocity of a position2d: expected VX VY VA, got " + std::to_string(values.size()) + " numbers");
   }
-  if (const auto done = iface->command(shm::CommandKind::velocity, command); !done) return control.fail(done.error().message);
   auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
   catch_interrupts();
-  const auto now = [&] { return simulation->read() ? simulation->sample<shm::SimulationSample>().stamp.sim_time_ns : 0; };
-  const auto end = now() + static_cast<std::int64_t>(seconds * 1e9);
-  while (!is_interrupted() && (seconds <= 0 || now() < end)) {
-    if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
-      return control.fail("the simulator has exited");
-    if (!iface->is_commander()) return control.fail("iface " + name + ": another client commands it now");
-  }
+  const std::chrono::nanoseconds duration(std::llround(seconds * 1e9));
+  if (const auto done = iface->command(shm::CommandKind::velocity, command, duration); !done) return control.fail(done.error().message);
+  await_end(control, *iface, *simulation, duration);
 }
 
 void spawn(Control& control, const SpawnOptions& options) {
@@ -191,16 +205,7 @@ void screenshot(Control& control, const ScreenshotOptions& options) {
 void export_world(Control& control, const std::string& file, bool with_collisions) {
   const auto reply = control.ask(shm::ExportRequest{with_collisions}, std::chrono::minutes(10));
   if (!reply) return;
-  // The whole world or none is seen under its name.
-  const std::string part = file + ".part" + std::to_string(::getpid());
-  std::error_code error;
-  std::ofstream out(part, std::ios::binary);
-  out.write(reply->text.data(), static_cast<std::streamsize>(reply->text.size()));
-  out.close();
-  if (out) std::filesystem::rename(part, file, error);
-  if (out && !error) return;
-  std::filesystem::remove(part, error);
-  control.fail("file " + base::in_quotes(file) + ": cannot be written");
+  if (const auto written = base::write_whole_file(file, reply->text); !written) control.fail(written.error().message);
 }
 
 void contacts(Control& control, const std::string& model) {

@@ -21,14 +21,14 @@ namespace {
 
 void print_scan(const shm::Iface& iface, const Json& sample) {
   if (iface.type() != shm::IfaceType::laser || !isatty(1)) {
-    std::cout << sample.dump() << std::endl;
+    std::cout << sample.dump() << '\n';
     return;
   }
   winsize window{};
   const bool known = ioctl(1, TIOCGWINSZ, &window) == 0 && window.ws_col > 20 && window.ws_row > 10;
   std::cout << polar_plot(iface.info<shm::LaserInfo>(), iface.laser_scan().ranges, known ? window.ws_col - 1 : 79,
                           known ? window.ws_row - 3 : 30)
-            << "t = " << sample["stamp"]["sim_time"] << " s" << std::endl;
+            << "t = " << sample["stamp"]["sim_time"] << " s\n";
 }
 
 }  // namespace
@@ -110,12 +110,13 @@ void echo(Control& control, const std::string& name, int count) {
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
   catch_interrupts();
   // Ends when the output takes no more; the end of the program says so.
+  std::uint64_t missed = 0;
   for (int printed = 0; (count <= 0 || printed < count) && !is_interrupted() && std::cout.good();) {
     const auto what = iface->wait(last, std::chrono::milliseconds(200));
     if (what == shm::Wait::closed) return control.fail("iface " + name + ": the simulator has exited");
     if (what == shm::Wait::timed_out) {
       // Time stands still and somebody else listens already: what he has got is the present.
-      if (printed == 0 && is_paused(control.server_id())) last = 0;
+      if (printed == 0 && is_paused(control.server_id())) last = std::max<std::uint64_t>(iface->sequence(), 1) - 1;
       continue;
     }
     Json sample;
@@ -125,16 +126,24 @@ void echo(Control& control, const std::string& name, int count) {
       last = frame->sequence();
       sample = frame_json(*frame);
     } else {
-      last = iface->sample<shm::Stamp>().sequence;
+      if (!iface->read_after(last)) continue;
+      const auto number = iface->sample<shm::Stamp>().sequence;
+      if (printed > 0) missed += number - last - 1;
+      last = number;
       sample = sample_json(*iface);
     }
     if (control.json()) {
-      std::cout << sample.dump() << std::endl;
+      std::cout << sample.dump() << '\n';
     } else {
       print_scan(*iface, sample);
     }
     ++printed;
+    // While samples wait they come first: a call of the system for each would cost the next ones.
+    if (iface->sequence() == last) std::cout.flush();
   }
+  std::cout.flush();
+  if (missed > 0 && std::cout.good())
+    std::cerr << "simctl: warning: iface " << name << ": " << missed << " samples were overwritten before they could be printed\n";
 }
 
 static std::string state_text(const Json& stats) {

@@ -116,6 +116,8 @@ void add_control(base::Command& app, Work& work) {
       base::reject_command_line("velocity", "expected 3, 4 or 6 numbers, got " + std::to_string(n));
     work = [=](Control& c) {
       if (simctl::is_position_iface(c.server_id(), *robot)) return simctl::velocity(c, *robot, *speeds, *seconds);
+      if (*seconds > 0)
+        return c.fail("velocity " + base::in_quotes(*robot) + ": is no position2d or position3d iface, --for goes with these");
       simctl::model_velocity(c, *robot, *speeds);
     };
   });

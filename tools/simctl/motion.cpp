@@ -1,4 +1,5 @@
 // Requests about how things move: velocity and wrench of models, odometry and motors of robots, the speed of time.
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,21 @@ void show_velocity(Control& control, const std::string& name) {
   const auto& v = reply->values;
   if (control.json()) return control.print({{"model", name}, {"linear", {v[0], v[1], v[2]}}, {"angular", {v[3], v[4], v[5]}}});
   std::printf("%.6f %.6f %.6f m/s  %.6f %.6f %.6f rad/s\n", v[0], v[1], v[2], v[3], v[4], v[5]);
+}
+
+// Returns at that simulated time, and at once where time stands still, since only others can make it go on.
+void await_time(Control& control, std::int64_t end_ns) {
+  auto simulation = control.open(shm::IfaceType::simulation, "world");
+  if (!simulation) return;
+  catch_interrupts();
+  std::optional<std::uint32_t> resets;
+  while (!is_interrupted() && simulation->read()) {
+    const auto& now = simulation->sample<shm::SimulationSample>();
+    if (!resets) resets = now.stamp.resets;
+    if (now.stamp.sim_time_ns >= end_ns || now.stamp.resets != *resets || now.paused != 0 || now.waiting_for != 0) return;
+    if (simulation->wait(now.stamp.sequence, std::chrono::milliseconds(100)) == shm::Wait::closed)
+      return control.fail("the simulator has exited");
+  }
 }
 
 }  // namespace
@@ -50,7 +66,8 @@ void wrench(Control& control, const std::string& name, const std::vector<double>
   std::copy(v.begin(), v.begin() + 3, request.force);
   if (v.size() == 6) std::copy(v.begin() + 3, v.end(), request.torque);
   request.duration = seconds;
-  control.ask(request);
+  const auto reply = control.ask(request);
+  if (reply && seconds > 0) await_time(control, reply->sim_time_ns + std::llround(seconds * 1e9));
 }
 
 void reset_odometry(Control& control, const std::string& iface, const std::vector<double>& v) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "corba/ports/connection_values.h"
 
 namespace editor {
 namespace {
@@ -115,7 +116,10 @@ Result<void> connect_ports(const std::vector<const PortView*>& ports, const std:
   std::string meaning;
   if (code == RTC::PRECONDITION_NOT_MET)
     meaning = is_in_use(ports, id) ? "connector id " + base::in_quotes(id) + " is in use" : "they are connected already";
-  if (code == RTC::BAD_PARAMETER) meaning = "a property has a value that a port does not take";
+  if (code == RTC::BAD_PARAMETER) {
+    const auto reason = corba::refusal_of_values(properties);
+    meaning = reason.empty() ? "a property has a value that a port does not take" : reason;
+  }
   if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
   return check(what, code, meaning);
 }

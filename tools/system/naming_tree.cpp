@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "corba/orb/naming.h"
 
@@ -36,7 +37,14 @@ std::vector<CosNaming::Binding> bindings_of(CosNaming::NamingContext_ptr context
   return all;
 }
 
-void read_context(Entry& entry, CosNaming::NamingContext_ptr context, corba::ContextWalk& walk) {
+// Whether an object of this name is asked for. Its place is not looked at.
+bool is_wanted(const Wanted& wanted, const Entry& child) {
+  if (wanted.ids) return wanted.ids->contains(child.id);
+  return !wanted.address || wanted.address->segments.empty() || matches(wanted.address->segments.back(), child.id, child.kind_text);
+}
+
+// What an address cannot mean is listed, but not resolved: that is a call for each name.
+void read_context(Entry& entry, CosNaming::NamingContext_ptr context, const Wanted& wanted, corba::ContextWalk& walk) {
   const corba::ContextWalk::Stay stay(walk, context);
   if (!stay) {
     entry.problem = "is one of those around it, or too deep or one of too many";
@@ -49,11 +57,15 @@ void read_context(Entry& entry, CosNaming::NamingContext_ptr context, corba::Con
     child.kind_text = binding.binding_name[0].kind.in();
     child.segments = entry.segments;
     child.segments.push_back(child.name());
+    if (child.kind != EntryKind::context && !is_wanted(wanted, child)) {
+      if (!wanted.ids) entry.children.push_back(std::move(child));
+      continue;
+    }
     try {
       child.object = context->resolve(binding.binding_name);
       if (child.kind == EntryKind::context) {
         const auto inner = CosNaming::NamingContext::_narrow(child.object);
-        if (!CORBA::is_nil(inner)) read_context(child, inner, walk);
+        if (!CORBA::is_nil(inner)) read_context(child, inner, wanted, walk);
       }
     } catch (const CosNaming::NamingContext::NotFound&) {
       continue;  // unbound since it was listed
@@ -147,7 +159,7 @@ std::vector<const Entry*> living(std::vector<const Entry*> found) {
 std::string Entry::name() const { return kind_text.empty() ? escape_name(id) : escape_name(id) + "." + escape_name(kind_text); }
 std::string Entry::path() const { return "/" + base::join(segments, "/"); }
 
-Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit, const Address* only) {
+Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit, const Wanted& wanted) {
   NamingTree tree;
   tree.root_.kind = EntryKind::context;
   tree.root_.segments = {server};
@@ -158,7 +170,7 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
     tree.root_.object = orb->string_to_object(url.c_str());
     context = CosNaming::NamingContext::_narrow(tree.root_.object);
     corba::ContextWalk walk;
-    if (!CORBA::is_nil(context)) read_context(tree.root_, context, walk);
+    if (!CORBA::is_nil(context)) read_context(tree.root_, context, wanted, walk);
   });
   if (!reached) {
     return Error{reached.error().message + "; start one with: omniNames -start, or name another with --ns HOST:PORT"};
@@ -166,8 +178,8 @@ Result<NamingTree> NamingTree::read(CORBA::ORB_ptr orb, const std::string& serve
   if (CORBA::is_nil(context)) return Error{"name server " + server + ": responds, but is not a name server"};
   std::vector<Entry*> objects;
   collect(tree.root_, objects);
-  if (only) {
-    const auto meant = tree.candidates(*only);
+  if (wanted.address) {
+    const auto meant = tree.candidates(*wanted.address);
     if (!meant) return meant.error();
     std::erase_if(objects, [&](const Entry* object) { return std::find(meant->begin(), meant->end(), object) == meant->end(); });
   }
@@ -201,14 +213,16 @@ Result<const Entry*> NamingTree::find(const Address& address) const {
   if (found.size() == 1) return found.front();
   std::vector<std::string> names;
   if (found.empty()) {
-    for (const auto* object : objects()) names.push_back(object->name());
+    std::vector<std::string> ids;
+    for (const auto* object : objects()) names.push_back(object->name()), ids.push_back(object->id);
+    const auto meant = base::suggestion(split_kind(address.segments.back()).first, ids);
     constexpr std::size_t most = 12;
     if (names.size() > most) {
       names.resize(most);
       names.emplace_back("...");
     }
     return Error{"path " + address.text() + ": no such name" +
-                 (names.empty() ? ", name server " + server() + " is empty" : "; there are " + base::join(names, ", "))};
+                 (names.empty() ? ", name server " + server() + " is empty" : "; there are " + base::join(names, ", ") + meant)};
   }
   for (const auto* entry : found) names.push_back(entry->path());
   return Error{"path " + address.text() + ": names several things: " + base::join(names, ", ")};

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,17 @@ struct Entry {
   std::string name() const;  // "B0.rtc"
 };
 
+// What a tree is read for; neither: for all that there is. All names are listed, but no more objects are resolved and asked for their
+// health than those that are meant: others cost next to nothing, also when they hang.
+struct Wanted {
+  const Address* address = nullptr;
+  const std::set<std::string>* ids = nullptr;  // of names, in any place; others are left out
+};
+
 class NamingTree {
  public:
-  // `server` as HOST or HOST:PORT. Fails when it cannot be reached or is no naming service. With `only`, no more objects are asked for
-  // their health than the address may mean: one that hangs elsewhere costs nothing.
-  static Result<NamingTree> read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit,
-                                 const Address* only = nullptr);
+  // `server` as HOST or HOST:PORT. Fails when it cannot be reached or is no naming service.
+  static Result<NamingTree> read(CORBA::ORB_ptr orb, const std::string& server, std::chrono::milliseconds limit, const Wanted& wanted = {});
 
   const Entry& root() const { return root_; }
   const std::string& server() const { return root_.segments.front(); }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "corba/ports/connection_values.h"
 #include "system/configuration.h"
 #include "system/connections.h"
 #include "system/tap.h"
@@ -150,12 +151,11 @@ Result<void> clear_leftovers(const PortView& port, const std::string& id) {
 }
 
 Result<void> restore_connection(const Matched& matched, const SavedConnector& saved, bool dry_run, Changes& changes) {
-  const auto* source = matched.port(saved.source);
-  const auto* target = matched.port(saved.target);
-  if (!source || !target) {
-    const auto& side = source ? saved.target : saved.source;
-    return Error{"connection " + saved.id + ": there is no port " + side.port_name};
-  }
+  const auto from = matched.port(saved.source), to = matched.port(saved.target);
+  if (!from || !to) return Error{"connection " + saved.id + ": " + (from ? to : from).error().message};
+  const PortView *source = *from, *target = *to;
+  const auto properties = restored_properties(saved);
+  for (const auto& line : corba::misunderstood_values(properties)) changes.warnings.push_back("connection " + saved.id + ": " + line);
   for (const auto& connector : source->connectors) {
     if (connector.id == saved.id && same_connection(connector, *source, *target)) return {};  // it stands
   }
@@ -164,7 +164,7 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   for (const auto* port : {source, target}) {
     if (const auto done = clear_leftovers(*port, saved.id); !done) return done;
   }
-  return connect_ports({source, target}, saved.id, saved.name, restored_properties(saved));
+  return connect_ports({source, target}, saved.id, saved.name, properties);
 }
 
 // The values that the component can take; what it has said that it cannot is added to `problems`.
@@ -313,14 +313,10 @@ Result<Snapshot> save(const Session& session, const SaveOptions& options) {
 }
 
 Changes load(const Session& session, const Matched& matched, const SavedSystem& system, const LoadOptions& options) {
-  Changes changes{.errors = matched.missing()};
+  Changes changes{.warnings = matched.absent(), .errors = matched.missing()};
   if (!changes.ok()) return changes;
-  const auto is_absent = [&](const SavedTarget& target) {
-    const auto* component = system.component(target.instance);
-    return component && !component->is_required && !matched.find(target.path_uri, target.instance);
-  };
   for_all(session, system.connectors, changes, [&](const SavedConnector& saved, Changes& own) -> Result<void> {
-    if (is_absent(saved.source) || is_absent(saved.target)) return {};
+    if (matched.leaves_out(saved.source) || matched.leaves_out(saved.target)) return {};
     return restore_connection(matched, saved, options.dry_run, own);
   });
   for_all(session, system.components, changes,
@@ -338,7 +334,7 @@ Changes load(const Session& session, const SavedSystem& system, const LoadOption
 }
 
 Changes move_all(const Session& session, const Matched& matched, const SavedSystem& system, bool dry_run, Transition transition) {
-  Changes changes{.errors = matched.missing()};
+  Changes changes{.warnings = matched.absent(), .errors = matched.missing()};
   if (!changes.ok()) return changes;
   const bool starts = transition == Transition::activate;
   const auto& listed = starts ? system.start_up : system.shut_down;
@@ -369,16 +365,16 @@ Changes stop(const Session& session, const SavedSystem& system, bool dry_run) {
 }
 
 Changes teardown(const Session& session, const Matched& matched, const SavedSystem& system, bool dry_run) {
-  Changes changes{.errors = matched.missing()};
+  Changes changes{.warnings = matched.absent(), .errors = matched.missing()};
   for_all(session, system.connectors, changes, [&](const SavedConnector& saved, Changes& own) -> Result<void> {
-    const auto* source = matched.port(saved.source);
-    const auto* target = matched.port(saved.target);
-    if (!source && !target) return Error{"connection " + saved.id + ": there is no port " + saved.source.port_name};
-    const auto has = [&](const PortView* port) {
-      return port && std::ranges::any_of(port->connectors, [&](const auto& connector) { return connector.id == saved.id; });
+    if (matched.leaves_out(saved.source) || matched.leaves_out(saved.target)) return {};
+    const auto source = matched.port(saved.source), target = matched.port(saved.target);
+    if (!source && !target) return Error{"connection " + saved.id + ": " + source.error().message};
+    const auto has = [&](const Result<const PortView*>& port) {
+      return port && std::ranges::any_of((*port)->connectors, [&](const auto& connector) { return connector.id == saved.id; });
     };
-    const auto* port = has(source) ? source : has(target) ? target : nullptr;
-    if (!port) return Error{"connection " + saved.id + ": " + (source ? source : target)->full_name + " does not have it"};
+    const PortView* port = has(source) ? *source : has(target) ? *target : nullptr;
+    if (!port) return Error{"connection " + saved.id + ": " + (source ? *source : *target)->full_name + " does not have it"};
     own.actions.push_back("disconnect " + saved.id + " of " + port->full_name);
     return dry_run ? Result<void>() : disconnect_connector(*port, saved.id);
   });

@@ -1,5 +1,9 @@
 #include "system/session.h"
 
+#include <algorithm>
+#include <ranges>
+#include <set>
+
 #include "base/text.h"
 
 namespace editor {
@@ -16,7 +20,43 @@ Result<NamingTree> Session::tree(const std::string& path, bool only) const {
   auto address = parse_address(path, working_path());
   if (!address) return address.error();
   const bool elsewhere = address->is_absolute && !address->segments.empty();
-  return NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, call_timeout_, only ? &*address : nullptr);
+  return NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, call_timeout_,
+                          {.address = only ? &*address : nullptr, .ids = nullptr});
+}
+
+Result<std::vector<ComponentView>> Session::peers_of(const ComponentView& component, const std::string& path) const {
+  std::vector<RTC::PortService_var> ports;
+  for (const auto& port : component.ports) {
+    for (const auto& connector : port.connectors) {
+      for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) ports.push_back(RTC::PortService::_duplicate(connector.ports[i]));
+    }
+  }
+  if (ports.empty()) return std::vector<ComponentView>();
+  // "INSTANCE.PORT"; empty when the port does not answer.
+  std::vector<std::string> names(ports.size());
+  in_parallel(ports.size(), call_timeout_, [&](std::size_t i) {
+    try {
+      const RTC::PortProfile_var profile = ports[i]->get_port_profile();
+      names[i] = profile->name.in();
+    } catch (const CORBA::Exception&) {  // whoever prints it says so
+    }
+  });
+  std::set<std::string> instances;
+  for (const auto& name : names) instances.insert(name.substr(0, name.rfind('.')));
+  const auto address = parse_address(path, working_path());
+  const bool elsewhere = address && address->is_absolute && !address->segments.empty();
+  const auto found =
+      NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, call_timeout_, {.address = nullptr, .ids = &instances});
+  if (!found) return found.error();
+  auto components = read_components(*found, {}, call_timeout_);
+  const bool has_all = std::ranges::all_of(std::views::iota(std::size_t{0}, ports.size()), [&](std::size_t i) {
+    return names[i].empty() || owner_of(ports[i], components).component != nullptr;
+  });
+  if (has_all) return components;
+  // Some are registered under other names than their own.
+  const auto all = tree(path);
+  if (!all) return all.error();
+  return read_components(*all, {}, call_timeout_);
 }
 
 Result<ComponentView> Session::component(const std::string& path, Detail detail) const {

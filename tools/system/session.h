@@ -25,6 +25,8 @@ class Session {
   // Reads the name server that `path` speaks of: its own for absolute paths, else the default.
   // With `only`, what the path cannot mean is listed and not asked whether it lives.
   Result<NamingTree> tree(const std::string& path = "", bool only = false) const;
+  // The components at the other ends of its connections, and perhaps more: to say their names. `path`: of the component.
+  Result<std::vector<ComponentView>> peers_of(const ComponentView& component, const std::string& path) const;
   Result<ComponentView> component(const std::string& path, Detail detail) const;
   struct Port {
     ComponentView component;

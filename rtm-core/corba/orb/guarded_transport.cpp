@@ -407,6 +407,10 @@ std::string guarded(const std::string& endpoint) {
   return endpoint;
 }
 
+std::string unguarded(const std::string& endpoint) {
+  return endpoint.starts_with(prefix) ? "giop:" + endpoint.substr(std::string_view(prefix).size()) : endpoint;
+}
+
 void remember_callers() {
   omniORB::getInterceptors()->serverReceiveRequest.add(&remember_caller);
   pass_on_asker();

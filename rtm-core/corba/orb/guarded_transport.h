@@ -30,6 +30,8 @@ bool doors_are_open();
 
 // The end point with a guard before it; others than giop:tcp:, giop:unix: and giop:ssl: as they are.
 std::string guarded(const std::string& endpoint);
+// The end point that guarded() was given.
+std::string unguarded(const std::string& endpoint);
 
 // To be called once there is an ORB.
 void remember_callers();

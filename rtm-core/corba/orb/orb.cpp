@@ -21,6 +21,7 @@
 #include "corba/orb/call_context.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/call_watch.h"
+#include "corba/orb/listening.h"
 #include "corba/ports/farewell.h"
 #include "corba/ports/peer_watch.h"
 #include "corba/ports/sample_room.h"
@@ -164,7 +165,11 @@ OpenTo who_may_call(const OrbSettings& settings) {
 // As omniORB wants it.
 base::Result<std::string> to_orb_endpoint(std::string_view endpoint, bool is_open) {
   auto text = base::trim(endpoint);
-  if (text.starts_with("giop:")) return std::string(text);
+  if (text.starts_with("giop:")) {
+    const auto kinds = {"giop:tcp:", "giop:ssl:", "giop:unix:"};
+    if (std::ranges::any_of(kinds, [&](const char* kind) { return text.starts_with(kind); })) return std::string(text);
+    return base::Error{"end point " + base::in_quotes(endpoint) + ": expected giop:tcp:HOST:PORT, giop:ssl:HOST:PORT or giop:unix:FILE"};
+  }
   if (text.starts_with("iiop://")) text.remove_prefix(7);
   if (text == "all" || text == "ipv4") return std::string("giop:tcp:0.0.0.0:");
   if (text == "ipv6") return std::string("giop:tcp:[::]:");
@@ -283,6 +288,20 @@ void remove_object(PortableServer::POA_ptr poa, const PortableServer::ObjectId& 
   }
 }
 
+// " on WHERE: WHY". What the ORB says counts only when nothing else explains it.
+std::string why_not(const OrbSettings& settings, const std::vector<std::string>& arguments, std::string said) {
+  for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
+    if (!arguments[i].starts_with("-ORBendPoint") || arguments[i] == "-ORBendPointNoListen") continue;
+    const auto endpoint = unguarded(arguments[i + 1]);
+    if (const auto problem = listening_problem(endpoint); !problem.empty()) return " on " + endpoint + ": " + problem;
+  }
+  constexpr std::string_view signature = "omniORB: ";
+  if (said.starts_with(signature)) said.erase(0, signature.size());
+  if (said.starts_with('(')) said.erase(0, std::min(said.find(')') + 1, said.size()));
+  const auto where = base::join(settings.endpoints, ", ");
+  return (where.empty() ? "" : " on " + where) + ": " + std::string(base::trim(said));
+}
+
 }  // namespace
 
 base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
@@ -334,9 +353,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
     return result;
   }
-  std::string where;
-  for (const auto& endpoint : settings.endpoints) where += (where.empty() ? "" : ", ") + endpoint;
-  return base::Error{"orb: cannot start" + (where.empty() ? "" : " on " + where) + ": " + (detail.empty() ? failure : detail)};
+  return base::Error{"orb: cannot start" + why_not(settings, *arguments, detail.empty() ? failure : detail)};
 }
 
 Orb::Orb() = default;

@@ -54,7 +54,7 @@ Position2d::Position2d(Setup setup, const Traction& traction, std::unique_ptr<Dr
 
 void Position2d::before_step(const Moment& moment) {
   shm::Command command;
-  switch (poll_command(command)) {
+  switch (poll_command(moment, command)) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
       command_ = {0, 0};

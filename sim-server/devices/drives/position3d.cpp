@@ -88,7 +88,7 @@ bool Position3d::keep_to_path(const Moment& moment, const Eigen::Isometry3d& pos
 
 void Position3d::before_step(const Moment& moment) {
   shm::Command command;
-  switch (poll_command(command)) {
+  switch (poll_command(moment, command)) {
     case shm::CommandChange::fresh:
       is_commanded_ = true;
       if (is_idle_) begin();

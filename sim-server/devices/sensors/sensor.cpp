@@ -25,18 +25,30 @@ void Sensor::show_changed(const Moment& moment, const std::function<void(shm::If
   measure(moment);
   change(*writer_);
   writer_->publish(moment.time);
+  schedule_.shown(moment.time, writer_->times_switched_on());
   noise_ = before;
+}
+
+shm::CommandChange Sensor::poll_command(const Moment& moment, shm::Command& command) {
+  const auto change = writer_->poll_command(command);
+  if (change != shm::CommandChange::none) command_end_.reset();
+  if (change == shm::CommandChange::fresh && command.duration.count() > 0) command_end_ = moment.time + command.duration;
+  if (change != shm::CommandChange::none || !command_end_ || moment.time < *command_end_) return change;
+  command_end_.reset();
+  return shm::CommandChange::lost;
 }
 
 void Sensor::reset() {
   schedule_.restart();
   noise_ = fresh_noise_;
   writer_->drop_command();  // of the run before
+  command_end_.reset();
   restart();
 }
 
 void Sensor::add_to(StateHash& hash) const {
   add_state_to(hash);
+  if (command_end_) hash.add(static_cast<std::uint64_t>(command_end_->count()));
   for (const auto& noise : noise_) hash.add(noise.stream().position());
 }
 

@@ -18,7 +18,9 @@ class Sensor : public Device {
  public:
   shm::IfaceWriter& iface() final { return *writer_; }
   ModelId model() const final { return model_; }
-  bool wants_sample(const Moment& moment) final { return schedule_.is_due(moment.time) && writer_->is_subscribed(); }
+  bool wants_sample(const Moment& moment) final {
+    return schedule_.is_due(moment.time, writer_->times_switched_on()) && writer_->is_subscribed();
+  }
   void take_sample(const Moment& moment) final { measure(moment); }
   void publish(const Moment& moment) final;
   bool owes_sample() final { return writer_->owes_sample(); }
@@ -59,7 +61,8 @@ class Sensor : public Device {
   std::span<float> ranges() const { return writer_->ranges(); }
   std::span<float> intensities() const { return writer_->intensities(); }
   std::span<shm::Contact> contacts() const { return writer_->contacts(); }
-  shm::CommandChange poll_command(shm::Command& command) { return writer_->poll_command(command); }
+  // As the writer's. A command with a duration is `lost` when it is over.
+  shm::CommandChange poll_command(const Moment& moment, shm::Command& command);
 
   // The value with the noise of a channel.
   double noisy(std::size_t channel, double value) const;
@@ -73,6 +76,7 @@ class Sensor : public Device {
   std::unique_ptr<shm::IfaceWriter> writer_;
   mutable std::vector<Noise> noise_;
   std::vector<Noise> fresh_noise_;
+  std::optional<std::chrono::nanoseconds> command_end_;  // of a command with a duration
 };
 
 // A sensor of an SDFormat file and where it stands.

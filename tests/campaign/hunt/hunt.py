@@ -1,4 +1,4 @@
-# What rtse hunt finds in twenty small faulty components, and that it leaves their right twins alone:
+# What rtse hunt finds in twenty-one small faulty components, and that it leaves their right twins alone:
 #   hunt.py BIN_DIR LIB_DIR SOURCE_DIR [--cases N] [--twin-cases N] [--repeats N] [--only KIND] [--plain]
 # Prints a row for each kind. --plain: beside it what rtse sweep finds with seeds alone, in as many runs. --repeats: runs the plan of each find
 # so often, and counts the runs that break it in the same state. --cases 0: only the twins.
@@ -24,7 +24,7 @@ parser.add_argument("-j", "--jobs", type=int, default=2)
 arguments = parser.parse_args()
 arguments.lib_dir, arguments.source = (pathlib.Path(path).resolve() for path in (arguments.lib_dir, arguments.source))
 
-KINDS = ["speed_doubles_when_activated_again", "exception_when_deactivated", "first_scan_is_taken_for_granted", "error_without_scan",
+KINDS = ["speed_doubles_when_activated_again", "speed_doubles_in_the_third_activation", "exception_when_deactivated", "first_scan_is_taken_for_granted", "error_without_scan",
          "drives_on_without_scan", "speeds_up_without_scan", "infinite_ranges_are_added", "mean_of_no_ranges", "divides_by_time_between_scans",
          "time_runs_backwards", "gap_in_time", "integral_without_limit", "same_scan_twice", "root_of_short_range", "index_from_range",
          "gives_up_when_blind", "no_limit_of_speed", "turns_into_obstacles", "old_scan_is_as_good", "noise_is_obstacle"]

@@ -1,5 +1,5 @@
-// A small component that drives a robot by its laser, in twenty ways that are wrong and twenty twins that are right: what `rtse hunt` must
-// find, and must leave alone. The property `kind` chooses which, `faulty` (YES, NO) which twin.
+// A small component that drives a robot by its laser, in twenty-one ways that are wrong and as many twins that are right: what `rtse hunt`
+// must find, and must leave alone. The property `kind` chooses which, `faulty` (YES, NO) which twin.
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <rtm/idl/InterfaceDataTypesSkel.h>
 
@@ -61,6 +61,7 @@ class HuntSubject : public RTC::DataFlowComponentBase {
 
   RTC::ReturnCode_t onActivated(RTC::UniqueId) override {
     if (is("speed_doubles_when_activated_again")) factor_ = activations_ > 0 ? 2 : 1;
+    if (is("speed_doubles_in_the_third_activation")) factor_ = activations_ > 1 ? 2 : 1;
     ++activations_;
     scans_ = 0;
     ticks_without_scan_ = 0;

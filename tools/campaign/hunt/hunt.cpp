@@ -100,6 +100,8 @@ class Hunt {
       find.case_number = result_.cases;
       find.after_s = wall();
       broken_ = {outcome.run.first_problem(), outcome.run.state_hash};
+      tries_ = 0;
+      show_shrinking(tried);
       find.tried = shrunk(tried, kind);
       if (!write(find, kind)) return;
       result_.finds.push_back(std::move(find));
@@ -129,6 +131,11 @@ class Hunt {
     std::string problem, state_hash;
   };
 
+  void show_shrinking(const HuntCase& simplest) const {
+    show_(
+        {result_.cases, result_.finds.size(), features_.size(), wall(), nullptr, broken_.problem, result_.cases, simplest.deeds(), tries_});
+  }
+
   // How, if it does.
   std::optional<Broken> still_breaks(const HuntCase& tried, const std::string& kind) {
     if (editor::is_interrupted()) return std::nullopt;
@@ -151,6 +158,8 @@ class Hunt {
   // Fewer deeds, then simpler numbers, then a shorter run.
   HuntCase shrunk(HuntCase best, const std::string& kind) {
     const auto try_it = [&](HuntCase simpler) {
+      ++tries_;
+      show_shrinking(best);
       auto broken = still_breaks(simpler, kind);
       if (!broken) return false;
       broken_ = std::move(*broken);
@@ -231,6 +240,7 @@ class Hunt {
   std::vector<HuntCase> corpus_;
   std::set<std::string> features_, signatures_;
   Broken broken_;  // the simplest case so far of what is being shrunk
+  std::size_t tries_ = 0;
   HuntResult result_;
   std::size_t not_begun_ = 0;  // cases one after the other
   const editor::WarmPrograms warm_{reporter_};

@@ -46,6 +46,9 @@ struct HuntProgress {
   std::size_t cases = 0, finds = 0, features = 0;
   double wall_s = 0;
   const Find* find = nullptr;  // just now
+  // Of a find that is being shrunk; empty: none is.
+  std::string problem{};
+  std::size_t case_number = 0, deeds = 0, tries = 0;  // deeds of the simplest case so far
 };
 
 // `show` is called after every case; `reporter` receives what the runs report.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <set>
 
 #include "base/text.h"
 #include "campaign/plan/grammar.h"
@@ -45,13 +46,35 @@ double amount(Fault::Kind kind, base::Random& random) {
   }
 }
 
+// Of the same component, at no time of its own; null without one.
+const Event* activation_after(const Event& event, const std::vector<Event>& events) {
+  const auto is_free = [](const Event& one) { return !one.at_s && !one.when; };
+  if (event.kind != Event::Kind::deactivate || !is_free(event)) return nullptr;
+  const auto found = std::ranges::find_if(
+      events, [&](const Event& other) { return other.kind == Event::Kind::activate && other.target == event.target && is_free(other); });
+  return found == events.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 CaseMaker::CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& targets) : campaign_(campaign) {
   for (const auto& target : targets) {
-    for (const auto kind : target.kinds) choices_.push_back({nullptr, target.object, kind, target.name});
+    for (const auto kind : target.kinds) choices_.push_back({nullptr, nullptr, target.object, kind, target.name});
   }
-  for (const auto& event : campaign.plan().hunt.events) choices_.push_back({&event, {}, {}, {}});
+  for (const auto& event : campaign.plan().hunt.events) {
+    choices_.push_back({&event, nullptr, {}, {}, {}});
+    if (const auto* again = activation_after(event, campaign.plan().hunt.events)) choices_.push_back({&event, again, {}, {}, {}});
+  }
+}
+
+std::size_t HuntCase::deeds() const {
+  std::size_t count = events.size() + faults.size();
+  std::set<std::string> inactive;
+  for (const auto& event : events) {
+    if (event.kind == Event::Kind::deactivate) inactive.insert(event.target);
+    if (event.kind == Event::Kind::activate && inactive.erase(event.target) > 0) --count;
+  }
+  return count;
 }
 
 // The first moment is special: nothing has been measured, sent or remembered yet.
@@ -85,8 +108,23 @@ void CaseMaker::add_consequence(HuntCase& to, base::Random& random) const {
   add_event(to, events[random.below(events.size())], last_s, random);
 }
 
+// What a component keeps from one activation to the next may harm only in the third or fourth.
+void CaseMaker::add_restarts(HuntCase& to, const Choice& choice, base::Random& random) const {
+  const std::size_t most = campaign_.plan().hunt.most, room = most - std::min(most, to.deeds());
+  const std::size_t times = 1 + random.below(std::max<std::size_t>(room, 1));
+  double now_s = time(random, to.duration_s / 2);
+  for (std::size_t i = 0; i < times; ++i) {
+    for (const Event* wanted : {choice.event, choice.again}) {
+      to.events.push_back(*wanted);
+      to.events.back().at_s = now_s;
+      now_s = rounded(now_s + 0.1 + random.uniform() * to.duration_s / (4.0 * static_cast<double>(times)));
+    }
+  }
+}
+
 void CaseMaker::add_deed(HuntCase& to, base::Random& random) {
   const auto& choice = draw(random);
+  if (choice.again != nullptr) return add_restarts(to, choice, random);
   if (choice.event != nullptr) return add_event(to, *choice.event, 0, random);
   Fault fault;
   fault.object = choice.object;
@@ -107,7 +145,7 @@ HuntCase CaseMaker::fresh(base::Random& random) {
   constexpr std::uint64_t quiet = 8;  // one in so many is left alone: its start and its parameters may be enough
   const auto deeds = has_deeds() && random.below(quiet) > 0 ? 1 + random.below(campaign_.plan().hunt.most) : 0;
   const bool is_story = deeds > 1 && campaign_.plan().hunt.events.size() > 1 && random.below(3) == 0;  // events one after the other
-  for (std::uint64_t i = 0; i < deeds; ++i) is_story ? add_consequence(made, random) : add_deed(made, random);
+  while (made.deeds() < deeds) is_story ? add_consequence(made, random) : add_deed(made, random);
   return made;
 }
 

@@ -19,7 +19,8 @@ struct HuntCase {
   std::vector<Fault> faults;
   double duration_s = 0;
 
-  std::size_t deeds() const { return events.size() + faults.size(); }
+  // An activation that follows a deactivation of its component is one deed with it.
+  std::size_t deeds() const;
 };
 
 class CaseMaker {
@@ -36,6 +37,7 @@ class CaseMaker {
   // One thing that can be done.
   struct Choice {
     const Event* event = nullptr;  // of the plan; null: a fault
+    const Event* again = nullptr;  // of a deactivation: the activation of the same component, which follows it
     Fault::Object object = Fault::Object::component;
     Fault::Kind kind = Fault::Kind::error;
     std::string target;
@@ -45,6 +47,7 @@ class CaseMaker {
   void add_deed(HuntCase& to, base::Random& random);
   void add_consequence(HuntCase& to, base::Random& random) const;
   void add_event(HuntCase& to, const Event& wanted, double from_s, base::Random& random) const;
+  void add_restarts(HuntCase& to, const Choice& choice, base::Random& random) const;
   double time(base::Random& random, double duration_s) const;
   const Campaign& campaign_;
   std::vector<Choice> choices_;

@@ -162,7 +162,11 @@ constexpr std::array fault_keys = {
 constexpr std::array hunt_keys = {
     Key{"faults", Form::maps, "hunt_fault", false, "Faults to try; default: all that the system allows"},
     Key{"events", Form::maps, "event", false, "Events to try, at any time"},
-    Key{"most", Form::count, {}, false, "Maximum number of faults and events of one run; default: 3"},
+    Key{"most",
+        Form::count,
+        {},
+        false,
+        "Maximum number of faults and events of one run; a deactivation and the activation after it count as one; default: 3"},
     Key{"seed", Form::count, {}, false, "Seed of the hunt; default: 1"},
 };
 constexpr std::array hunt_fault_keys = {

@@ -79,15 +79,24 @@ Result<void> Store::make_statements() {
   return {};
 }
 
+Result<std::string> Store::fact(const std::string& name) {
+  auto& asked = statements_[get_fact];
+  const auto found = asked.bind(1, name).next();
+  const auto text = found && *found ? asked.text(0) : std::string();
+  asked.end();
+  return found ? Result<std::string>(text) : found.error();
+}
+
+Result<void> Store::set(const std::string& name, const std::string& value) {
+  return statements_[set_fact].bind(1, name).bind(2, value).run();
+}
+
 Result<bool> Store::begin_rows(const Plan& plan, const std::string& list) {
   const auto file = plan.file.empty() ? std::string() : std::filesystem::absolute(plan.file).lexically_normal().string();
   if (const auto begun = database_.execute("BEGIN IMMEDIATE"); !begun) return begun.error();
-  auto& fact = statements_[get_fact];
-  const auto found = fact.bind(1, std::string_view("list")).next();
-  const bool is_there = found && *found && fact.text(0) == list && !list.empty();
-  fact.end();
-  if (!found) return found.error();
-  if (is_there) {  // what is read now is of one moment
+  const auto old = fact("list");
+  if (!old) return old.error();
+  if (*old == list && !list.empty()) {  // what is read now is of one moment
     if (const auto ended = database_.execute("COMMIT; BEGIN;"); !ended) return ended.error();
     return false;
   }
@@ -98,7 +107,7 @@ Result<bool> Store::begin_rows(const Plan& plan, const std::string& list) {
                                     {"world", plan.run.world},
                                     {"list", list},
                                     {"duration", base::format_number(plan.run.duration_s)}}) {
-    if (const auto set = statements_[set_fact].bind(1, name).bind(2, value).run(); !set) return set.error();
+    if (const auto done = set(name, value); !done) return done.error();
   }
   return true;
 }

@@ -34,6 +34,9 @@ class Store {
   // Begins a list of rows, and forgets the one before; the runs stay. False: the list that is called so is there already, and nobody
   // who runs some of its rows need wait for another who writes it again.
   Result<bool> begin_rows(const Plan& plan, const std::string& list);
+  // Of the table of facts about the campaign; empty when it is not there.
+  Result<std::string> fact(const std::string& name);
+  Result<void> set(const std::string& name, const std::string& value);
   Result<void> add_row(const Row& row, const std::string& key);
   Result<void> end_rows();
 

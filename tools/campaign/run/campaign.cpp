@@ -141,7 +141,8 @@ Result<void> set_in_system(SavedSystem& system, const std::string& path, const s
 }
 
 // What a run loads: our programs and libraries, and every module of the plan.
-Result<void> hash_programs(const Plan& plan, base::ContentHash& hash) {
+// The files that a row needs, in order: programs and libraries.
+std::vector<std::string> programs_of(const Plan& plan) {
   std::vector<std::string> files;
   for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(editor::own_program(name));
   const auto libraries = fs::path(editor::own_program("rtcd")).parent_path().parent_path() / "lib";
@@ -156,11 +157,13 @@ Result<void> hash_programs(const Plan& plan, base::ContentHash& hash) {
     }
   }
   std::ranges::sort(files);
-  for (const auto& file : files) {
-    hash.add(fs::path(file).filename().string());
-    if (const auto added = hash.add_file(file); !added) return added;
-  }
-  return {};
+  return files;
+}
+
+Result<std::string> part(const std::string& name, const std::string& file) {
+  base::ContentHash hash;
+  if (const auto added = hash.add_file(file); !added) return added.error();
+  return name + "\t" + hash.text() + "\n";
 }
 
 // The models that events spawn. Sets relative paths to absolute ones: in the folder of the plan, else in the one that rtse is called in.
@@ -273,14 +276,33 @@ Result<void> Campaign::check_axes() const {
 Result<void> Campaign::hash_everything() {
   base::ContentHash hash;
   hash.add("rows of a campaign, 1");
-  if (const auto added = hash_programs(*plan_, hash); !added) return added;
+  for (const auto& file : programs_of(*plan_)) {
+    const auto name = fs::path(file).filename().string();
+    hash.add(name);
+    if (const auto added = hash.add_file(file); !added) return added;
+    const auto line = part(name, file);
+    if (!line) return line.error();
+    parts_ += *line;
+  }
   auto files = survey_.files;
   files.insert(plan_->run.system);
   if (!plan_->run.expectations.empty()) files.insert(plan_->run.expectations);
   for (const auto& file : files) {
     if (const auto added = hash.add_file(file); !added) return added;
+    const auto line = part(file, file);
+    if (!line) return line.error();
+    parts_ += *line;
   }
-  // What the plan asks of every run; not how many there are.
+  hash_questions(hash);
+  base_key_ = hash.text();
+  base::ContentHash questions;
+  hash_questions(questions);
+  parts_ += "the plan's duration, deeds or expectations\t" + questions.text() + "\n";
+  return {};
+}
+
+// What the plan asks of every run; not how many there are.
+void Campaign::hash_questions(base::ContentHash& hash) const {
   hash.add(plan_->expect_text);
   hash.add(base::format_number(plan_->run.duration_s) + (plan_->run.one_process_each ? " each" : "") +
            (plan_->checks_invariants ? " invariants" : ""));
@@ -290,8 +312,21 @@ Result<void> Campaign::hash_everything() {
   for (const auto& fault : plan_->faults) hash.add(fault.text());
   for (const auto& condition : plan_->never) hash.add("never " + condition.text);
   for (const auto& condition : plan_->eventually) hash.add("eventually " + condition.text);
-  base_key_ = hash.text();
-  return {};
+}
+
+std::vector<std::string> changed_parts(const std::string& before, const std::string& now) {
+  std::map<std::string, std::string> old, fresh;
+  for (auto [text, parts] : {std::pair(&before, &old), std::pair(&now, &fresh)}) {
+    for (const auto& line : base::split_list(*text, '\n')) parts->emplace(line.substr(0, line.rfind('\t')), line);
+  }
+  std::vector<std::string> changed;
+  for (const auto& [name, line] : fresh) {
+    if (const auto found = old.find(name); found == old.end() || found->second != line) changed.push_back(name);
+  }
+  for (const auto& [name, line] : old) {
+    if (!fresh.contains(name)) changed.push_back(name);
+  }
+  return changed;
 }
 
 std::string Campaign::key(const Row& row) const {

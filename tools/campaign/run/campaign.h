@@ -4,7 +4,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "base/content_hash.h"
 #include "campaign/plan/plan.h"
 #include "campaign/rows/rows.h"
 #include "campaign/rows/world_file.h"
@@ -29,6 +31,8 @@ class Campaign {
   std::string key(const Row& row) const;
   // What it is of a row without seed and values.
   const std::string& base_key() const { return base_key_; }
+  // A line "NAME<tab>HASH" for each of these: so that who compares two of them can say what has changed.
+  const std::string& parts() const { return parts_; }
   // Stands for all rows together, with their values and seeds.
   std::string list_key() const;
 
@@ -46,12 +50,16 @@ class Campaign {
   Result<void> survey_world(const std::vector<std::string>& spawned);
   Result<void> check_axes() const;
   Result<void> hash_everything();
+  void hash_questions(base::ContentHash& hash) const;
 
   std::unique_ptr<const Plan> plan_;
   editor::SavedSystem system_;
   WorldSurvey survey_;
   std::unique_ptr<RowMaker> rows_;
-  std::string base_key_;
+  std::string base_key_, parts_;
 };
+
+// Names of what is not the same in two texts of parts(), in order.
+std::vector<std::string> changed_parts(const std::string& before, const std::string& now);
 
 }  // namespace campaign

@@ -29,7 +29,8 @@ struct Progress {
   std::size_t stored = 0;  // of these: not run again
   std::size_t audited = 0, different = 0;
   double wall_s = 0;
-  double left_s = 0;  // an estimate; 0: not known yet
+  double left_s = 0;                   // an estimate; 0: not known yet
+  std::vector<std::string> changed{};  // files and the like, since the results were made: why rows run again
 };
 
 struct FailedRow {

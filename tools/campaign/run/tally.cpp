@@ -14,8 +14,11 @@ constexpr std::size_t most_failed_told = 100;
 }  // namespace
 
 Result<void> Tally::list_rows() {
+  const auto parts = store_.fact("parts");
+  if (!parts) return parts.error();
   const auto begun = store_.begin_rows(campaign_.plan(), campaign_.list_key());
   if (!begun) return begun.error();
+  if (const auto kept = *begun ? store_.set("parts", campaign_.parts()) : Result<void>(); !kept) return kept.error();
   std::set<std::string> keys;
   for (std::size_t number = 1; number <= campaign_.rows(); ++number) {
     const auto row = campaign_.row(number);
@@ -35,6 +38,7 @@ Result<void> Tally::list_rows() {
     }
   }
   if (const auto ended = store_.end_rows(); !ended) return ended;
+  if (!parts->empty() && !todo_.empty()) result_.progress.changed = changed_parts(*parts, campaign_.parts());
   show_(result_.progress);
   return {};
 }

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 
 namespace mcap {
@@ -52,6 +53,8 @@ bool File::is_being_written(const std::string& path) {
 }
 
 base::Result<File> File::open(const std::string& path) {
+  if (const auto problem = base::file_problem(path); !problem.empty())
+    return base::Error{"recording " + base::in_quotes(path) + ": " + problem};
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return cannot(path, "read", errno);
   File file(descriptor, path);

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -169,6 +171,13 @@ bool agrees(const base::Result<Index>& scanned, const Summary& summary) {
          found.chunks == told.chunks;
 }
 
+void add_channels(const Summary& from, Summary& to) {
+  to.schemas.insert(from.schemas.begin(), from.schemas.end());
+  to.channels.insert(from.channels.begin(), from.channels.end());
+  to.statistics.schemas = static_cast<std::uint16_t>(to.schemas.size());
+  to.statistics.channels = static_cast<std::uint32_t>(to.channels.size());
+}
+
 // A chunk that only is broken stays where it is, for those who can make something of its octets; where records are not found any more a
 // new file is better.
 bool is_worth_more(const Index& scanned, const Summary& summary, const Repair& copied) {
@@ -188,6 +197,8 @@ base::Result<Repair> write(const std::string& from, const std::string& to) {
   const auto whole = read_summary(*file, *size, damage);
   const bool has_summary = whole && whole->has_value();
   if (!scanned && !has_summary) return scanned.error();
+  // The record of a channel without messages may be in the summary alone.
+  if (scanned && has_summary) add_channels((*whole)->summary, scanned->summary);
   if (!has_summary || agrees(scanned, (*whole)->summary)) return keep_octets(*file, *size, std::move(*scanned), to);
 
   auto copied = copy_by_summary(from, (*whole)->summary, to);
@@ -210,6 +221,8 @@ base::Result<Repair> repair(const std::string& from, const std::string& to) {
     if (!File::is_being_written(whole)) std::remove(whole.c_str());
     return done.error();
   }
+  struct stat before {};
+  if (::stat(to.c_str(), &before) == 0) (void)::chmod(whole.c_str(), before.st_mode & 07777);  // as who made it wants it
   if (std::rename(whole.c_str(), to.c_str()) != 0) {
     const base::Error error{base::in_quotes(to) + ": cannot be written: " + std::strerror(errno)};
     std::remove(whole.c_str());

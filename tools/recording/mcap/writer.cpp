@@ -30,6 +30,7 @@ struct Writer::State {
   base::Result<void> put_out(std::string_view first, std::string_view second = {});
   base::Result<void> close_chunk();
   void introduce(std::uint16_t channel);
+  void introduce_all();
   base::Result<void> finish();
 
   File file;
@@ -42,6 +43,7 @@ struct Writer::State {
 
   Summary summary;
   std::vector<bool> is_introduced;         // channels whose record is in the file already
+  std::size_t next_to_introduce = 1;       // all channels below it are
   std::vector<bool> is_schema_introduced;  // schemas likewise
 
   std::string chunk;  // records of the open one, not compressed
@@ -100,8 +102,14 @@ void Writer::State::introduce(std::uint16_t channel) {
   is_introduced[channel] = true;
 }
 
+// Channels without messages are part of what was recorded, too: also when the writer is killed after this chunk.
+void Writer::State::introduce_all() {
+  for (; next_to_introduce < is_introduced.size(); ++next_to_introduce) introduce(static_cast<std::uint16_t>(next_to_introduce));
+}
+
 base::Result<void> Writer::State::close_chunk() {
   if (chunk.empty()) return {};
+  introduce_all();
   const auto packed = compressor.compress(chunk, room);
   if (!packed) return failure.emplace(packed.error());
   const std::uint32_t chunk_crc = crc32(0, chunk);
@@ -157,8 +165,7 @@ base::Result<void> Writer::State::close_chunk() {
 base::Result<void> Writer::State::finish() {
   if (is_closed) return failure ? base::Result<void>(*failure) : base::Result<void>();
   is_closed = true;
-  // Channels without messages are part of what was recorded, too.
-  for (const auto& [id, channel] : summary.channels) introduce(id);
+  introduce_all();
   if (const auto done = close_chunk(); !done) return done;
   return append(end_of_file(summary, written, crc));
 }

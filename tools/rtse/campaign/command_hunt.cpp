@@ -60,6 +60,27 @@ void tell(const Find& find, std::size_t number) {
   std::fflush(stdout);
 }
 
+// On standard output: what was found, first as it came, then in its simplest form.
+void tell_progress(const HuntProgress& progress) {
+  if (progress.find) tell(*progress.find, progress.finds);
+  if (progress.problem.empty() || progress.tries > 0) return;
+  std::printf("case %zu after %.0f s: %s\n  shrinking it: the simplest case that fails in this way is searched for\n", progress.case_number,
+              progress.wall_s, base::printable(progress.problem, "\n\t").c_str());
+  std::fflush(stdout);
+}
+
+std::string status_line(const HuntProgress& progress, std::chrono::seconds budget) {
+  char text[200];
+  if (progress.problem.empty()) {
+    std::snprintf(text, sizeof text, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds,
+                  progress.features, progress.wall_s, static_cast<long>(budget.count()));
+  } else {
+    std::snprintf(text, sizeof text, "shrinking case %zu: try %zu, %zu deeds so far  %.0f s", progress.case_number, progress.tries,
+                  progress.deeds, progress.wall_s);
+  }
+  return text;
+}
+
 void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   auto plan = read_plan(call.plan);
   if (!plan) return console.fail(plan.error());
@@ -79,10 +100,8 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
       session.orb(), *campaign, options,
       [&](const HuntProgress& progress) {
         if (shows) std::fprintf(stderr, "\r\033[K");
-        if (progress.find && !console.json()) tell(*progress.find, progress.finds);
-        if (shows)
-          std::fprintf(stderr, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds, progress.features,
-                       progress.wall_s, static_cast<long>(options.budget.count()));
+        if (!console.json()) tell_progress(progress);
+        if (shows) std::fputs(status_line(progress, options.budget).c_str(), stderr);
       },
       console);
   if (shows) std::fprintf(stderr, "\r\033[K");

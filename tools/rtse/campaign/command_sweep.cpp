@@ -156,6 +156,19 @@ void tell(Console& console, const SweepResult& result, const SweepCall& call) {
     console.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
 }
 
+// Rows that were run before are not in the results any more.
+void tell_why_again(Console& console, const Progress& progress) {
+  if (progress.changed.empty()) return;
+  constexpr std::size_t most = 5;
+  auto names = progress.changed;
+  if (names.size() > most) {
+    names.resize(most);
+    names.push_back("and " + std::to_string(progress.changed.size() - most) + " more");
+  }
+  console.warn(std::to_string(progress.rows - progress.stored) +
+               " rows run again, because these have changed since the results were made: " + base::join(names, ", "));
+}
+
 // "3", "1..20".
 std::optional<std::pair<std::size_t, std::size_t>> parse_row_range(const std::string& text) {
   const auto dots = text.find("..");
@@ -221,7 +234,9 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
     return;
   }
   const bool shows = isatty(2) != 0 && !console.json();
+  bool has_told = false;
   const auto show = [&](const Progress& progress) {
+    if (!std::exchange(has_told, true)) tell_why_again(console, progress);
     if (shows) show_progress(progress);
   };
   const auto result = call.engine == "slurm" ? slurm_sweep(*campaign, options, slurm_options_of(call, options), show)

@@ -31,10 +31,10 @@ class Differences {
 };
 
 void check_connection(const Matched& matched, const SavedConnector& saved, Differences& differences) {
-  const auto* source = matched.port(saved.source);
-  const auto* target = matched.port(saved.target);
-  if (!source || !target)
-    return differences.add({"connection " + saved.id + ": there is no port " + (source ? saved.target.port_name : saved.source.port_name)});
+  if (matched.leaves_out(saved.source) || matched.leaves_out(saved.target)) return;
+  const auto from = matched.port(saved.source), to = matched.port(saved.target);
+  if (!from || !to) return differences.add({"connection " + saved.id + ": " + (from ? to : from).error().message});
+  const PortView *source = *from, *target = *to;
   for (const auto& connector : source->connectors) {
     if (!same_connection(connector, *source, *target)) continue;
     if (!saved.is_data) return;
@@ -100,6 +100,7 @@ void check_system(const Session& session, Console& console, const std::string& f
   if (!matched) return console.fail(matched.error());
   Differences differences;
   for (const auto& missing : matched->missing()) differences.add(missing);
+  for (const auto& line : matched->absent()) console.warn(line);
   for (const auto& connector : system->connectors) check_connection(*matched, connector, differences);
   for (const auto& component : system->components) check_component(*matched, component, state, differences);
   differences.tell(console);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "corba/ports/connection_values.h"
 #include "corba/ports/peer_watch.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
@@ -54,6 +55,8 @@ void connect(const Session& session, Console& console, const ConnectOptions& opt
   if (options.no_duplicates && are_connected(*ports[0], *ports[1])) return;
   auto properties = parse_properties(options.properties, ports.front()->is_data_port());
   if (!properties) return console.fail(properties.error());
+  if (const auto wrong = corba::misunderstood_values(*properties); !wrong.empty())
+    return console.fail({"connecting " + base::join(options.ports, " and ") + ": " + base::join(wrong, "; ")});
   if (const auto done = connect_ports(ports, options.id, options.name, *properties); !done) console.fail(done.error());
 }
 

@@ -316,10 +316,9 @@ void cat(const Session& session, Console& console, const std::string& path, bool
   const CallLimit limited(session.call_timeout());
   const auto component = read_component(**found, {.contexts = true, .connectors = true, .configuration = true, .members = true});
   if (!component.problem.empty()) return console.fail({"component " + component.path + " " + component.problem});
-  // The other components are read too, to say by name what a port is connected to.
-  std::vector<ComponentView> all;
-  if (std::ranges::any_of(component.ports, [](const PortView& port) { return !port.connectors.empty(); }))
-    all = read_components(*names, {}, session.call_timeout());
+  const auto peers = session.peers_of(component, path);
+  if (!peers) return console.fail(peers.error());
+  const auto& all = *peers;
   if (address->port.empty()) {
     if (console.json()) return console.print(to_json(component, all));
     return print_component(component, all, is_long);

@@ -21,6 +21,7 @@
 #include "base/clock.h"
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "channels/views/world_source.h"
 #include "recording/component_source.h"
@@ -157,8 +158,9 @@ base::Result<void> attach_files(mcap::Writer& writer, const RecordOptions& optio
   for (const std::string& one : options.attached) {
     const auto equals = one.find('=');
     const std::string path = one.substr(equals + 1);
+    if (const auto problem = base::file_problem(path); !problem.empty())
+      return base::Error{"attachment " + base::in_quotes(one) + ": " + problem};
     std::ifstream in(path, std::ios::binary);
-    if (!in) return base::Error{"attachment " + base::in_quotes(one) + ": cannot be read"};
     const std::string text((std::istreambuf_iterator<char>(in)), {});
     if (const auto done = writer.attach({mcap::Time(0), mcap::Time(0), one.substr(0, equals), "application/octet-stream", text}); !done)
       return done;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,17 +36,52 @@ constexpr std::chrono::minutes longest_page{30};
 
 constexpr std::uint64_t most_read = 2ull << 30;  // [octets] of all samples; of more than that the indexes have to do
 
+// Numbers of the samples of a channel, in any order: files hold samples in an order of their own, and are read in that of their times.
+class SeenNumbers {
+ public:
+  void add(std::uint32_t sequence) {
+    if (!is_counted_) return;
+    // Numbers go on at 0 after the highest.
+    last_ = ranges_.empty() ? std::int64_t{sequence} : last_ + static_cast<std::int32_t>(sequence - static_cast<std::uint32_t>(last_));
+    auto after = ranges_.upper_bound(last_);
+    const auto before = after == ranges_.begin() ? ranges_.end() : std::prev(after);
+    if (before != ranges_.end() && last_ <= before->second) return;
+    const bool joins_after = after != ranges_.end() && after->first == last_ + 1;
+    const std::int64_t end = joins_after ? after->second : last_;
+    if (joins_after) ranges_.erase(after);
+    if (before != ranges_.end() && before->second == last_ - 1) {
+      before->second = end;
+    } else {
+      ranges_[last_] = end;
+    }
+    is_counted_ = ranges_.size() <= most_ranges;
+  }
+  // Between the lowest and the highest; nothing when there were too many gaps to remember.
+  std::optional<std::uint64_t> missing() const {
+    if (!is_counted_) return std::nullopt;
+    std::uint64_t count = 0;
+    for (auto range = ranges_.begin(); range != ranges_.end() && std::next(range) != ranges_.end(); ++range)
+      count += static_cast<std::uint64_t>(std::next(range)->first - range->second - 1);
+    return count;
+  }
+
+ private:
+  static constexpr std::size_t most_ranges = 100'000;
+  std::map<std::int64_t, std::int64_t> ranges_;  // first -> last, none beside another
+  std::int64_t last_ = 0;
+  bool is_counted_ = true;
+};
+
 // What a channel has, and its longest silence.
 struct ChannelFacts {
   std::uint64_t samples = 0;
   bool is_read = true;  // else octets and missing samples are not known
   std::uint64_t octets = 0;
-  std::uint64_t missing = 0;  // by their numbers
   mcap::Time first{0};
   mcap::Time last{0};
   mcap::Time longest_gap{0};
   mcap::Time longest_gap_at{0};
-  std::uint32_t next_sequence = 0;
+  SeenNumbers numbers;
 };
 
 void take_in(ChannelFacts& facts, mcap::Time time) {
@@ -60,8 +96,7 @@ void take_in(ChannelFacts& facts, mcap::Time time) {
 }
 
 void take_in(ChannelFacts& facts, const mcap::Message& message) {
-  if (facts.samples > 0 && message.sequence > facts.next_sequence) facts.missing += message.sequence - facts.next_sequence;
-  facts.next_sequence = message.sequence + 1;
+  facts.numbers.add(message.sequence);
   facts.octets += message.data.size();
   take_in(facts, message.log_time);
 }
@@ -103,7 +138,7 @@ Facts facts_of(Console& console, mcap::Reader& reader, const std::string& file) 
 
 Json channel_json(const mcap::Reader& reader, const mcap::Channel& channel, const ChannelFacts& facts) {
   const auto schema = reader.schemas().find(channel.schema);
-  const auto read = [&](std::uint64_t count) { return facts.is_read ? Json(count) : Json(nullptr); };
+  const auto read = [&](std::optional<std::uint64_t> count) { return facts.is_read && count ? Json(*count) : Json(nullptr); };
   return {{"topic", channel.topic},
           {"type", schema == reader.schemas().end() ? "" : schema->second.name},
           {"encoding", channel.encoding},
@@ -112,7 +147,7 @@ Json channel_json(const mcap::Reader& reader, const mcap::Channel& channel, cons
           {"rate", rate_of(facts)},
           {"first", seconds(facts.first)},
           {"last", seconds(facts.last)},
-          {"missing", read(facts.missing)},
+          {"missing", read(facts.numbers.missing())},
           {"longest_gap", seconds(facts.longest_gap)},
           {"longest_gap_at", seconds(facts.longest_gap_at)}};
 }
@@ -126,7 +161,7 @@ void print_channel(const Json& channel) {
   if (!channel["octets"].is_null()) {
     std::snprintf(line, sizeof line, "  %10llu bytes", channel["octets"].get<unsigned long long>());
     std::cout << line;
-    if (channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
+    if (!channel["missing"].is_null() && channel["missing"] != 0) std::cout << "  " << channel["missing"] << " missing";
   }
   std::cout << '\n';
 }
@@ -141,10 +176,12 @@ void list(Console& console, const std::string& file, bool with_run) {
               {"first", seconds(reader->statistics().first)},
               {"last", seconds(reader->statistics().last)}};
   all["run"] = Json::object();
+  all["metadata"] = Json::array();
   if (const auto metadata = reader->metadata()) {
     for (const auto& one : *metadata) {
-      if (one.name != "run") continue;
-      for (const auto& [key, value] : one.texts) all["run"][key] = value;
+      Json texts = Json::object();
+      for (const auto& [key, value] : one.texts) (one.name == "run" ? all["run"] : texts)[key] = value;
+      if (one.name != "run") all["metadata"].push_back({{"name", one.name}, {"texts", texts}});
     }
   } else {
     console.fail(metadata.error());
@@ -166,6 +203,11 @@ void list(Console& console, const std::string& file, bool with_run) {
               << reader->statistics().messages << '\n';
     for (const auto& [key, value] : all["run"].items())
       std::cout << "run         " << base::printable(key) << " = " << base::printable(value.get<std::string>()) << '\n';
+    for (const auto& one : all["metadata"]) {
+      std::cout << "metadata    " << base::printable(one["name"].get<std::string>()) << '\n';
+      for (const auto& [key, value] : one["texts"].items())
+        std::cout << "              " << base::printable(key) << " = " << base::printable(value.get<std::string>()) << '\n';
+    }
     for (const auto& one : all["attachments"])
       std::cout << "attachment  " << base::printable(one["name"].get<std::string>()) << ", " << one["octets"] << " bytes\n";
   }
@@ -188,14 +230,18 @@ void cat(Console& console, const Selection& selection) {
   SampleValues values(*reader);
   console.fail(for_each(*reader, selection, [&](const mcap::Message& message) {
     if (base::output_is_closed()) return false;
-    const auto value = values.of(message);
-    if (!value) {
+    const mcap::Channel& channel = reader->channels().at(message.channel);
+    Json line{{"time", seconds(message.log_time)}, {"topic", channel.topic}, {"sequence", message.sequence}};
+    if (const auto value = values.of(message)) {
+      line["value"] = *value;
+    } else {
       if (unreadable.insert(message.channel).second) console.fail(value.error());
-      return true;
+      const auto schema = reader->schemas().find(channel.schema);
+      line["encoding"] = channel.encoding;
+      line["type"] = schema == reader->schemas().end() ? "" : schema->second.name;
+      line["octets"] = message.data.size();
     }
-    const std::string& topic = reader->channels().at(message.channel).topic;
-    std::cout << json_text({{"time", seconds(message.log_time)}, {"topic", topic}, {"sequence", message.sequence}, {"value", *value}})
-              << '\n';
+    std::cout << json_text(line) << '\n';
     return true;
   }));
 }

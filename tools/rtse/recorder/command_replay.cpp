@@ -1,6 +1,7 @@
 // replay.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -35,6 +36,19 @@ struct Options {
 };
 
 std::string after_dot(const std::string& port_name) { return port_name.substr(port_name.find('.') + 1); }
+
+// With --module-path the component comes from there: with the installation's own a comparison would say nothing.
+base::Result<void> check_module(const Options& options, const editor::SavedComponent& component) {
+  if (options.module_paths.empty() || !options.start.empty()) return {};
+  const auto parts = base::split_list(component.id, ':');
+  const auto file = (parts.size() >= 4 ? parts[3] : component.instance) + ".so";
+  std::error_code error;
+  if (std::ranges::any_of(options.module_paths,
+                          [&](const auto& path) { return std::filesystem::exists(std::filesystem::path(path) / file, error); }))
+    return {};
+  return base::Error{"component " + component.instance + ": module " + file + " is not in --module-path " +
+                     base::join(options.module_paths, ", ")};
+}
 
 // The properties that decide what an InPort keeps: its buffer, and the stamps that it gives.
 editor::Properties of_receiver(const editor::SavedConnector& connector) {
@@ -259,7 +273,8 @@ void replay_file(const Session& session, Console& console, const Options& option
   call.start_folder.clear();
   call.run_file.clear();
   call.hang_timeout_s = options.hang_timeout_s;
-  call.module_paths.insert(call.module_paths.end(), options.module_paths.begin(), options.module_paths.end());
+  if (const auto good = check_module(options, one.components.front()); !good) return console.fail(good.error());
+  call.module_paths.insert(call.module_paths.begin(), options.module_paths.begin(), options.module_paths.end());
   std::erase_if(call.properties, [&](const std::string& property) { return !property.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
   if (const auto done = configure(one.components.front(), options.settings); !done) return console.fail(done.error());

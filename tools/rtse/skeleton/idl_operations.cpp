@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "base/id.h"
+#include "base/plain_file.h"
 #include "base/text.h"
 
 namespace editor {
@@ -80,10 +81,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 Result<std::string> read_text(const std::filesystem::path& file) {
-  std::error_code error;
+  if (const auto problem = base::file_problem(file); !problem.empty())
+    return Error{"IDL file " + base::in_quotes(file.string()) + ": " + problem};
   std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file, error))
-    return Error{"IDL file " + base::in_quotes(file.string()) + ": cannot be read"};
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();

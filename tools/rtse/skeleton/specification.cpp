@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 
@@ -236,7 +237,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
 }
 
 Result<NewComponent> read_specification(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) return Error{"file " + base::in_quotes(file) + ": does not exist"};
+  if (const auto problem = base::file_problem(file); !problem.empty()) return Error{"file " + base::in_quotes(file) + ": " + problem};
   return file.ends_with(".xml") ? read_rtc_xml(file) : read_yaml(file);
 }
 

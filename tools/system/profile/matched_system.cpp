@@ -45,8 +45,11 @@ bool same_connection(const ConnectorView& connector, const PortView& source, con
 Matched::Matched(std::vector<ComponentView> components, const SavedSystem& system) : components_(std::move(components)) {
   for (const auto& saved : system.components) {
     const auto* component = find(saved.path_uri, saved.instance);
-    if (!saved.is_required || (component && component->problem.empty())) continue;
-    missing_.push_back({"component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server")});
+    if (!saved.is_required) optional_.insert(saved.instance);
+    if (component && component->problem.empty()) continue;
+    const auto line = "component " + saved.path_uri + ": " + (component ? component->problem : "is not on the name server");
+    if (saved.is_required) missing_.push_back({line});
+    if (!saved.is_required) absent_.push_back(line + "; it is left out, as the profile does not require it");
   }
 }
 
@@ -66,12 +69,21 @@ const ComponentView* Matched::find(const std::string& uri, const std::string& in
   return by_name;
 }
 
-const PortView* Matched::port(const SavedTarget& target) const {
+bool Matched::leaves_out(const SavedTarget& target) const {
+  return optional_.contains(target.instance) && !find(target.path_uri, target.instance);
+}
+
+Result<const PortView*> Matched::port(const SavedTarget& target) const {
   const auto* component = find(target.path_uri, target.instance);
-  if (!component) return nullptr;
+  if (!component) return Error{"there is no component " + (target.instance.empty() ? target.path_uri : target.instance)};
   const auto prefix = target.instance + ".";
   const auto name = target.port_name.starts_with(prefix) ? target.port_name.substr(prefix.size()) : target.port_name;
-  return component->port(name);
+  if (const auto* port = component->port(name)) return port;
+  if (!component->problem.empty()) return Error{"component " + component->path + " " + component->problem};
+  std::vector<std::string> names;
+  for (const auto& port : component->ports) names.push_back(port.name);
+  return Error{component->path + " has no port " + base::in_quotes(name) +
+               (names.empty() ? "; it has none at all" : "; it has " + base::join(names, ", "))};
 }
 
 }  // namespace editor

@@ -1,6 +1,7 @@
 // A saved system beside the running one: which running component and port each entry of the file means. One thread at a time.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,13 +31,20 @@ class Matched {
   static Result<Matched> read(const Session& session, const SavedSystem& system, Detail detail);
 
   const ComponentView* find(const std::string& uri, const std::string& instance) const;
-  const PortView* port(const SavedTarget& target) const;
+  // Fails with a line that names the component, or the ports that it has instead.
+  Result<const PortView*> port(const SavedTarget& target) const;
   // Required components that are not there or do not answer.
   const std::vector<Error>& missing() const { return missing_; }
+  // The end of a connection is at a component that is not there and that the profile does not require.
+  bool leaves_out(const SavedTarget& target) const;
+  // A line for each component that is not there or does not answer, and that the profile does not require.
+  const std::vector<std::string>& absent() const { return absent_; }
 
  private:
   std::vector<ComponentView> components_;
   std::vector<Error> missing_;
+  std::vector<std::string> absent_;
+  std::set<std::string> optional_;  // instances that the profile does not require
 };
 
 }  // namespace editor

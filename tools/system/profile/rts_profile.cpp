@@ -6,6 +6,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "base/plain_file.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 
@@ -17,8 +18,8 @@ constexpr std::uintmax_t largest_file = 64u << 20;
 base::Result<std::string> content_of(const std::string& file) {
   if (file == "-") return std::string(std::istreambuf_iterator<char>(std::cin), {});
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    return base::Error{"file " + base::in_quotes(file) + ": does not exist or is no file"};
+  if (const auto problem = base::file_problem(file); !problem.empty()) return base::Error{"file " + base::in_quotes(file) + ": " + problem};
+  if (!base::is_plain_file(file)) return base::Error{"file " + base::in_quotes(file) + ": is not a regular file"};
   if (std::filesystem::file_size(file, error) > largest_file)
     return base::Error{"file " + base::in_quotes(file) + ": is larger than 64 MiB"};
   std::ifstream in(file, std::ios::binary);
