@@ -126,7 +126,7 @@ const flows = [
     await choose(page, 'model', 'pioneer2dx');
     await page.locator('.links summary', { hasText: '2 links' }).click();
     await page.locator('.links li', { hasText: 'left_wheel' }).waitFor();
-    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save an image"]').click()]);
     same(saved.suggestedFilename(), 'world.png', 'file');
     check(asked(mock, 'screenshot')[0].args.pose.length === 7, 'the eye');
   }],

@@ -503,8 +503,11 @@ const flows = [
     const shown = () => page.evaluate(() => { const { min, max } = window.studio.bottom.plots.plots[0].plot.scales.x; return [min, max]; });
     await until('all of it', async () => Math.abs((await shown())[1] - 30) < 0.1);
     const over = await until('the plot', () => page.locator('.u-over').boundingBox());
-    await page.mouse.move(over.x + over.width / 2, over.y + 20);
-    await until('the value at the cursor', async () => /data\.vx = (29|30|31)/.test(await page.locator('.plot .legend').textContent()));
+    let moves = 0; // a plot that is made anew meanwhile hears of the next one
+    await until('the value at the cursor', async () => {
+      await page.mouse.move(over.x + over.width / 2, over.y + 20 + (moves++ % 2));
+      return /data\.vx = (29|30|31)/.test(await page.locator('.plot .legend').textContent());
+    });
     await page.mouse.move(over.x + over.width * 0.25, over.y + 20);
     await page.mouse.down();
     await page.mouse.move(over.x + over.width * 0.5, over.y + 25, { steps: 4 });

@@ -460,7 +460,7 @@ const flows = [
     await edges(page, 2);
   }],
   ['a picture of the view is that of the simulator', async ({ page, rig }) => {
-    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    const [saved] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save an image"]').click()]);
     const png = readFileSync(await saved.path());
     const box = await page.evaluate(() => { const { clientWidth, clientHeight } = window.studio.world.element; return [clientWidth, clientHeight]; });
     same([png.toString('latin1', 1, 4), png.readUInt32BE(16), png.readUInt32BE(20)], ['PNG', ...box], 'picture');
@@ -473,7 +473,7 @@ const flows = [
     // From above, too, wherever its middle is.
     await rig.simctl('pause');
     await page.evaluate(() => { const { world } = window.studio; world.top(); world.eye.target.set(2, 1, 0); world.eye.span = 5; world.redraw(); });
-    const [from_above] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save a picture"]').click()]);
+    const [from_above] = await Promise.all([page.waitForEvent('download'), page.locator('button[aria-label^="Save an image"]').click()]);
     const told = await until('its command', async () => { const text = await page.locator('footer .command').textContent(); return text.includes('--top') && text; });
     await rig.call('simctl', ...[...told.matchAll(/'([^']*)'|(\S+)/g)].map(([, quoted, bare]) => quoted ?? bare).slice(1));
     check(readFileSync(join(rig.work, 'world.png')).equals(readFileSync(await from_above.path())), `not the same picture: ${told}`);

@@ -4,7 +4,7 @@
 import { angle_unit, shown_value } from './angles';
 import { button, h, put } from './dom';
 import { open_dialog } from './dialog';
-import { iface_type } from './inspector';
+import { iface_type } from './values';
 import { recording, type Playback } from './playback';
 import { act, changed, component, on, store, wire } from './store';
 import { short_path, signal_name } from './tree';

@@ -1,7 +1,8 @@
 // Two ports, the properties that are valid for this pair, and the command that would do the same.
 import { h, put } from './dom';
 import { open_dialog } from './dialog';
-import { fits, short_type } from './diagram';
+import { fits } from './diagram';
+import { short_type } from './diagram_parts';
 import { act, component_of_port, name_of_port, port_of, store, wire } from './store';
 
 interface Option { key: string; values?: string[]; default?: string; meaning?: string }

@@ -2,9 +2,10 @@
 import { button, h, once_a_frame, put, s, unless_pressed, with_code } from './dom';
 import { connect_dialog } from './connect_dialog';
 import { arrange, Place } from './diagram_layout';
+import { curve, rate_text, short_type, type_text } from './diagram_parts';
 import { component_menu, port_menu, wire_menu } from './menus';
 import { keep, settings } from './settings';
-import { hertz, state_class, state_shape, state_words } from './states';
+import { state_class, state_shape, state_words } from './states';
 import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
 } from './store';
@@ -468,34 +469,4 @@ export function fits(a: string, b: string): boolean {
   if (!first || !second || a === b) return false;
   if (first.kind === 'service' || second.kind === 'service') return first.kind === second.kind;
   return first.kind !== second.kind && first.data_type === second.data_type;
-}
-
-export const short_type = (type: string): string => type.replace(/^IDL:/, '').replace(/:\d+(\.\d+)?$/, '');
-
-function rate_text(one: Component): string {
-  const context = one.contexts[0];
-  if (!context) return '';
-  const more = one.contexts.length > 1 ? ` +${one.contexts.length - 1}` : '';
-  return `${hertz(context.rate)}${context.running ? '' : ' stopped'}${more}`;
-}
-
-// With the members of a composite component.
-function type_text(one: Component): string {
-  const members = one.composite ? one.members ?? [] : [];
-  const shown = members.slice(0, 3).join(', ') + (members.length > 3 ? ` and ${members.length - 3} more` : '');
-  return shown ? `${one.type} of ${shown}` : one.type;
-}
-
-function curve(from: { x: number; y: number; kind: string }, to: { x: number; y: number; kind: string }): string {
-  if (from.kind === 'service' || to.kind === 'service') {
-    const low = Math.max(from.y, to.y) + 26;
-    return `M${from.x} ${from.y}C${from.x} ${low} ${to.x} ${low} ${to.x} ${to.y}`;
-  }
-  const dx = to.x - from.x;
-  if (dx > 20) {
-    const reach = Math.min(90, Math.max(24, dx * 0.45));
-    return `M${from.x} ${from.y}C${from.x + reach} ${from.y} ${to.x - reach} ${to.y} ${to.x} ${to.y}`;
-  }
-  const low = Math.max(from.y, to.y) + 70;
-  return `M${from.x} ${from.y}c40 0 40 ${low - from.y} 0 ${low - from.y}H${to.x}c-40 0-40 ${to.y - low} 0 ${to.y - low}`;
 }

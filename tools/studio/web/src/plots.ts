@@ -4,7 +4,7 @@ import uPlot from 'uplot';
 import { button, h, put } from './dom';
 import { download } from './download';
 import { angle_unit, shown_value } from './angles';
-import { flatten, iface_type } from './inspector';
+import { flatten, iface_type } from './values';
 import { recording } from './playback';
 import { keep, settings } from './settings';
 import { on, store, wire } from './store';
