@@ -214,6 +214,15 @@ class LabelDrawer {
   std::vector<OverlayVertex>& out_;
 };
 
+void add_notice(const Overlay& overlay, const View& view, double pixel_scale, LabelDrawer& drawer) {
+  if (overlay.notice.empty()) return;
+  const double cells = 5.6 * static_cast<double>(overlay.notice.size());
+  const double unit = std::min((overlay.is_notice_central ? 18 : 12) * pixel_scale / 6, 0.94 * view.width / cells);
+  const Eigen::Vector2d base(0.5 * (view.width - cells * unit), overlay.is_notice_central ? 0.5 * view.height : view.height - 5 * unit);
+  drawer.text(overlay.notice, base, unit, 2.6 * unit, {0.05F, 0.05F, 0.08F, 1}, 1);
+  drawer.text(overlay.notice, base, unit, 0.95 * unit, {1, 0.85F, 0.3F, 1}, 1);
+}
+
 }  // namespace
 
 std::vector<std::vector<Eigen::Vector2d>> glyph_strokes(char character) {
@@ -327,6 +336,7 @@ std::vector<OverlayVertex> label_triangles(const Overlay& overlay, const View& v
     drawer.line(place.line_from, place.line_to, 0.6 * unit, label.color, 1);
     drawer.text(label.text, base, unit, 0.95 * unit, label.color, 1);
   }
+  add_notice(overlay, view, pixel_scale, drawer);
   return out;
 }
 

@@ -34,6 +34,8 @@ struct Overlay {
   std::vector<Fan> fans;
   std::vector<Trail> trails;
   std::vector<Label> labels;
+  std::string notice;              // one line at the lower edge, as large as fits
+  bool is_notice_central = false;  // in the middle instead, where nothing else is to be seen
 };
 
 // The colour of the i-th scanner or robot of a picture: blue, green, orange, ...

@@ -187,6 +187,16 @@ base::Result<PicturePlan> plan_picture(Simulation& simulation, const shm::Screen
   view->grid = simulation.world().scene.grid && request.view != shm::ScreenshotRequest::View::camera;
   plan.view = *view;
   if (request.with_scans) plan.overlay = overlay_of(simulation, plan.world);
+  // A picture that lacks something says so: else it is taken for the whole world, or is a blank that tells nothing.
+  const std::size_t missing = simulation.world().missing_parts;
+  if (missing > 0 && request.view != shm::ScreenshotRequest::View::camera) {
+    if (!plan.overlay) plan.overlay.emplace();
+    const bool is_blank = plan.world.scene->bounds(*plan.world.poses).isEmpty();
+    plan.overlay->notice =
+        fmt::format("{}{} part{} of this world {} missing; the simulator's log names {}", is_blank ? "nothing to show: " : "", missing,
+                    missing == 1 ? "" : "s", missing == 1 ? "is" : "are", missing == 1 ? "it" : "them");
+    plan.overlay->is_notice_central = is_blank;
+  }
   return plan;
 }
 

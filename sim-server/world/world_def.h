@@ -344,6 +344,7 @@ struct WorldDef {
   std::vector<PluginDef> plugins;
   std::optional<Eigen::Isometry3d> gui_camera;  // where the author's window looked from
   ModelPath model_path;                         // for what mesh files refer to
+  std::size_t missing_parts = 0;                // models and files that are not found or left out, each with a line of the loader
 
   const ModelDef* model(std::string_view model_name) const;  // null when absent
 };

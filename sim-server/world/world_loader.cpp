@@ -396,6 +396,8 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   resolve_models();
   WorldDef world;
   build_instances(world);
+  result.world.missing_parts = static_cast<std::size_t>(std::count_if(
+      result.findings.begin(), result.findings.end(), [](const Finding& f) { return f.severity == Finding::Severity::dropped; }));
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
   result.found = files_.found();

@@ -262,6 +262,50 @@ TEST(Render, a_missing_texture_and_a_missing_mesh_are_named_and_shown_in_magenta
   EXPECT_GT(magenta, 100);
 }
 
+TEST(Render, a_missing_mesh_is_drawn_as_what_bodies_meet_in_grey) {
+  WorldDef world = test::dark_world();
+  world.scene.ambient = {1, 1, 1, 1};
+  MeshShape mesh;
+  mesh.path = "/nowhere/shelf.dae";
+  ModelDef model = one_visual_model("shelf", mesh, at(0, 0, 0), plain_material({0, 1, 0, 1}));
+  CollisionDef collision;
+  collision.geometry = BoxShape{{2, 2, 0.2}};
+  model.links[0].collisions.push_back(collision);
+  world.models.push_back(model);
+  Studio studio(world);
+  const Image image = studio.picture(View::pinhole(looking_down(), 0.2, 64, 64));
+  const auto p = pixel(image, 5, 5);
+  EXPECT_GT(p[0], 100);
+  EXPECT_LT(std::abs(p[0] - p[1]) + std::abs(p[1] - p[2]), 20);
+  EXPECT_EQ(pixel(image, 32, 32), p);
+}
+
+TEST(Render, a_notice_is_written_into_the_picture) {
+  Studio studio(test::dark_world());
+  Overlay overlay;
+  overlay.notice = "nothing to show: 7 parts of this world are missing";
+  overlay.is_notice_central = true;
+  const auto lit_rows = [&] {
+    const Image image = studio.picture(View::pinhole(looking_down(), 1.0, 300, 200), &overlay);
+    std::vector<int> rows;
+    for (int y = 0; y < 200; ++y) {
+      int lit = 0;
+      for (int x = 0; x < 300; ++x) lit += pixel(image, x, y)[0] > 150 ? 1 : 0;
+      if (lit > 10) rows.push_back(y);
+      EXPECT_LT(pixel(image, 2, y)[0] + pixel(image, 297, y)[0], 150) << "the line is longer than the picture";
+    }
+    return rows;
+  };
+  auto rows = lit_rows();
+  ASSERT_FALSE(rows.empty());
+  EXPECT_GT(rows.front(), 80);
+  EXPECT_LT(rows.back(), 120);
+  overlay.is_notice_central = false;
+  rows = lit_rows();
+  ASSERT_FALSE(rows.empty());
+  EXPECT_GT(rows.front(), 160);
+}
+
 TEST(Render, a_texture_keeps_its_colours) {
   const auto file = std::filesystem::temp_directory_path() / ("render_test_texture_" + std::to_string(::getpid()) + ".png");
   Image texture{16, 16, {}};
