@@ -175,7 +175,7 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
   if (kept) return kept;
   auto file = read_mesh_file(shape, model_path_);
   if (!file) {
-    complaints_.push_back(file.error().message + "; a magenta box stands in");
+    complaints_.push_back(file.error().message + "; a stand-in is drawn");
     return kept = missing_mesh_;
   }
   keep_images(std::move(file->images), file->files);
@@ -192,7 +192,7 @@ std::shared_ptr<const SkinFile> Assets::skin(const std::string& path, double sca
   if (!is_new) return kept->second;
   auto file = read_skin_file(path, scale, model_path_);
   if (!file) {
-    complaints_.push_back(file.error().message + "; a magenta box stands in");
+    complaints_.push_back(file.error().message + "; a stand-in is drawn");
     return nullptr;
   }
   keep_images(std::move(file->images), file->files);
@@ -217,7 +217,7 @@ std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
   if (kept) return kept;
   auto grid = triangles_.heights(shape);
   if (!grid) {
-    complaints_.push_back(grid.error().message + "; a magenta box stands in");
+    complaints_.push_back(grid.error().message + "; a stand-in is drawn");
     return kept = missing_mesh_;
   }
   const HeightGrid& g = **grid;
@@ -227,7 +227,7 @@ std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
 std::shared_ptr<const Mesh> Assets::load(const PolylineShape& shape) {
   auto triangles = triangles_.triangles(shape);
   if (!triangles) {
-    complaints_.push_back(triangles.error().message + "; a magenta box stands in");
+    complaints_.push_back(triangles.error().message + "; a stand-in is drawn");
     return missing_mesh_;
   }
   return std::make_shared<Mesh>(make_flat((*triangles)->vertices, (*triangles)->triangles));

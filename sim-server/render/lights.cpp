@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -47,9 +48,33 @@ Lights collect_lights(const Scene& scene, std::span<const Eigen::Isometry3d> pos
     out.suns.insert(is_first_shadow ? out.suns.begin() : out.suns.end(), sun);
   }
   std::stable_sort(out.lamps.begin(), out.lamps.end(), [](const Lamp& a, const Lamp& b) { return a.strength > b.strength; });
-  if (out.lamps.size() > most_lamps) out.lamps.resize(most_lamps);
+  if (out.lamps.size() > most_lamps) {
+    out.all = out.lamps;
+    out.lamps.resize(most_lamps);
+  }
   std::stable_partition(out.lamps.begin(), out.lamps.end(), [](const Lamp& lamp) { return !lamp.is_spot; });
   for (const auto& lamp : out.lamps) ++(lamp.is_spot ? out.spots : out.points);
+  return out;
+}
+
+std::vector<Lamp> lamps_at(const Lights& lights, const Eigen::Vector3f& centre, float radius) {
+  std::vector<std::pair<float, const Lamp*>> order;
+  for (const Lamp& lamp : lights.all) {
+    const float d = std::max(0.0F, (lamp.position - centre).norm() - radius);
+    const float reached = d < lamp.reach.w() ? 1 / std::max(lamp.reach.x() + d * (lamp.reach.y() + d * lamp.reach.z()), 1e-3F) : 0;
+    order.emplace_back(lamp.color.sum() * reached, &lamp);
+  }
+  // Of equally strong ones those that are strongest at the camera.
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Lamp> out;
+  for (const bool is_spot : {false, true}) {
+    int left = is_spot ? lights.spots : lights.points;
+    for (const auto& [strength, lamp] : order) {
+      if (lamp->is_spot != is_spot || left == 0) continue;
+      out.push_back(*lamp);
+      --left;
+    }
+  }
   return out;
 }
 

@@ -26,11 +26,15 @@ struct Lights {
   Eigen::Vector3d to_shadow_light{0, 0, 1};
   std::vector<Lamp> lamps;  // points, then spots; at most most_lamps, the strongest at the camera's place
   int points = 0, spots = 0;
+  std::vector<Lamp> all;  // lamps of the scene if there are more than most_lamps, else empty
 };
 
 inline constexpr int most_lamps = 8;
 
 Lights collect_lights(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view);
+
+// The `points` points and `spots` spots of all that are strongest at the surface of a ball (relative to the camera) [m].
+std::vector<Lamp> lamps_at(const Lights& lights, const Eigen::Vector3f& centre, float radius);
 
 struct SkyColors {
   Eigen::Vector3f zenith, horizon, ground, glow;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/lights.h"
 
@@ -25,7 +26,7 @@ Material to_material(const MaterialDef& in, double transparency, Assets& assets)
     const Eigen::Vector3f reflected =
         Eigen::Vector3f::Constant(0.04F) + in.metalness * (Eigen::Vector3f(out.albedo.head<3>()) - Eigen::Vector3f::Constant(0.04F));
     out.specular = reflected * std::min(peak, 20.0F);
-    out.albedo.head<3>() *= 1.0F - 0.8F * in.metalness;
+    out.albedo.head<3>() *= 1.0F - 0.4F * in.metalness;  // what else is around is not mirrored, so all of it would be too dark
   }
   if (out.shininess <= 0) out.specular.setZero();
   if (!in.texture.empty()) out.texture = assets.texture(in.texture, in.has_alpha_texture);
@@ -79,7 +80,14 @@ class Builder {
       }
       scene_.links.push_back({model.name + "::" + link.name, model.is_static, model.pose * link.pose});
       if (content_ == Scene::Content::visuals) {
-        for (const auto& visual : link.visuals) add(visual, index);
+        bool has_stand_in = false;
+        for (const auto& visual : link.visuals) {
+          if (assets_.mesh(visual.geometry)->is_stand_in) {
+            add_stand_in(link, visual, index, has_stand_in);
+          } else {
+            add(visual, index);
+          }
+        }
       } else {
         for (const auto& collision : link.collisions) add(as_visual(collision), index);
       }
@@ -132,11 +140,38 @@ class Builder {
       if (scene_.drawables[i].is_ground && content_ == Scene::Content::collisions)
         scene_.drawables[i].material.albedo.head<3>() = linear({0.6F, 0.6F, 0.58F, 1});
     }
+    rank_grounds(boxes);
   }
 
   Scene& scene() { return scene_; }
 
  private:
+  void rank_grounds(const std::vector<Eigen::AlignedBox3d>& boxes) {
+    constexpr int most_ranks = 8;
+    std::vector<std::size_t> grounds;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (scene_.drawables[i].is_ground) grounds.push_back(i);
+    }
+    const auto area = [&](std::size_t i) { return boxes[i].sizes().x() * boxes[i].sizes().y(); };
+    std::stable_sort(grounds.begin(), grounds.end(), [&](std::size_t a, std::size_t b) { return area(a) < area(b); });
+    for (std::size_t i = 0; i < grounds.size(); ++i)
+      scene_.drawables[grounds[i]].ground_rank = std::min(static_cast<int>(i) + 1, most_ranks);
+  }
+
+  // Of a link with meshes that cannot be read the shapes that bodies meet are drawn instead, in grey; a magenta box if there are none.
+  void add_stand_in(const LinkDef& link, const VisualDef& visual, std::uint32_t index, bool& has_one) {
+    const auto is_shape = [&](const CollisionDef& collision) { return !assets_.mesh(collision.geometry)->is_stand_in; };
+    if (std::none_of(link.collisions.begin(), link.collisions.end(), is_shape)) return add(visual, index);
+    if (std::exchange(has_one, true)) return;
+    for (const auto& collision : link.collisions) {
+      if (!is_shape(collision)) continue;
+      VisualDef shape = as_visual(collision);
+      shape.material->diffuse = {0.6F, 0.6F, 0.62F, 1};
+      shape.visibility_flags = visual.visibility_flags;
+      add(shape, index);
+    }
+  }
+
   void add_skin(const ActorDef& actor, SceneActor& seen) {
     const Skin& skin = seen.skin->skin;
     for (const auto& animation : actor.animations) seen.animations.push_back(assets_.animation(animation.path, animation.scale, seen.skin));

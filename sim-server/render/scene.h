@@ -38,6 +38,7 @@ struct Drawable {
   double radius = 0;
   bool casts_shadow = true;
   bool is_ground = false;    // a plane or a large level sheet below everything: never in the shadow pass
+  int ground_rank = 0;       // of a ground: 1 for the smallest; where two are in one plane, the lower rank is seen. 0: no ground
   bool has_grid = false;     // a plane: shows metre lines when a view asks for them
   bool is_mirrored = false;  // in_link turns the outside in
   std::uint32_t visibility_flags = 0xffffffff;

@@ -39,6 +39,8 @@ Features features_of(const Drawable& drawable, const Picture& picture) {
   return f;
 }
 
+void append_to(std::vector<float>& to, const auto& v) { to.insert(to.end(), v.data(), v.data() + v.size()); }
+
 }  // namespace
 
 void SurfacePass::begin(const Picture& picture) {
@@ -48,33 +50,32 @@ void SurfacePass::begin(const Picture& picture) {
   told_material_ = nullptr;
 }
 
-void SurfacePass::tell_lights(const SurfaceProgram& program) {
-  const Lights& lights = picture_->lights;
-  std::vector<float> a, b, c, d, e, f;
-  const auto append = [](std::vector<float>& to, const auto& v) { to.insert(to.end(), v.data(), v.data() + v.size()); };
-  for (const auto& sun : lights.suns) append(a, sun.to_light), append(b, sun.color), append(c, sun.specular);
-  const auto suns = static_cast<GLsizei>(lights.suns.size());
-  if (suns > 0) {
-    gl_.Uniform3fv(program.sun_direction, suns, a.data());
-    gl_.Uniform3fv(program.sun_color, suns, b.data());
-    gl_.Uniform3fv(program.sun_specular, suns, c.data());
+void SurfacePass::tell_suns(const SurfaceProgram& program) {
+  const auto& suns = picture_->lights.suns;
+  if (suns.empty()) return;
+  std::vector<float> to_light, color, specular;
+  for (const auto& sun : suns) append_to(to_light, sun.to_light), append_to(color, sun.color), append_to(specular, sun.specular);
+  const auto count = static_cast<GLsizei>(suns.size());
+  gl_.Uniform3fv(program.sun_direction, count, to_light.data());
+  gl_.Uniform3fv(program.sun_color, count, color.data());
+  gl_.Uniform3fv(program.sun_specular, count, specular.data());
+}
+
+void SurfacePass::tell_lamps(const SurfaceProgram& program, const std::vector<Lamp>& lamps) {
+  if (lamps.empty()) return;
+  std::vector<float> position, color, specular, reach, axis, cone;
+  for (const auto& lamp : lamps) {
+    append_to(position, lamp.position), append_to(color, lamp.color), append_to(specular, lamp.specular), append_to(reach, lamp.reach);
+    if (lamp.is_spot) append_to(axis, lamp.axis), append_to(cone, lamp.cone);
   }
-  if (lights.lamps.empty()) return;
-  for (auto* list : {&a, &b, &c}) list->clear();
-  std::vector<float> reach;
-  for (const auto& lamp : lights.lamps) {
-    append(a, lamp.position), append(b, lamp.color), append(c, lamp.specular), append(reach, lamp.reach);
-    if (lamp.is_spot) append(d, lamp.axis), append(e, lamp.cone);
-  }
-  const auto lamps = static_cast<GLsizei>(lights.lamps.size());
-  gl_.Uniform3fv(program.lamp_position, lamps, a.data());
-  gl_.Uniform3fv(program.lamp_color, lamps, b.data());
-  gl_.Uniform3fv(program.lamp_specular, lamps, c.data());
-  gl_.Uniform4fv(program.lamp_reach, lamps, reach.data());
-  if (lights.spots > 0) {
-    gl_.Uniform3fv(program.spot_axis, lights.spots, d.data());
-    gl_.Uniform3fv(program.spot_cone, lights.spots, e.data());
-  }
+  const auto count = static_cast<GLsizei>(lamps.size());
+  gl_.Uniform3fv(program.lamp_position, count, position.data());
+  gl_.Uniform3fv(program.lamp_color, count, color.data());
+  gl_.Uniform3fv(program.lamp_specular, count, specular.data());
+  gl_.Uniform4fv(program.lamp_reach, count, reach.data());
+  if (axis.empty()) return;
+  gl_.Uniform3fv(program.spot_axis, picture_->lights.spots, axis.data());
+  gl_.Uniform3fv(program.spot_cone, picture_->lights.spots, cone.data());
 }
 
 void SurfacePass::tell_view(const SurfaceProgram& program) {
@@ -92,7 +93,8 @@ void SurfacePass::tell_view(const SurfaceProgram& program) {
     gl_.Uniform4f(program.fog_color, color.x(), color.y(), color.z(), static_cast<float>(fog.density));
     gl_.Uniform2f(program.fog_range, static_cast<float>(fog.start), static_cast<float>(1 / std::max(fog.end - fog.start, 1e-6)));
   }
-  tell_lights(program);
+  tell_suns(program);
+  tell_lamps(program, lights.lamps);
   if (!lights.has_shadow) return;
   Eigen::Matrix4d from_eye = Eigen::Matrix4d::Identity();
   from_eye.topRightCorner<3, 1>() = view.pose.translation();
@@ -140,6 +142,10 @@ base::Result<void> SurfacePass::draw(const Item& item) {
     current_->frame = frame_;
   }
   tell_material(*current_, drawable.material);
+  if (const Lights& lights = picture_->lights; !lights.all.empty() && current_->lamp_position >= 0) {
+    const Eigen::Vector4d centre = item.model * drawable.bounds().center().homogeneous();
+    tell_lamps(*current_, lamps_at(lights, centre.head<3>().cast<float>(), static_cast<float>(drawable.radius)));
+  }
   const Eigen::Matrix4f model = item.model.cast<float>();
   gl_.UniformMatrix4fv(current_->model, 1, GL_FALSE, model.data());
   if (current_->normal_matrix >= 0) {
@@ -159,10 +165,18 @@ base::Result<void> SurfacePass::draw(const Item& item) {
   }
   // The picture is upside down for GL, which turns every winding round.
   gl_.FrontFace(drawable.is_mirrored ? GL_CCW : GL_CW);
+  // A floor that lies exactly in a larger ground is in front of it everywhere. Depths that are measured stay exact.
+  const bool is_pushed = drawable.ground_rank > 0 && picture_->view.wants_color && !picture_->view.wants_exact_depth;
+  if (is_pushed) {
+    constexpr float units = 16;  // of the depth buffer's resolution, for each rank
+    gl_.Enable(GL_POLYGON_OFFSET_FILL);
+    gl_.PolygonOffset(0, units * static_cast<float>(drawable.ground_rank));
+  }
   const MeshPart& part = drawable.mesh->parts[drawable.part];
   gl_.BindVertexArray(store_.mesh(drawable.mesh).vertex_array.name());
   gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.index_count), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(std::size_t{part.first_index} * sizeof(std::uint32_t)));
+  if (is_pushed) gl_.Disable(GL_POLYGON_OFFSET_FILL);
   return {};
 }
 

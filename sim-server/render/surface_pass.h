@@ -37,7 +37,8 @@ class SurfacePass {
 
  private:
   void tell_view(const SurfaceProgram& program);
-  void tell_lights(const SurfaceProgram& program);
+  void tell_suns(const SurfaceProgram& program);
+  void tell_lamps(const SurfaceProgram& program, const std::vector<Lamp>& lamps);
   void tell_material(const SurfaceProgram& program, const Material& material);
 
   const gl::Functions& gl_;

@@ -39,6 +39,53 @@ TEST(RenderLight, lit_flat_surfaces_have_the_colours_of_the_formula) {
   }
 }
 
+// Eight lamps over the camera were the only ones, so all that was far from it was nearly black.
+TEST(RenderLight, each_surface_is_lit_by_the_lamps_that_are_strongest_there) {
+  WorldDef world = test::dark_world();
+  LightDef lamp;
+  lamp.kind = LightDef::Kind::point;
+  lamp.diffuse = {1, 1, 1, 1};
+  lamp.range = 8;
+  lamp.constant_attenuation = 1;
+  lamp.linear_attenuation = lamp.quadratic_attenuation = 0;
+  for (int i = 0; i < 12; ++i) {
+    lamp.pose = at(0, 0.1 * i, 20);
+    lamp.range = 15;
+    world.lights.push_back(lamp);
+  }
+  lamp.pose = at(0, 0, 1.1);
+  lamp.range = 2;
+  lamp.diffuse = {0.5F, 0.5F, 0.5F, 1};
+  world.lights.push_back(lamp);
+  world.models.push_back(one_visual_model("plate", BoxShape{{2, 2, 0.2}}, at(0, 0, 0), plain_material({1, 1, 1, 1})));
+  Studio studio(world);
+  View view = View::pinhole(looking_down(), 0.1, 64, 64);
+  view.pose.translation().z() = 18;
+  EXPECT_TRUE(is_near(pixel(studio.picture(view), 32, 32), {0.5, 0.5, 0.5}, 1.5));
+}
+
+// Where two floors are in one plane, each pixel was that of the one or the other.
+TEST(RenderLight, a_floor_in_a_larger_ground_is_seen_everywhere) {
+  WorldDef world = test::dark_world();
+  world.scene.ambient = {0.8F, 0.8F, 0.8F, 1};
+  world.models.push_back(one_visual_model("ground", PlaneShape{{0, 0, 1}, {200, 200}}, at(0, 0, 0), plain_material({0, 1, 0, 1})));
+  world.models.push_back(one_visual_model("hall", BoxShape{{30, 30, 0.02}}, at(3, 2, -0.01, 0.3), plain_material({0, 0, 1, 1})));
+  world.models.push_back(one_visual_model("room", BoxShape{{4, 4, 0.1}}, at(0, 0.7, -0.05, 0.7), plain_material({1, 0, 0, 1})));
+  Studio studio(world);
+  int red = 0, others = 0;
+  for (double tilt : {0.15, 0.3, 0.6, 0.9}) {
+    View view = View::pinhole(at(-6, 0.4, 6 * std::tan(tilt), 0.05, tilt), 0.25, 160, 120);
+    const Image image = studio.picture(view);
+    for (int y = 50; y < 70; ++y) {
+      for (int x = 60; x < 100; ++x) {
+        const auto p = pixel(image, x, y);
+        (p[0] > 100 && p[1] < 20 && p[2] < 20 ? red : others) += 1;
+      }
+    }
+  }
+  EXPECT_EQ(others, 0) << red;
+}
+
 TEST(RenderLight, point_and_spot_lights_follow_their_reach) {
   WorldDef world = test::dark_world();
   LightDef lamp;
