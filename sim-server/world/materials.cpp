@@ -291,19 +291,39 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
   return materials;
 }
 
-std::string color_of_media(std::string_view uri) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> colors{{
-      {"grass", "#47692a"},       {"dirt", "#6b5237"},   {"fungus", "#55602e"},   {"rock", "#73706a"},    {"brick", "#8c4d3d"},
-      {"wood", "#8c6138"},        {"pallet", "#997548"}, {"ceiling", "#d9d6cc"},  {"road", "#4d4d4d"},    {"asphalt", "#4d4d4d"},
-      {"tarmac", "#4d4d4d"},      {"runway", "#545454"}, {"motorway", "#4d4d4d"}, {"primary", "#575757"}, {"secondary", "#5c5c5c"},
-      {"residential", "#616161"}, {"paint", "#dbd6c2"},  {"cloud", "#99b3d9"},    {"steel", "#8c8c8c"},   {"rust", "#6b4d38"},
-      {"sand", "#c2b280"},
+namespace {
+
+// "#rrggbb" of what a name speaks of; empty if it speaks of nothing known.
+std::string_view color_like(std::string_view any_case_name) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 29> colors{{
+      {"grass", "#47692a"},       {"dirt", "#6b5237"},    {"fungus", "#55602e"},   {"rock", "#73706a"},     {"brick", "#8c4d3d"},
+      {"wood", "#8c6138"},        {"pallet", "#997548"},  {"ceiling", "#d9d6cc"},  {"road", "#4d4d4d"},     {"asphalt", "#4d4d4d"},
+      {"tarmac", "#4d4d4d"},      {"runway", "#545454"},  {"motorway", "#4d4d4d"}, {"primary", "#575757"},  {"secondary", "#5c5c5c"},
+      {"residential", "#616161"}, {"paint", "#dbd6c2"},   {"cloud", "#99b3d9"},    {"steel", "#8c8c8c"},    {"rust", "#6b4d38"},
+      {"sand", "#c2b280"},        {"granite", "#7d7873"}, {"marble", "#d6d3cc"},   {"concrete", "#8f8d88"}, {"carpet", "#7a6a5c"},
+      {"tile", "#c9c5ba"},        {"wall", "#dbd6c2"},    {"metal", "#8c8c8c"},    {"glass", "#b5c7cf"},
   }};
-  const std::string name = base::to_lower(uri);
-  if (name.find("media/materials/textures/") == std::string::npos) return {};
+  const std::string name = base::to_lower(any_case_name);
   const auto like =
       std::find_if(colors.begin(), colors.end(), [&](const auto& entry) { return name.find(entry.first) != std::string::npos; });
-  return std::string(color_file).append(like == colors.end() ? "#9a9a9a" : like->second);
+  return like == colors.end() ? std::string_view() : like->second;
+}
+
+// A plain colour for a material whose script is not here ("Kitchen/WoodFloor").
+std::optional<MaterialDef> material_like(const std::string& name) {
+  const std::string_view color = color_like(name);
+  if (color.empty()) return std::nullopt;
+  const auto part = [&](std::size_t at) { return static_cast<float>(std::stoul(std::string(color.substr(at, 2)), nullptr, 16)) / 255.0F; };
+  return plain({part(1), part(3), part(5), 1});
+}
+
+}  // namespace
+
+std::string color_of_media(std::string_view uri) {
+  const std::string name = base::to_lower(uri);
+  if (name.find("media/materials/textures/") == std::string::npos) return {};
+  const std::string_view like = color_like(name);
+  return std::string(color_file).append(like.empty() ? "#9a9a9a" : like);
 }
 
 Materials::Materials(const ModelPath& model_path, Complaints& complaints) : model_path_(model_path), complaints_(complaints) {}
@@ -380,7 +400,9 @@ MaterialDef Materials::read(pugi::xml_node node) {
       material = *found;
       has_script = true;
     } else {
-      complaints_.warn(node, "material " + base::in_quotes(name) + " is not known; grey is taken");
+      const std::optional<MaterialDef> like = material_like(name);
+      complaints_.warn(node, "material " + base::in_quotes(name) + " is not known; " + (like ? "a plain colour" : "grey") + " is taken");
+      material = like.value_or(material);
     }
   }
   if (!has_script && (node.child("ambient") || node.child("diffuse"))) {

@@ -398,11 +398,13 @@ TEST(Materials, of_visuals_come_from_scripts_built_in_colours_and_pbr) {
       visual("no_name", "<script><uri>file://media/materials/scripts/gazebo.material</uri></script>") +
       visual("plain", "<diffuse>0.2 0.3 0.4 1</diffuse>") +
       visual("pbr", "<pbr><metal><albedo_map>albedo.png</albedo_map><roughness>0.2</roughness></metal></pbr>") +
-      visual("unknown", "<script><name>Nothing/Known</name></script>")));
+      visual("unknown", "<script><name>Nothing/Known</name></script>") +
+      visual("speaking", "<script><name>Kitchen/WoodFloor</name></script>")));
   ASSERT_EQ(result.world.models.size(), 1U);
   std::map<std::string, MaterialDef> found;
   for (const VisualDef& v : result.world.models[0].links[0].visuals) found[v.name] = v.material.value_or(MaterialDef{});
-  ASSERT_EQ(found.size(), 7U) << all_findings(result);
+  ASSERT_EQ(found.size(), 8U) << all_findings(result);
+  EXPECT_EQ(found["speaking"].diffuse, (Color{0x8c / 255.0F, 0x61 / 255.0F, 0x38 / 255.0F, 1}));
   EXPECT_THAT(found["script"].texture, testing::EndsWith("wall/materials/textures/wall.png"));
   EXPECT_EQ(found["built_in"].diffuse, (Color{1, 0, 0, 1}));
   EXPECT_EQ(found["no_uri"].diffuse, (Color{0, 1, 0, 1}));
@@ -411,8 +413,9 @@ TEST(Materials, of_visuals_come_from_scripts_built_in_colours_and_pbr) {
   EXPECT_TRUE(found["pbr"].has_pbr);
   EXPECT_THAT(found["pbr"].texture, testing::EndsWith("albedo.png"));
   EXPECT_FLOAT_EQ(found["pbr"].roughness, 0.2F);
-  ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
-  EXPECT_THAT(result.findings[0].text(), HasSubstr("Nothing/Known"));
+  ASSERT_EQ(result.findings.size(), 2U) << all_findings(result);
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("material \"Nothing/Known\" is not known; grey is taken"));
+  EXPECT_THAT(result.findings[1].text(), HasSubstr("material \"Kitchen/WoodFloor\" is not known; a plain colour is taken"));
 }
 
 TEST(Materials, shininess_of_a_material_is_read_though_the_library_is_older) {
