@@ -4,6 +4,7 @@
 #include <turbojpeg.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 
 #include "asset-reader/dds.h"
@@ -58,6 +59,39 @@ base::Result<Image> decode_jpeg(std::span<const std::uint8_t> bytes) {
   return image;
 }
 
+bool is_pgm(std::span<const std::uint8_t> bytes) { return bytes.size() > 8 && bytes[0] == 'P' && bytes[1] == '5'; }
+
+// Grey, as maps of robots are written: "P5", width, height, largest value, each after blanks and comments; one blank; the pixels.
+base::Result<Image> decode_pgm(std::span<const std::uint8_t> bytes) {
+  std::size_t at = 2;
+  const auto number = [&] {
+    while (at < bytes.size() && (std::isspace(bytes[at]) != 0 || bytes[at] == '#')) {
+      if (bytes[at] != '#') {
+        ++at;
+        continue;
+      }
+      while (at < bytes.size() && bytes[at] != '\n') ++at;
+    }
+    int value = -1;
+    for (; at < bytes.size() && std::isdigit(bytes[at]) != 0 && value < 1'000'000; ++at) value = 10 * std::max(value, 0) + bytes[at] - '0';
+    return value;
+  };
+  const int width = number(), height = number(), most = number();
+  if (width < 1 || height < 1 || most < 1 || most > 65535) return bad("a damaged PGM header");
+  if (width > largest_image || height > largest_image) return bad("larger than 16384 pixels a side");
+  const std::size_t each = most > 255 ? 2 : 1, count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  ++at;
+  if (at > bytes.size() || bytes.size() - at < count * each) return bad("a PGM image that is cut off");
+  Image image{width, height, {}};
+  image.rgba.reserve(image.size_bytes());
+  for (std::size_t i = 0; i < count; ++i, at += each) {
+    const int value = each == 1 ? bytes[at] : bytes[at] * 256 + bytes[at + 1];
+    const auto grey = static_cast<std::uint8_t>(std::min(value, most) * 255 / most);
+    image.rgba.insert(image.rgba.end(), {grey, grey, grey, 255});
+  }
+  return image;
+}
+
 // Of a size as large as the picture, but for what most_heights_a_side leaves out. The corners stay where they are.
 base::Result<HeightLevels> decode_levels(std::span<const std::uint8_t> bytes) {
   PngReader reader;
@@ -91,7 +125,8 @@ base::Result<Image> decode(std::span<const std::uint8_t> bytes) {
   if (is_png(bytes)) return decode_png(bytes);
   if (is_jpeg(bytes)) return decode_jpeg(bytes);
   if (is_dds(bytes)) return decode_dds(bytes);
-  return bad("neither PNG, JPEG nor DDS");
+  if (is_pgm(bytes)) return decode_pgm(bytes);
+  return bad("neither PNG, JPEG, DDS nor PGM");
 }
 
 std::span<const std::uint8_t> as_bytes(const std::string& text) {

@@ -215,7 +215,7 @@ int serve(int argc, char** argv) {
       "Every device is an iface in shared memory. simctl shows and controls them.",
       "sim-server");
   base::add_standard_options(app, "sim-server", RTMSIM_VERSION);
-  app.add_option("WORLD", options.world, "SDFormat world file")->required();
+  app.add_option("WORLD", options.world, "SDFormat world, or a model (SDFormat, URDF) that is opened on a floor")->required();
   app.add_option("-s,--server-id", options.server_id, "simulator ID, by which clients find it (default 0)")
       ->check(base::integer_between(0, 9999))
       ->envname("RTMSIM_SERVER_ID");

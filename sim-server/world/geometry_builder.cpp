@@ -51,6 +51,18 @@ HeightmapShape build_heightmap(pugi::xml_node node) {
   return shape;
 }
 
+// A height map that cannot be read becomes a flat ground: all that stands on it would else fall for ever.
+GeometryDef build_ground(pugi::xml_node geometry, BuildContext& context) {
+  const pugi::xml_node node = geometry.child("heightmap");
+  HeightmapShape shape = build_heightmap(node);
+  const PlaneShape flat{{0, 0, 1}, shape.size.head<2>()};
+  if (shape.path == missing_file) return flat;  // it has had its line
+  const auto grid = context.triangles.heights(shape);
+  if (grid) return shape;
+  context.complaints.drop(node, grid.error().message + "; a flat ground is taken for " + describe_in_context(geometry.parent()));
+  return flat;
+}
+
 PlaneShape build_plane(pugi::xml_node node) {
   PlaneShape shape;
   shape.normal = vector3_at(node, "normal", shape.normal).normalized();
@@ -70,6 +82,13 @@ MeshShape build_mesh(pugi::xml_node node) {
 
 }  // namespace
 
+Eigen::Isometry3d ground_in_shape(pugi::xml_node geometry, const GeometryDef& built) {
+  const pugi::xml_node map = geometry.child("heightmap");
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+  if (map && std::holds_alternative<PlaneShape>(built)) place.translation() = vector3_at(map, "pos", {0, 0, 0});
+  return place;
+}
+
 std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext& context) {
   if (pugi::xml_node node = geometry.child("box")) return BoxShape{vector3_at(node, "size", {1, 1, 1})};
   if (pugi::xml_node node = geometry.child("sphere")) return SphereShape{number_at(node, "radius", 1)};
@@ -84,7 +103,7 @@ std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext&
   }
   if (pugi::xml_node node = geometry.child("plane")) return build_plane(node);
   if (pugi::xml_node node = geometry.child("mesh"); node && !text_at(node, "uri").empty()) return build_mesh(node);
-  if (pugi::xml_node node = geometry.child("heightmap")) return build_heightmap(node);
+  if (geometry.child("heightmap")) return build_ground(geometry, context);
   if (geometry.child("polyline")) return build_polyline(geometry, context);
   const pugi::xml_node owner = geometry.parent();
   if (geometry.child("mesh")) {

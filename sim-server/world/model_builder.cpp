@@ -66,7 +66,7 @@ std::optional<CollisionDef> build_collision(pugi::xml_node node, BuildContext& c
   if (!geometry) return std::nullopt;
   CollisionDef collision;
   collision.name = node.attribute("name").value();
-  collision.pose = pose_at(node, "pose");
+  collision.pose = pose_at(node, "pose") * ground_in_shape(node.child("geometry"), *geometry);
   collision.geometry = std::move(*geometry);
   collision.surface = build_surface(node.child("surface"));
   collision.laser_retro = number_at(node, "laser_retro", 0);
@@ -80,7 +80,7 @@ std::optional<VisualDef> build_visual(pugi::xml_node node, BuildContext& context
   if (!geometry) return std::nullopt;
   VisualDef visual;
   visual.name = node.attribute("name").value();
-  visual.pose = pose_at(node, "pose");
+  visual.pose = pose_at(node, "pose") * ground_in_shape(node.child("geometry"), *geometry);
   visual.geometry = std::move(*geometry);
   if (const pugi::xml_node material = node.child("material")) visual.material = context.materials.read(material);
   visual.transparency = std::clamp(number_at(node, "transparency", 0), 0.0, 1.0);

@@ -26,6 +26,8 @@ ModelDef build_model(pugi::xml_node model, const ResolvedModel& resolved, BuildC
 
 // Empty, with a finding, when there is no shape that can be simulated.
 std::optional<GeometryDef> build_geometry(pugi::xml_node geometry, BuildContext& context);
+// Where the shape is in its collision or visual: a flat ground instead of a height map has the height map's <pos>.
+Eigen::Isometry3d ground_in_shape(pugi::xml_node geometry, const GeometryDef& built);
 std::optional<VisualDef> build_visual(pugi::xml_node visual, BuildContext& context);
 // `pose` is left at the raw one of the element.
 std::optional<LightDef> build_light(pugi::xml_node light, BuildContext& context);

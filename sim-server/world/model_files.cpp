@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/floor_plan.h"
 #include "world/materials.h"
 #include "world/repairs.h"
 #include "world/urdf.h"
@@ -117,6 +118,7 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
 }
 
 bool ModelFiles::complete(pugi::xml_node entity, const fs::path& folder) {
+  insert_floor_plans(entity, folder, model_path_, complaints_);
   if (!check_numbers(entity, complaints_)) return false;
   library_.check(entity, complaints_);
   resolve_uris(entity, folder);
@@ -168,9 +170,13 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
     if (is_shape) {
       const pugi::xml_node owner = node.parent().parent().parent();
       const bool is_seen = std::string_view(owner.name()) == "visual";
+      const bool is_ground = parent == "heightmap";
       complaints_.drop(node, std::string(parent) + " file " + base::in_quotes(uri) + " of " + describe_in_context(owner) + " " + fault +
-                                 "; " + (is_seen ? "a magenta box stands in" : std::string("the ") + owner.name() + " is left out"));
-      if (is_seen)
+                                 "; " +
+                                 (is_ground ? "a flat ground is taken"
+                                  : is_seen ? "a stand-in is drawn"
+                                            : std::string("the ") + owner.name() + " is left out"));
+      if (is_seen || is_ground)
         node.text() = missing_file;
       else
         lost.push_back(owner);

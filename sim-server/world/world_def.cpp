@@ -36,6 +36,33 @@ std::optional<SolidProperties> solid_properties(const GeometryDef& geometry) {
   return std::nullopt;
 }
 
+Eigen::Vector3d half_size_of(const GeometryDef& geometry) {
+  const auto upright = [](double radius, double half) { return Eigen::Vector3d(radius, radius, half); };
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) return box->size / 2;
+  if (const auto* ball = std::get_if<SphereShape>(&geometry)) return Eigen::Vector3d::Constant(ball->radius);
+  if (const auto* egg = std::get_if<EllipsoidShape>(&geometry)) return egg->radii;
+  if (const auto* can = std::get_if<CylinderShape>(&geometry)) return upright(can->radius, can->length / 2);
+  if (const auto* cone = std::get_if<ConeShape>(&geometry)) return upright(cone->radius, cone->length / 2);
+  if (const auto* pill = std::get_if<CapsuleShape>(&geometry)) return upright(pill->radius, pill->length / 2 + pill->radius);
+  return Eigen::Vector3d::Zero();
+}
+
+Eigen::AlignedBox3d box_of(const ModelDef& model, const Eigen::Isometry3d& pose) {
+  Eigen::AlignedBox3d box;
+  const auto extend = [&](const LinkDef& link, const auto& shapes) {
+    for (const auto& shape : shapes) {
+      const Eigen::Isometry3d place = pose * link.pose * shape.pose;
+      const Eigen::Vector3d reach = place.linear().cwiseAbs() * half_size_of(shape.geometry);
+      box.extend((place.translation() - reach).eval());
+      box.extend((place.translation() + reach).eval());
+    }
+  };
+  for (const auto& link : model.links) extend(link, link.collisions);
+  if (!box.isEmpty()) return box;
+  for (const auto& link : model.links) extend(link, link.visuals);
+  return box;
+}
+
 std::string_view to_text(JointDef::Kind kind) {
   switch (kind) {
     case JointDef::Kind::fixed:

@@ -349,6 +349,12 @@ struct WorldDef {
   const ModelDef* model(std::string_view model_name) const;  // null when absent
 };
 
+// Half of the length, width and height of a box, sphere, cylinder, capsule, cone or ellipsoid; zeros for other shapes, whose files are not
+// read for it.
+Eigen::Vector3d half_size_of(const GeometryDef& geometry);
+// The box along the axes in which the model's collisions are (its visuals, if it has no collision), with the model at this pose.
+Eigen::AlignedBox3d box_of(const ModelDef& model, const Eigen::Isometry3d& pose);
+
 // --- complaints
 
 // One line for a person about something in a world's files.

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "world/checks.h"
 #include "world/complaints.h"
+#include "world/foreign_file.h"
 #include "world/frame_references.h"
 #include "world/frame_skeleton.h"
 #include "world/iface_names.h"
@@ -324,18 +325,56 @@ void Loader::build_instances(WorldDef& world) {
   }
 }
 
+namespace {
+
+// The world in which a file that holds a model alone is opened: a floor, and a sun unless the file has lights. The elements keep their
+// places in the file.
+pugi::xml_node world_around(pugi::xml_node sdf) {
+  pugi::xml_node world = sdf.append_child("world");
+  world.append_attribute("name") = sdf.child("model").attribute("name").value();
+  const bool has_light = sdf.child("light");
+  for (pugi::xml_node child = sdf.first_child(), next; child; child = next) {
+    next = child.next_sibling();
+    const std::string_view kind = child.name();
+    if (kind == "model" || kind == "light" || kind == "actor") world.append_move(child);
+  }
+  static constexpr std::string_view floor =
+      "<model name='floor'><static>true</static><link name='link'>"
+      "<collision name='collision'><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry></collision>"
+      "<visual name='visual'><cast_shadows>false</cast_shadows><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane>"
+      "</geometry><material><diffuse>0.8 0.81 0.78 1</diffuse></material></visual></link></model>";
+  static constexpr std::string_view sun =
+      "<light name='sun' type='directional'><cast_shadows>true</cast_shadows><pose>0 0 10 0 0 0</pose><diffuse>0.8 0.8 0.8 1</diffuse>"
+      "<specular>0.2 0.2 0.2 1</specular><direction>-0.5 0.3 -0.9</direction></light>";
+  world.append_buffer(floor.data(), floor.size());
+  if (!has_light) world.append_buffer(sun.data(), sun.size());
+  return world;
+}
+
+// Robots often have their origin in the middle: what would be in the floor is raised out of it.
+void lift_onto_floor(std::vector<ModelDef>& models) {
+  for (ModelDef& model : models) {
+    if (model.is_static) continue;
+    const Eigen::AlignedBox3d box = box_of(model, model.pose);
+    if (!box.isEmpty() && box.min().z() < 0) model.pose.translation().z() -= box.min().z();
+  }
+}
+
+}  // namespace
+
 base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& folder, const std::string& name) {
   base::Result<pugi::xml_document> document = files_.open_text(text, name);
   if (!document) return document.error();
   const pugi::xml_node sdf = document->child("sdf");
   pugi::xml_node world = sdf.child("world");
+  const bool is_model = !world && sdf.child("model");
+  if (is_model) world = world_around(sdf);
   if (!world) {
     // What the limits took out explains why there is none.
     for (const Finding& finding : complaints_.take()) {
       if (finding.severity == Finding::Severity::dropped) return base::Error{finding.text()};
     }
-    const char* hint = sdf.child("model") ? "; a model is meant to be included in a world or spawned" : "";
-    return base::Error{name + ": a <world> is expected in it" + hint};
+    return base::Error{name + ": a <world> or a <model> is expected in it"};
   }
   if (world.next_sibling("world")) complaints_.drop(world.next_sibling("world"), "only the first <world> of a file is loaded");
   saved_.apply(world);
@@ -350,11 +389,14 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   BuildContext context{complaints_, materials_};
   result.world = build_world(world, whole_ ? *whole_ : ResolvedWorld{}, context);
   build_instances(result.world);
+  if (is_model) lift_onto_floor(result.world.models);
   result.world.model_path = model_path_;
   tell_of_unseen_models(result.world, complaints_);
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
   result.found = files_.found();
+  result.world.missing_parts = static_cast<std::size_t>(std::count_if(
+      result.findings.begin(), result.findings.end(), [](const Finding& f) { return f.severity == Finding::Severity::dropped; }));
   return result;
 }
 
@@ -396,8 +438,6 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   resolve_models();
   WorldDef world;
   build_instances(world);
-  result.world.missing_parts = static_cast<std::size_t>(std::count_if(
-      result.findings.begin(), result.findings.end(), [](const Finding& f) { return f.severity == Finding::Severity::dropped; }));
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
   result.found = files_.found();
@@ -430,6 +470,7 @@ auto loaded(const ModelPath& path, const std::string& name, const Load& load) ->
 
 base::Result<LoadResult> load_world_text(std::string_view text, const fs::path& folder, const std::string& name,
                                          const ModelPath& model_path) {
+  if (const auto foreign = foreign_file(text)) return base::Error{name + ": " + *foreign};
   ModelPath path = model_path;
   if (!folder.empty()) path.add_first(folder);
   return loaded(path, name, [&](Loader& loader) { return loader.world(std::string(text), folder, name); });

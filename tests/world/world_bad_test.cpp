@@ -20,8 +20,7 @@ TEST(BadWorld, that_is_no_world_fails_with_one_line) {
   EXPECT_THAT(error_of("not xml at all"), HasSubstr("w.sdf:1: is not well-formed XML"));
   EXPECT_THAT(error_of("<sdf version='1.9'>\n<world name='w'>\n<model name='m'>"), HasSubstr("is not well-formed XML"));
   EXPECT_THAT(error_of("<sdf version='1.9'><world name='w'></sdf>"), HasSubstr("is not well-formed XML"));
-  EXPECT_THAT(error_of("<sdf version='1.9'/>"), HasSubstr("a <world> is expected"));
-  EXPECT_THAT(error_of("<sdf version='1.9'><model name='m'><link name='l'/></model></sdf>"), HasSubstr("included in a world or spawned"));
+  EXPECT_THAT(error_of("<sdf version='1.9'/>"), HasSubstr("a <world> or a <model> is expected"));
   EXPECT_THAT(error_of("<html><body/></html>"), HasSubstr("an <sdf> element is expected"));
   EXPECT_EQ(error_of(std::string("\0\0\0\0garbage", 11)), "w.sdf: is a binary file; SDFormat is text (XML)");
   EXPECT_EQ(error_of(std::string("PK\3\4\0<% %>", 10)), "w.sdf: is a binary file; SDFormat is text (XML)") << "no template";

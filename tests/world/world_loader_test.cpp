@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "base/base64.h"
 #include "support/world_files.h"
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
@@ -19,7 +20,7 @@ template <class Shape>
 Shape shape_of(const std::string& geometry) {
   const WorldFiles files;
   files.write("a.dae", "x");
-  files.write("h.png", "x");
+  files.write("h.png", base::from_base64("iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAAAAABX3VL4AAAADElEQVR42mNg+A+EAAYAAf+tLDclAAAAAElFTkSuQmCC"));
   const LoadResult result = files.load(model_of("<collision name='c'><geometry>" + geometry + "</geometry></collision>"));
   EXPECT_FALSE(result.dropped) << all_findings(result);
   if (result.world.models.size() != 1 || result.world.models[0].links[0].collisions.size() != 1) {
