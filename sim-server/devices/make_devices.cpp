@@ -1,6 +1,8 @@
 // Which sensors and plugins become which devices.
 #include <spdlog/fmt/fmt.h>
 
+#include <map>
+
 #include "base/text.h"
 #include "devices/device.h"
 #include "devices/drives/position2d.h"
@@ -26,6 +28,7 @@ struct Makers {
   std::vector<std::string>& left_out;
   std::vector<std::unique_ptr<Device>> devices;
   std::optional<base::Error> failure;
+  std::map<std::uint32_t, std::string> driven;  // joints, and the plugins whose motors turn them
 
   // False, with a line, for names that are too long: those of models may fill an iface's name alone.
   bool can_name(const std::string& iface, const std::string& what) {
@@ -133,6 +136,19 @@ void make_follower(Makers& m, const PluginDef& plugin) {
   m.take(Position3d::make(m.world, m.model, plugin, std::move(*path)));
 }
 
+// False, with a line, for a second drive of the same wheels: files that were written for several simulators name one drive for each.
+bool can_drive(Makers& m, const PluginDef& plugin, const std::vector<std::uint32_t>& joints) {
+  for (const auto joint : joints) {
+    const auto other = m.driven.find(joint);
+    if (other == m.driven.end()) continue;
+    m.left_out.push_back(fmt::format("{}: plugin {}: joint {} is driven by {} already; the plugin is left out", plugin.source, plugin.name,
+                                     base::in_quotes(m.world.physics.def(m.model).joints[joint].name), other->second));
+    return false;
+  }
+  for (const auto joint : joints) m.driven.emplace(joint, plugin.name);
+  return true;
+}
+
 void make_plugin(Makers& m, const PluginDef& plugin) {
   const ModelDef& def = m.world.physics.def(m.model);
   const bool has_iface = is_wheel_drive(kind_of(plugin)) || kind_of(plugin) == PluginKind::velocity_control ||
@@ -146,6 +162,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       auto train = make_train(m.world.physics, m.model, plugin);
       // A drive that is wrong is the world's fault, not the machine's: said, left out.
       if (!train) return m.left_out.push_back(train.error().message);
+      if (!can_drive(m, plugin, (*train)->joints())) return;
       return m.take(Position2d::make(m.world, m.model, plugin, std::move(*train)));
     }
     case PluginKind::velocity_control:

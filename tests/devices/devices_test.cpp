@@ -139,6 +139,19 @@ TEST(Position2d, a_drive_without_its_joints_is_one_line_and_the_rest_runs) {
   f.open(IfaceType::laser, "robot::laser");
 }
 
+// Files for several simulators name a drive for each; both would turn the wheels.
+TEST(Position2d, a_second_drive_of_the_same_joints_is_one_line_and_no_iface) {
+  ModelDef robot = pioneer("robot", at(0, 0, 0));
+  robot.plugins.push_back(robot.plugins[0]);
+  robot.plugins[1].filename = "libgazebo_ros_diff_drive.so";
+  robot.plugins[1].name = "other_drive";
+  SimulationFixture f(world_of({ground(), robot}));
+  ASSERT_EQ(f.dropped.size(), 1U);
+  EXPECT_NE(f.dropped[0].find("plugin other_drive: joint \"left_wheel_hinge\" is driven by"), std::string::npos) << f.dropped[0];
+  f.open(IfaceType::position2d, "robot::position2d");
+  EXPECT_EQ(f.simulation->device("robot::other_drive"), nullptr);
+}
+
 TEST(Laser, sees_walls_where_they_are_and_marks_what_is_too_near_or_nowhere) {
   ModelDef robot = pioneer("robot", at(0, 0, 0));
   std::get<RayDef>(robot.links[0].sensors[0].data).range_min = 0.5;
@@ -379,6 +392,17 @@ TEST(Position3d, flies_as_told_and_holds_its_height) {
   f.run(5);
   ASSERT_TRUE(heli.read());
   EXPECT_NEAR(heli.sample<shm::Position3dSample>().true_pose.z, height, 1e-3);
+}
+
+TEST(Position3d, describes_the_extent_of_its_body) {
+  ModelDef model = helicopter();
+  SimulationFixture f(world_of({ground(), model}));
+  const auto heli = f.open(IfaceType::position3d, "heli::position3d");
+  const auto& info = heli.info<shm::Position3dInfo>();
+  const Eigen::AlignedBox3d box = box_of(model, Eigen::Isometry3d::Identity());
+  for (int i = 0; i < 3; ++i) EXPECT_DOUBLE_EQ(info.size[i], box.sizes()[i]);
+  EXPECT_GT(info.size[0], 0);
+  EXPECT_DOUBLE_EQ(info.pose.z, box.center().z());
 }
 
 TEST(Position3d, falls_until_the_first_command) {

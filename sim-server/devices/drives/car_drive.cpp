@@ -142,6 +142,13 @@ class Car final : public DriveTrain {
   }
 
   std::array<double, 2> followed() const override { return {speed_, speed_ * curvature_}; }
+  std::vector<std::uint32_t> joints() const override {
+    std::vector<std::uint32_t> all;
+    for (const auto* wheels : {&settings_.driven, &settings_.steered}) {
+      for (const Wheel& wheel : *wheels) all.push_back(wheel.joint);
+    }
+    return all;
+  }
   double rate() const override { return settings_.rate; }
   void reset() override {
     speed_ = curvature_ = 0;

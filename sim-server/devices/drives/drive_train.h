@@ -26,6 +26,8 @@ class DriveTrain {
   virtual Travel travel() = 0;
   // vx [m/s] and va [rad/s] that the motors follow now.
   virtual std::array<double, 2> followed() const = 0;
+  // Those that its motors turn, by their place in the model.
+  virtual std::vector<std::uint32_t> joints() const = 0;
   virtual double rate() const = 0;  // of samples [Hz]; 0: every step
   // The model is (again) at its initial state.
   virtual void reset() = 0;

@@ -5,41 +5,14 @@
 
 #include "base/log.h"
 #include "devices/angle.h"
+#include "devices/drives/body.h"
 #include "world/iface_names.h"
 
 namespace sim {
-namespace {
-
-// Of all its boxes, spheres and cylinders, along the axes of the model.
-Eigen::AlignedBox3d box_of(const ModelDef& model) {
-  Eigen::AlignedBox3d box;
-  for (const auto& link : model.links) {
-    for (const auto& collision : link.collisions) {
-      Eigen::Vector3d half = Eigen::Vector3d::Zero();
-      if (const auto* b = std::get_if<BoxShape>(&collision.geometry)) half = b->size / 2;
-      if (const auto* s = std::get_if<SphereShape>(&collision.geometry)) half.setConstant(s->radius);
-      if (const auto* c = std::get_if<CylinderShape>(&collision.geometry)) half = {c->radius, c->radius, c->length / 2};
-      const Eigen::Isometry3d pose = link.pose * collision.pose;
-      const Eigen::Vector3d reach = pose.linear().cwiseAbs() * half;
-      box.extend((pose.translation() - reach).eval());
-      box.extend((pose.translation() + reach).eval());
-    }
-  }
-  return box.isEmpty() ? Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()) : box;
-}
-
-}  // namespace
-
 MadeDevice Position2d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train) {
   const ModelDef& def = world.physics.def(model);
   shm::Position2dInfo info{};
-  const Eigen::AlignedBox3d box = box_of(def);
-  const Eigen::Vector3d centre = box.center(), size = box.sizes();
-  info.pose = shm::identity_pose;
-  info.pose.x = centre.x();
-  info.pose.y = centre.y();
-  info.pose.z = centre.z();
-  for (int i = 0; i < 3; ++i) info.size[i] = size[i];
+  describe_body(def, info.pose, info.size);
   train->describe(info);
   info.rate = stated_rate(world, train->rate());
   shm::set_text(info.model, scoped_model(def, plugin.scope));

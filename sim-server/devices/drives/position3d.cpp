@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "devices/angle.h"
+#include "devices/drives/body.h"
 #include "world/iface_names.h"
 #include "world/plugin_kind.h"
 
@@ -25,7 +26,7 @@ MadeDevice Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& 
   const ModelDef& def = world.physics.def(model);
   shm::Position3dInfo info{};
   info.drive = RTMSIM_DRIVE_HOLONOMIC;
-  info.pose = shm::identity_pose;
+  describe_body(def, info.pose, info.size);
   info.max_speed = plugin.parameters.number_of({"max_speed", "max_linear_velocity"}).value_or(0);
   info.max_yaw_rate = plugin.parameters.number_of({"max_yaw_rate", "max_angular_velocity"}).value_or(0);
   info.rate = stated_rate(world, 0);

@@ -143,6 +143,11 @@ class WheelPairs final : public DriveTrain {
   std::array<double, 2> followed() const override {
     return {(wheels_[0] + wheels_[1]) / 2, (wheels_[1] - wheels_[0]) / settings_.separation};
   }
+  std::vector<std::uint32_t> joints() const override {
+    std::vector<std::uint32_t> all = settings_.left;
+    all.insert(all.end(), settings_.right.begin(), settings_.right.end());
+    return all;
+  }
   double rate() const override { return settings_.rate; }
   void reset() override {
     wheels_ = {0, 0};
