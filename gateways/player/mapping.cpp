@@ -3,8 +3,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/suggestion.h"
@@ -193,8 +195,32 @@ base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
   return ifaces;
 }
 
+namespace {
+
+// A line begins with "driver" and a bracket, which may be on the next one.
+bool is_of_player(const std::string& path) {
+  constexpr int most_lines = 1000;
+  std::ifstream file(path);
+  std::string line;
+  bool is_after_driver = false;
+  for (int i = 0; i < most_lines && std::getline(file, line); ++i) {
+    const std::string_view text = base::trim(line);
+    if (text.empty() || text.starts_with('#')) continue;
+    if (is_after_driver && text.starts_with('(')) return true;
+    is_after_driver = text == "driver";
+    if (text.starts_with("driver") && base::trim(text.substr(6)).starts_with('(')) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
   try {
+    if (is_of_player(path))
+      return base::Error{path +
+                         ": is a configuration file of Player, whose drivers are not started here; a mapping in YAML is expected, or "
+                         "no --config: then each robot of the world gets a port (docs/stage.md)"};
     const auto root = YAML::LoadFile(path);
     yaml::expect_unique_keys(root);
     return configured_ports(root);

@@ -168,7 +168,14 @@ void Session::name_driver(const player::Message& message) {
 base::Error Session::why_unknown(const player::Address& device) const {
   std::vector<std::string> there;
   for (const auto& one : robot_.devices()) there.push_back(player::to_text(one));
-  return {"there is no " + player::to_text(device) + (there.empty() ? "" : "; there are " + base::join(there, " "))};
+  const std::string list = there.empty() ? "" : "; there are " + base::join(there, " ");
+  // Numbers are read by nobody, and another index would not help.
+  if (player::to_text(device.interface).empty()) {
+    const auto name = player::any_name(device.interface);
+    return {(name.empty() ? "interface " + std::to_string(static_cast<unsigned>(device.interface)) : std::string(name)) + " is not served" +
+            list};
+  }
+  return {"there is no " + player::to_text(device) + list};
 }
 
 void Session::complain(const player::Address& device, std::uint8_t command, const std::string& what) {

@@ -245,7 +245,10 @@ TEST(PlayerPayload, image_is_followed_by_its_pixels) {
 
 TEST(PlayerAddress, names_and_codes) {
   EXPECT_EQ(to_text(Address{Interface::ranger, 1}), "ranger:1");
-  EXPECT_EQ(to_text(Address{static_cast<Interface>(66), 0}), "66:0");
+  EXPECT_EQ(to_text(Address{static_cast<Interface>(7), 0}), "blobfinder:0");
+  EXPECT_EQ(to_text(Address{static_cast<Interface>(67), 0}), "67:0");
+  EXPECT_EQ(any_name(static_cast<Interface>(66)), "coopobject");
+  EXPECT_EQ(any_name(Interface::ranger), "ranger");
   EXPECT_EQ(parse_interface("position2d"), Interface::position2d);
   EXPECT_EQ(parse_interface("truth"), std::nullopt);
 }

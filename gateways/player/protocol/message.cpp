@@ -25,11 +25,13 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::ranger, "ranger"},
 });
 
-constexpr auto other_names = std::to_array<std::string_view>(
-    {"power",      "gripper",  "blobfinder",   "ptz",        "audio",   "fiducial", "speech",     "dio",    "ir",
-     "wifi",       "localize", "blinkenlight", "map",        "planner", "log",      "joystick",   "opaque", "speech_recognition",
-     "position1d", "actarray", "limb",         "graphics2d", "rfid",    "wsn",      "graphics3d", "health", "vectormap",
-     "blackboard", "stereo",   "coopobject"});
+constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>(
+    {{2, "power"},         {3, "gripper"},     {7, "blobfinder"}, {8, "ptz"},        {9, "audio"},       {10, "fiducial"},
+     {12, "speech"},       {20, "dio"},        {22, "ir"},        {23, "wifi"},      {25, "localize"},   {26, "mcom"},
+     {33, "blinkenlight"}, {42, "map"},        {44, "planner"},   {45, "log"},       {49, "joystick"},   {50, "speech_recognition"},
+     {51, "opaque"},       {52, "position1d"}, {53, "actarray"},  {54, "limb"},      {55, "graphics2d"}, {56, "rfid"},
+     {57, "wsn"},          {58, "graphics3d"}, {59, "health"},    {63, "vectormap"}, {64, "blackboard"}, {65, "stereo"},
+     {66, "coopobject"}});
 
 }  // namespace
 
@@ -48,11 +50,19 @@ std::optional<Interface> parse_interface(std::string_view wanted) {
 }
 
 bool is_interface_name(std::string_view name) {
-  return parse_interface(name).has_value() || std::find(other_names.begin(), other_names.end(), name) != other_names.end();
+  return parse_interface(name).has_value() ||
+         std::any_of(other_names.begin(), other_names.end(), [&](const auto& other) { return other.second == name; });
+}
+
+std::string_view any_name(Interface interface) {
+  if (const auto served = to_text(interface); !served.empty()) return served;
+  const auto other = std::find_if(other_names.begin(), other_names.end(),
+                                  [&](const auto& one) { return one.first == static_cast<std::uint16_t>(interface); });
+  return other == other_names.end() ? std::string_view() : other->second;
 }
 
 std::string to_text(const Address& address) {
-  const auto name = to_text(address.interface);
+  const auto name = any_name(address.interface);
   return (name.empty() ? std::to_string(static_cast<unsigned>(address.interface)) : std::string(name)) + ":" +
          std::to_string(address.index);
 }

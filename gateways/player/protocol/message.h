@@ -34,7 +34,8 @@ enum class Interface : std::uint16_t {
 // "laser"; empty for what is not served.
 std::string_view to_text(Interface interface);
 std::optional<Interface> parse_interface(std::string_view name);
-// Of all that Player has, served or not: "blobfinder".
+// Of all that Player has, served or not: "blobfinder"; empty for numbers that Player does not have.
+std::string_view any_name(Interface interface);
 bool is_interface_name(std::string_view name);
 
 enum class Type : std::uint8_t { data = 1, command = 2, request = 3, ack = 4, synch = 5, nack = 6 };
@@ -62,7 +63,7 @@ struct Address {
   std::uint16_t index = 0;
   auto operator<=>(const Address&) const = default;
 };
-// "laser:0", and "66:0" for what is not served.
+// "laser:0"; "67:0" for what Player does not have.
 std::string to_text(const Address& address);
 
 struct Header {
