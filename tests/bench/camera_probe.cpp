@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "shm/client.h"
+#include "support/usage.h"
 
 extern "C" void VideoPlayerInit(RTC::Manager* manager);
 
@@ -59,6 +60,9 @@ void make_player(RTC::Manager* manager) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(
+      argc, argv,
+      "camera_probe SERVER_ID CAMERA COUNT [OPTION_OF_MANAGER]...\nPrints the delays of COUNT images on their way to a VideoPlayer.");
   if (argc < 4) return 2;
   auto camera = shm::Iface::open(static_cast<std::uint32_t>(std::atoi(argv[1])), shm::IfaceType::camera, argv[2]);
   if (!camera) return std::fprintf(stderr, "%s\n", camera.error().message.c_str()), 1;

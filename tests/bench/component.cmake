@@ -1,2 +1,3 @@
 add_executable(component_bench component_bench.cpp)
+target_include_directories(component_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(component_bench PRIVATE openrtm rtmsim_settings)

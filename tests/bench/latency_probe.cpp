@@ -18,6 +18,7 @@
 #include "ports/support.h"
 #include "shm/client.h"
 #include "shm/server.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -164,6 +165,9 @@ void run(const char* self, const std::string& id, int count, bool is_bare) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  ::test::answer_help(argc, argv,
+                      "latency_probe SERVER_ID COUNT [bare]\nPlays the simulator to a laser, an avoider and a drive; prints the delay from "
+                      "scan to command [us].");
   if (argc < 3) return std::fprintf(stderr, "usage: latency_probe SERVER_ID COUNT [bare]\n"), 2;
   const std::string what = argv[2];
   if (what != "drive" && what != "forward" && what != "read") {

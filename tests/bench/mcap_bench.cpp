@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "recording/mcap/mcap.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -145,6 +146,9 @@ bool seek_in_an_hour(const fs::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(
+      argc, argv,
+      "mcap_bench [FOLDER]\n       mcap_bench --hour FILE\nMeasures recordings beside plain files; --hour writes a recording of an hour.");
   if (argc > 2 && std::string_view(argv[1]) == "--hour") return write_hour(argv[2]), 0;
   const fs::path folder = argc > 1 ? fs::path(argv[1]) : fs::temp_directory_path();
   const auto ours = folder / ("mcap_bench-" + std::to_string(getpid()) + ".mcap");

@@ -7,6 +7,7 @@
 
 #include "support/heavy_worlds.h"
 #include "support/physics_fixture.h"
+#include "support/usage.h"
 
 namespace sim::bench {
 namespace {
@@ -92,7 +93,8 @@ void bench_many() {
 }  // namespace
 }  // namespace sim::bench
 
-int main() {
+int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "physics_bench\nMeasures the physics with heavy worlds.");
   using Solver = sim::PhysicsDef::Solver;
   sim::bench::bench_robot(Solver::automatic, "a robot of 49 links rolls", 2);
   sim::bench::bench_robot(Solver::iterative, "the same with the iterative solver", 2);

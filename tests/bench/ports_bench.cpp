@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ports/support.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -180,7 +181,8 @@ void connecting(ports::Peer& peer) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "ports_bench\nMeasures data ports beside plain calls of the ORB.");
   const auto orb = ports::start_orb();
   std::printf("| measured                                     | value           | limit      |      |\n|---|---|---|---|\n");
   {

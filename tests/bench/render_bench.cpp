@@ -19,6 +19,7 @@
 #include "shm/client.h"
 #include "shm/server.h"
 #include "support/scene_maker.h"
+#include "support/usage.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -279,6 +280,8 @@ bool bench_memory(const Textures& textures, int frames) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "render_bench [--quick] [--only 1k|100k|farm|memory]\nMeasures images of cameras beside a plain OSMesa loop.");
   bool is_quick = false;
   std::string only;
   for (int i = 1; i < argc; ++i) {

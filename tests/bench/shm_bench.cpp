@@ -19,6 +19,7 @@
 #include "shm/client.h"
 #include "shm/lockstep.h"
 #include "shm/server.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -251,7 +252,8 @@ void bench_barrier(std::uint32_t count) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "shm_bench\nMeasures shared memory and the lock step.");
   std::printf("%-58s %10s %-6s %10s\n", "shared memory", "measured", "", "limit");
   for (const std::uint32_t count : {1U, 4U, 16U}) bench_barrier(count);
   auto server = shm::Server::start({.server_id = server_id(), .access = {}}).value();

@@ -21,6 +21,7 @@
 #include "base/log.h"
 #include "shm/request_board.h"
 #include "support/simulation_fixture.h"
+#include "support/usage.h"
 #include "support/worlds.h"
 #include "world/world_loader.h"
 
@@ -448,6 +449,8 @@ void bench_calls() {
 }  // namespace sim::bench
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "sim_bench [rays|steps|robots|load|calls]...\nMeasures the simulator beside plain ODE and Embree (all parts).");
   base::set_log_level(base::Level::error);
   const std::pair<const char*, void (*)()> parts[] = {{"rays", sim::bench::bench_rays},
                                                       {"steps", sim::bench::bench_steps},

@@ -16,6 +16,7 @@
 
 #include "corba/orb/orb.h"
 #include "support/component_fixture.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -67,7 +68,8 @@ class PeerComponent : public support::ProbeComponent {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "component_peer\nIs the second process of component tests; runs until SIGTERM.");
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGTERM);

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <string>
 
+#include "support/usage.h"
+
 namespace {
 
 class Hanging : public RTC::DataFlowComponentBase {
@@ -49,6 +51,8 @@ void init(RTC::Manager* manager) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "hanging_program [OPTION_OF_MANAGER]...\nIs a component host whose components hang on request, for tests.");
   RTC::Manager* manager = RTC::Manager::init(argc, argv);
   manager->setModuleInitProc(init);
   manager->activateManager();

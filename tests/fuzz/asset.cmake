@@ -1,4 +1,5 @@
 add_executable(asset_fuzz asset_fuzz.cpp)
+target_include_directories(asset_fuzz PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(asset_fuzz PRIVATE simphysics simrays simrender rtmsim_settings)
 add_test(NAME asset_fuzz COMMAND asset_fuzz --runs 20 ${CMAKE_CURRENT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/tests/worlds/damaged_meshes
                                  WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})

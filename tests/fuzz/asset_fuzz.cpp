@@ -25,6 +25,7 @@
 #include "rays/ray_scene.h"
 #include "reader/asset_reader.h"
 #include "render/assets.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -258,6 +259,8 @@ Count run_seed(const std::vector<Seed>& seeds, std::size_t which, const Options&
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "asset_fuzz [--runs N] [--seed N] [FILE]...\nReads damaged mesh and image files; it must not crash or hang.");
   Options options;
   std::vector<fs::path> files;
   for (int i = 1; i < argc; ++i) {

@@ -15,6 +15,7 @@
 #include "core/manager_arguments.h"
 #include "core/name_format.h"
 #include "core/preconnect.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -92,6 +93,8 @@ extern "C" int LLVMFuzzerTestOneInput(const char* data, std::size_t size) {
 }
 #else
 int main(int argc, char** argv) {
+  ::test::answer_help(
+      argc, argv, "manager_fuzz [RUNS [SEED]]\nReads damaged rtc.conf, command lines and component addresses; it must not crash or hang.");
   const long runs = argc > 1 ? std::atol(argv[1]) : 20'000;
   const unsigned long seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
   std::cout << "seed " << seed << ", " << runs << " runs\n";

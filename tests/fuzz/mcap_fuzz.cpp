@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "recording/mcap/mcap.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -134,6 +135,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 #else
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "mcap_fuzz [--runs N] [--seed N]\nReads damaged recordings; it must not crash or hang.");
   unsigned long runs = 20000;
   unsigned long seed = std::random_device{}();
   for (int i = 1; i + 1 < argc; i += 2) {

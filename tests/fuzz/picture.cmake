@@ -1,4 +1,5 @@
 add_executable(picture_fuzz picture_fuzz.cpp)
+target_include_directories(picture_fuzz PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(picture_fuzz PRIVATE video turbojpeg rtmsim_settings)
 add_test(NAME picture_fuzz COMMAND picture_fuzz --runs 20000)
 set_tests_properties(picture_fuzz PROPERTIES TIMEOUT 300 LABELS "fuzz")

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "picture.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -77,6 +78,7 @@ void mutate(Image& image, std::mt19937& random) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "picture_fuzz [--runs N] [--seed N]\nReads damaged images of cameras; it must not crash or hang.");
   unsigned long runs = 20000;
   unsigned seed = std::random_device()();
   for (int i = 1; i + 1 < argc; i += 2) {

@@ -10,6 +10,7 @@
 
 #include "protocol/message.h"
 #include "protocol/payloads.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -102,6 +103,7 @@ bool decode_all(std::string_view payload) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "player_fuzz [--runs N] [--seed N]\nReads damaged messages of Player; it must not crash or hang.");
   unsigned long runs = 50000;
   unsigned seed = std::random_device()();
   for (int i = 1; i + 1 < argc; i += 2) {

@@ -18,6 +18,7 @@
 #include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
 #include "corba/transport/event_data.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -117,6 +118,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 #ifndef RTMSIM_LIBFUZZER
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "ports_fuzz [--runs N] [--seed N]\nReads damaged samples and profiles of ports; it must not crash or hang.");
   unsigned long runs = 100'000;
   unsigned seed = std::random_device()();
   for (int i = 1; i + 1 < argc; i += 2) {

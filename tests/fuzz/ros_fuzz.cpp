@@ -10,6 +10,7 @@
 #include "channels/ros/messages.h"
 #include "recording/expression.h"
 #include "recording/ros_text.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -48,6 +49,7 @@ Seed seed_of(const Message& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "ros_fuzz [--runs N] [--seed N]\nReads damaged ROS messages; it must not crash or hang.");
   std::uint64_t runs = 20000, seed = std::random_device()();
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--runs") == 0) runs = std::strtoull(argv[i + 1], nullptr, 10);

@@ -1,4 +1,5 @@
 add_executable(world_fuzz world_fuzz.cpp)
+target_include_directories(world_fuzz PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(world_fuzz PRIVATE simphysics rtmsim_settings)
 if(RTMSIM_LIBFUZZER)
   target_compile_definitions(world_fuzz PRIVATE RTMSIM_LIBFUZZER)

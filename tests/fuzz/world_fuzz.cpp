@@ -16,6 +16,7 @@
 
 #include "base/text.h"
 #include "physics/physics.h"
+#include "support/usage.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -246,6 +247,7 @@ std::string mutate(std::string text, const std::vector<std::string>& corpus, std
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "world_fuzz [--runs N] [--seed N] [FILE]...\nReads damaged worlds; it must not crash or hang.");
   unsigned seed = 1;
   long runs = 300;
   std::vector<fs::path> files;

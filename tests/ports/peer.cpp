@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ports/support.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -37,6 +38,7 @@ class KeepingServant : public POA_OpenRTM::InPortCdr, public PortableServer::Ref
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "ports_peer [--tcp]\nIs the second process of port tests; runs until SIGTERM.");
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGTERM);

@@ -15,6 +15,7 @@
 
 #include "shm/request_board.h"
 #include "shm/shm_support.h"
+#include "support/usage.h"
 
 namespace shm::test {
 namespace {
@@ -284,6 +285,7 @@ void request(const Plan& plan) {
 }  // namespace shm::test
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "campaign_steps SECONDS [SEED]\nRuns random participants of a lock step, for the robustness tests.");
   using namespace shm::test;
   if (argc < 2) return 2;
   const double seconds = std::atof(argv[1]);

@@ -14,6 +14,7 @@
 
 #include "shm/client.h"
 #include "shm/words.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -47,6 +48,8 @@ struct Kept {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(
+      argc, argv, "camera_reader SERVER_ID TYPE IFACE [FRAMES_TO_HOLD [PAUSE_MS]]\nReads the frames of a camera for the tests of cameras.");
   if (argc < 4) return 2;
   const std::size_t keep = argc > 4 ? static_cast<std::size_t>(std::atoi(argv[4])) : 1;
   const std::chrono::milliseconds pause(argc > 5 ? std::atoi(argv[5]) : 0);

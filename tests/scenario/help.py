@@ -1,6 +1,8 @@
-# Every program answers --help and --man; the help says what to do.  help.py BUILD_DIR SOURCE_DIR
-# Programs: those that packages install. Help lines of options and verbs begin with a verb or a noun, never with What, Who, So or Of.
+# Every program that packages install answers --help and --man, and the help says what to do; every other one of the build answers --help.
+# help.py BUILD_DIR SOURCE_DIR
+# Help lines of options and verbs begin with a verb or a noun, never with What, Who, So or Of.
 # The verbs of rtse and simctl are in groups.
+import os
 import pathlib
 import re
 import subprocess
@@ -79,6 +81,17 @@ assert {"rtse", "simctl", "sim-server", "rtcd"} <= set(programs), programs
 for program in programs:
     check([program])
     check_manual([program])
+# What tests and benchmarks start is not installed, but somebody will try it by hand: it must not begin minutes of work, or wait for nothing.
+others = [path.name for path in sorted((build / "bin").iterdir()) if path.is_file() and os.access(path, os.X_OK) and path.suffix != ".so"]
+others = [name for name in others if name not in programs and name not in without_manual]
+for program in others:
+    try:
+        done = run(program, "--help")
+    except subprocess.TimeoutExpired:
+        problems.append(f"{program} --help: does not end")
+        continue
+    if done.returncode != 0 or not re.search("usage|Google Test", done.stdout, re.I):
+        problems.append(f"{program} --help: exit code {done.returncode}: {(done.stdout + done.stderr)[:300]}")
 number = 0
 for program in ("rtse", "simctl"):
     verbs = verbs_of(program)
@@ -89,5 +102,5 @@ for program in ("rtse", "simctl"):
 check_manual(["rtse", "demo"])
 for sub in ("info", "ls", "cat", "export", "compare", "repair"):
     check(["rtse", "recording", sub])
-print("\n".join(problems) if problems else f"{len(programs)} programs, {number} verbs")
+print("\n".join(problems) if problems else f"{len(programs)} programs, {number} verbs, {len(others)} programs of tests")
 sys.exit(1 if problems else 0)

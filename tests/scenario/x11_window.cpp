@@ -13,6 +13,8 @@
 #include <optional>
 #include <string>
 
+#include "support/usage.h"
+
 namespace {
 
 std::string title_of(Display* display, Window window) {
@@ -84,6 +86,7 @@ int close(Display* display, Window window) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv, "x11_window TITLE shot FILE|key NAME|close|title|size\nOperates a window for the tests of VideoPlayer.");
   if (argc < 3) return 2;
   Display* display = XOpenDisplay(nullptr);
   if (!display) return 1;

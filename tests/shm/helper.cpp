@@ -14,6 +14,7 @@
 #include "shm/request_board.h"
 #include "shm/server.h"
 #include "shm/shm_support.h"
+#include "support/usage.h"
 
 namespace shm::test {
 namespace {
@@ -180,6 +181,9 @@ int scribble(std::uint32_t id) {
 }  // namespace shm::test
 
 int main(int argc, char** argv) {
+  ::test::answer_help(argc, argv,
+                      "shm_helper serve|read|hold|command|ask|ask-once|scribble|participate|observe SERVER_ID [ARGUMENT]...\nIs the second "
+                      "process of shared-memory tests.");
   if (argc < 3) return 2;
   alarm(280);  // nothing is left behind, whatever becomes of the test
   const std::string part = argv[1];
