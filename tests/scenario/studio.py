@@ -17,8 +17,8 @@ rig = Rig(*folders)
 
 
 class Studio:
-    def __init__(self, *options):
-        self.process = rig.start(f"{rig.bin_dir}/rtm-studio", "--ns", rig.names, "-s", rig.server_id, "--port", "0", *options)
+    def __init__(self, *options, **environment):
+        self.process = rig.start(f"{rig.bin_dir}/rtm-studio", "--ns", rig.names, "-s", rig.server_id, "--port", "0", *options, **environment)
         await_("the URL, or an end", lambda: rig.log(self.process).startswith("http") or self.process.poll() is not None)
         assert self.process.poll() is None, (self.process.args, self.process.returncode, rig.log(self.process))
         url = rig.log(self.process).splitlines()[0]
@@ -479,6 +479,17 @@ def foreign():
     assert "is not there" in viewer.event("status")["message"]
     viewer.send({"op": "request", "id": 1, "name": "run"})
     assert "rtmsim.studio.v1" in viewer.event("status")["message"]
+    # Who sends to whom, for newer clients too; told again when that changes.
+    newer = studio.viewer(protocol="foxglove.sdk.v1")
+    assert "connectionGraph" in newer.event("serverInfo")["capabilities"]
+    newer.send({"op": "subscribeConnectionGraph"})
+    newer.event("connectionGraphUpdate", lambda m: {"name": "/RTCLaser0/range", "publisherIds": ["RTCLaser0"]} in m["publishedTopics"])
+    rig.host("LaserObstacleAvoid")
+    rig.there("LaserObstacleAvoid0")
+    rig.rtse("con", "RTCLaser0:range", "LaserObstacleAvoid0:range")
+    newer.event("connectionGraphUpdate", lambda m: {"name": "/RTCLaser0/range", "subscriberIds": ["LaserObstacleAvoid0"]} in m["subscribedTopics"])
+    rig.rtse("dis", "RTCLaser0:range", "LaserObstacleAvoid0:range")
+    newer.event("connectionGraphUpdate", lambda m: {"name": "/RTCLaser0/range", "subscriberIds": []} in m["subscribedTopics"])
 
 
 # Pictures of a camera as JPEG, and a line when there is none.
@@ -558,6 +569,34 @@ def hints():
     viewer.event("system", lambda m: sum(not c["problem"] for c in m["components"]) == 3)
     viewer.do("run")
     viewer.event("time", lambda m: m["sim_time"] > 0.1)
+
+
+# One command starts a world, a name server, an empty host and the browser, which gets the token by a file of this account alone. Signals end all.
+def opens():
+    browser = rig.path("browser")
+    with open(browser, "w") as script:
+        script.write(f"#!/bin/sh\necho \"$1\" > {rig.path('address')}.new\nmv {rig.path('address')}.new {rig.path('address')}\n")
+    os.chmod(browser, 0o700)
+    studio = Studio("--open", BROWSER=browser)
+    viewer = studio.viewer()
+    rig.servers.add(rig.server_id)
+    assert viewer.event("world", lambda m: m["present"])["server_id"] == int(rig.server_id)
+    manager = viewer.event("system", lambda m: any(not one["problem"] for one in m["managers"]))["managers"][0]["path"]
+    viewer.do("create", manager=manager, type="LaserObstacleAvoid")
+    viewer.event("system", lambda m: any(c["instance"] == "LaserObstacleAvoid0" for c in m["components"]))
+    await_("the browser", lambda: os.path.exists(rig.path("address")))
+    with open(rig.path("address")) as file:
+        address = file.read().strip()
+    assert address.startswith("file://") and studio.token not in address, address
+    page = address.removeprefix("file://")
+    with open(page) as file:
+        assert f"#token={studio.token}" in file.read()
+    assert os.stat(os.path.dirname(page)).st_mode & 0o077 == 0
+    studio.process.terminate()
+    assert studio.process.wait(30) == 0
+    assert not os.path.exists(page)
+    with socket.socket() as probe:
+        assert probe.connect_ex(("127.0.0.1", int(rig.names.split(":")[1]))) != 0, "the name server runs on"
 
 
 # A saved system with its world, started paused, and gone with the studio.

@@ -11,6 +11,7 @@
 #include "channels/ros/messages.h"
 #include "studio/acts.h"
 #include "studio/client_message.h"
+#include "studio/connection_graph.h"
 #include "studio/door.h"
 #include "studio/foxglove.h"
 #include "studio/hall.h"
@@ -564,6 +565,20 @@ TEST(ShownPicture, messages_are_read_and_damaged_ones_refused) {
   const auto packed = ros::encode(packed_image);
   EXPECT_EQ(*studio::jpeg_in_message("sensor_msgs/msg/CompressedImage", {packed.data(), packed.size()}), *jpeg);
   EXPECT_FALSE(studio::jpeg_in_message("RTC::CameraImage", whole).ok());
+}
+
+TEST(ConnectionGraph, names_who_publishes_a_topic_and_who_receives_it) {
+  const auto system = studio::Json::parse(R"({"components":[{"path":"/h/A0.rtc","instance":"A0"},{"path":"/h/B0.rtc","instance":"B0"}],
+    "connections":[{"ports":["/h/A0.rtc:out","/h/B0.rtc:in"]}]})");
+  const auto signals = studio::Json::parse(R"({"signals":[{"topic":"/A0/out","kind":"port","component":"/h/A0.rtc"},
+    {"topic":"/sim/laser/x","kind":"iface"},{"topic":"/C0/out","kind":"port","component":"/h/C0.rtc"}]})");
+  const auto graph = studio::connection_graph(system, signals);
+  EXPECT_EQ(graph["publishedTopics"].dump(), R"([{"name":"/A0/out","publisherIds":["A0"]}])");
+  EXPECT_EQ(graph["subscribedTopics"].dump(), R"([{"name":"/A0/out","subscriberIds":["B0"]}])");
+  const auto nobody = studio::connection_graph({}, {});
+  EXPECT_EQ(studio::Json::parse(studio::graph_update(graph, nobody))["removedTopics"].dump(), R"(["/A0/out"])");
+  const auto cut = studio::connection_graph({{"components", system["components"]}}, signals);
+  EXPECT_EQ(studio::Json::parse(studio::graph_update(graph, cut))["subscribedTopics"].dump(), R"([{"name":"/A0/out","subscriberIds":[]}])");
 }
 
 }  // namespace

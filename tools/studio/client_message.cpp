@@ -102,6 +102,8 @@ Result<ClientMessage> parse_message(std::string_view text) {
   if (name == "request") return request_of(json);
   if (name == "subscribe") return subscribe_of(json);
   if (name == "unsubscribe") return unsubscribe_of(json);
+  if (name == "subscribeConnectionGraph") return ClientMessage(GraphWish{true});
+  if (name == "unsubscribeConnectionGraph") return ClientMessage(GraphWish{false});
   return ClientMessage(Unused{name.substr(0, most_name)});
 }
 

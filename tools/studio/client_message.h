@@ -28,6 +28,9 @@ struct Subscribe {
 struct Unsubscribe {
   std::vector<std::uint32_t> ids;
 };
+struct GraphWish {
+  bool is_wanted = false;  // the connection graph
+};
 // Of rtmsim.studio.v1.
 struct Request {
   std::int64_t id = 0;
@@ -40,7 +43,7 @@ struct Unused {
   std::string op;
 };
 
-using ClientMessage = std::variant<Subscribe, Unsubscribe, Request, Unused>;
+using ClientMessage = std::variant<Subscribe, Unsubscribe, GraphWish, Request, Unused>;
 
 base::Result<ClientMessage> parse_message(std::string_view text);
 

@@ -22,10 +22,10 @@ void put_u32(std::string& out, std::uint32_t value) { put(out, value); }
 void put_u64(std::string& out, std::uint64_t value) { put(out, value); }
 void put_f32(std::string& out, float value) { put(out, std::bit_cast<std::uint32_t>(value)); }
 
-std::string server_info(std::string_view session) {
+std::string server_info(std::string_view session, bool has_graph) {
   return to_text({{"op", "serverInfo"},
                   {"name", "rtm-studio " RTMSIM_VERSION},
-                  {"capabilities", Json::array({"time"})},
+                  {"capabilities", has_graph ? Json::array({"time", "connectionGraph"}) : Json::array({"time"})},
                   {"metadata", Json::object()},
                   {"sessionId", std::string(session)}});
 }

@@ -12,6 +12,7 @@
 namespace studio {
 
 inline constexpr std::string_view foxglove_protocol = "foxglove.websocket.v1";
+inline constexpr std::string_view foxglove_sdk_protocol = "foxglove.sdk.v1";  // newer clients; the same messages
 inline constexpr std::string_view studio_protocol = "rtmsim.studio.v1";
 
 // Octets that are the same on the wire of every machine: the low one first.
@@ -20,7 +21,8 @@ void put_u32(std::string& out, std::uint32_t value);
 void put_u64(std::string& out, std::uint64_t value);
 void put_f32(std::string& out, float value);
 
-std::string server_info(std::string_view session);
+// `has_graph`: it answers subscribeConnectionGraph.
+std::string server_info(std::string_view session, bool has_graph);
 std::string status(int level, std::string_view message);  // 0 info, 1 warning, 2 error
 std::string message_data(std::uint32_t subscription, std::chrono::nanoseconds time, std::span<const char> octets);
 std::string time_data(std::chrono::nanoseconds time);

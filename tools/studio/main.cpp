@@ -5,16 +5,21 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include "base/command_line.h"
 #include "base/terminal.h"
 #include "base/text.h"
 #include "recording/ring.h"
+#include "shm/request_board.h"
 #include "studio/hall.h"
+#include "studio/open_page.h"
 #include "studio/recorded_studio.h"
+#include "studio/start_hints.h"
 #include "studio/started_run.h"
 #include "studio/studio.h"
+#include "system/naming_tree.h"
 #include "system/orb.h"
 #include "system/remote.h"
 
@@ -26,6 +31,7 @@ struct Settings {
   std::string page = studio::default_page_folder();
   double call_limit_s = 1;
   studio::StartOptions start;
+  bool opens = false;  // a browser, and what is missing
 };
 
 void add_options(base::Command& app, Settings& settings) {
@@ -33,6 +39,9 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("FILE", settings.start.system,
                  "RTSProfile: start its components and a simulator of --world, paused, as rtse run does. Recording (MCAP): show it")
       ->check(recorder::check_recording);
+  app.add_flag("--open", settings.opens,
+               "Open the page in the browser. Without FILE, also start what is missing: a simulator of --world (default: the obstacle "
+               "course), and a name server with an empty component host. All of it ends with rtm-studio");
   app.add_option("--ns", settings.studio.name_server,
                  "Name server HOST[:PORT] of a running system (default: the first of $RTCTREE_NAMESERVERS, else localhost:2809). FILE gets "
                  "one of its own");
@@ -78,7 +87,16 @@ int serve(boost::asio::io_context& loop, const Settings& settings, const studio:
   studio::Hall hall(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only});
   const auto server = studio::WebServer::open(loop, settings.web, page, hall.handlers());
   if (!server) return fail(server.error());
-  std::cout << url_of(settings.web, **server) << std::endl;
+  const std::string url = url_of(settings.web, **server);
+  std::cout << url << std::endl;
+  std::optional<studio::OpenPage> browser;
+  if (settings.opens) {
+    auto opened = studio::OpenPage::open(url);
+    if (opened)
+      browser.emplace(std::move(*opened));
+    else
+      std::cerr << "rtm-studio: --open: " << opened.error().message << '\n';
+  }
   loop.run();
   return 0;
 }
@@ -96,6 +114,15 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
     return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
   const editor::Orb orb;
   ErrorStream errors;
+  std::optional<editor::ChildProcess> host;
+  if (settings.opens && settings.start.system.empty()) {
+    if (settings.start.world.empty() && !shm::Requester::open(settings.studio.server_id)) settings.start.world = studio::usual_world();
+    if (!editor::NamingTree::read(orb.get(), settings.studio.name_server, settings.studio.call_limit)) {
+      auto started = studio::start_host(settings.studio.name_server);
+      if (!started) return fail(started.error());
+      host.emplace(std::move(*started));
+    }
+  }
   std::unique_ptr<studio::StartedRun> started;
   if (!settings.start.world.empty()) {
     auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id, errors);

@@ -95,7 +95,7 @@ bool RecordedStudio::fetch(const std::string& path, const std::string& query, co
 // ---- viewers ----
 
 void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
-  viewer->send(text_frame(server_info(session_)));
+  viewer->send(text_frame(server_info(session_, false)));
   if (!viewer->speaks_studio()) {
     return viewer->send(text_frame(status(2, "a recording is open here, nothing runs: open " + base::in_quotes(facts_->file) + " itself")));
   }

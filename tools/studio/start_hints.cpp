@@ -41,22 +41,26 @@ std::string program(const std::string& name) {
 
 fs::path prefix() { return fs::path(editor::own_program("rtcd")).parent_path().parent_path(); }
 
-std::string world() {
+}  // namespace
+
+std::string usual_world() {
   std::error_code error;
   for (const auto& folder : {fs::current_path(error), prefix() / "share/rtm-sim", prefix().parent_path().parent_path()}) {
     if (is_there(folder / "worlds/obstacle_course.sdf")) return shown(folder / "worlds/obstacle_course.sdf");
   }
-  return "WORLD.sdf";
+  return {};
 }
 
-}  // namespace
+std::string own_modules() {
+  const fs::path installed = prefix() / "lib/rtm-sim";
+  return shown(is_there(installed / "RTCLaser.so") ? installed : prefix() / "lib");
+}
 
 StartHints start_hints(std::uint32_t server_id, const std::string& name_server) {
-  std::vector<std::string> simulator{program("sim-server"), world()};
+  const std::string world = usual_world();
+  std::vector<std::string> simulator{program("sim-server"), world.empty() ? "WORLD.sdf" : world};
   if (server_id != 0) simulator.insert(simulator.end(), {"-s", std::to_string(server_id)});
-  const fs::path installed = prefix() / "lib/rtm-sim";
-  std::vector<std::string> host{program("rtcd"), "--with-naming", "-o",
-                                "manager.modules.load_path:" + shown(is_there(installed / "RTCLaser.so") ? installed : prefix() / "lib")};
+  std::vector<std::string> host{program("rtcd"), "--with-naming", "-o", "manager.modules.load_path:" + own_modules()};
   if (name_server != "localhost" && name_server != "localhost:2809") host.insert(host.end(), {"-o", "corba.nameservers:" + name_server});
   const std::string device = server_id == 0 ? "" : "?conf.default.server_id=" + std::to_string(server_id);
   host.insert(host.end(), {"RTCLaser" + device, "RTCPosition2d" + device, "LaserObstacleAvoid"});

@@ -14,4 +14,9 @@ struct StartHints {
 };
 StartHints start_hints(std::uint32_t server_id, const std::string& name_server);
 
+// The first world to show: the obstacle course in this folder, of the installation or of the build tree. Empty: it is nowhere.
+std::string usual_world();
+// The folder of the modules of components that belong to this program.
+std::string own_modules();
+
 }  // namespace studio

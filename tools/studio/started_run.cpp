@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "run/run_script.h"
 #include "shm/request_board.h"
+#include "studio/start_hints.h"
 
 namespace studio {
 namespace {
@@ -130,6 +131,14 @@ class WorldRun final : public StartedRun {
 };
 
 }  // namespace
+
+Result<editor::ChildProcess> start_host(const std::string& name_server) {
+  // Its modules are looked for where it runs; the manager's own log is for its folder.
+  return editor::ChildProcess::start({{editor::own_program("rtcd"), "--with-naming", "-o", "corba.nameservers:" + name_server, "-o",
+                                       "manager.modules.load_path:" + own_modules(), "-o", "naming.update.interval:1"},
+                                      {},
+                                      "/dev/null"});
+}
 
 Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
                                                       editor::Reporter& reporter) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/child_process.h"
 #include "base/result.h"
 #include "system/reporter.h"
 
@@ -19,6 +20,9 @@ struct StartOptions {
   std::string world;                          // SDFormat
   std::vector<std::string> resource_paths{};  // where else the simulator looks for what the world names; without a system
 };
+
+// An empty component host with a name server at `name_server`. Ends both with this object.
+base::Result<editor::ChildProcess> start_host(const std::string& name_server);
 
 class StartedRun {
  public:

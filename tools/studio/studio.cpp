@@ -1,5 +1,4 @@
 #include "studio/studio.h"
-#include "studio/start_hints.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -10,8 +9,10 @@
 #include "base/shell_word.h"
 #include "base/text.h"
 #include "studio/acts.h"
+#include "studio/connection_graph.h"
 #include "studio/foxglove.h"
 #include "studio/scene.h"
+#include "studio/start_hints.h"
 #include "system/remote.h"
 
 namespace studio {
@@ -91,7 +92,7 @@ WebHandlers Studio::handlers() {
 void Studio::join(std::shared_ptr<Viewer> viewer) {
   Guest& guest = guests_.try_emplace(viewer->id()).first->second;
   guest.viewer = std::move(viewer);
-  guest.viewer->send(text_frame(server_info(session_)));
+  guest.viewer->send(text_frame(server_info(session_, true)));
   if (!guest.viewer->speaks_studio()) {
     for (const auto& [id, channel] : channels_->open_channels()) guest.viewer->send(text_frame(advertise(id, channel)));
     channels_->tend();
@@ -134,6 +135,7 @@ void Studio::hear(Viewer& viewer, std::string_view text) {
   }
   if (const auto* wish = std::get_if<Subscribe>(&*message)) return subscribe(found->second, *wish);
   if (const auto* wish = std::get_if<Unsubscribe>(&*message)) return unsubscribe(found->second, *wish);
+  if (const auto* wish = std::get_if<GraphWish>(&*message)) return see_graph(found->second, wish->is_wanted);
   if (const auto* unused = std::get_if<Unused>(&*message))
     viewer.send(text_frame(status(1, "op " + base::in_quotes(unused->op) + ": is not offered by this server")));
 }
@@ -250,6 +252,22 @@ void Studio::unsubscribe(Guest& guest, const Unsubscribe& message) {
     guest.viewer->drop(channel_key(id));
   }
   want_channels(gone);
+}
+
+void Studio::see_graph(Guest& guest, bool is_wanted) {
+  guest.sees_graph = is_wanted;
+  if (graph_.is_null()) graph_ = connection_graph({}, {});  // no look at the system has ended yet
+  if (is_wanted) guest.viewer->send(text_frame(graph_update({}, graph_)));
+}
+
+void Studio::tell_graph() {
+  Json now = connection_graph(system_event_, book_.event());
+  if (now == graph_) return;
+  const Frame frame = text_frame(graph_update(graph_, now));
+  graph_ = std::move(now);
+  for (auto& [id, guest] : guests_) {
+    if (guest.sees_graph) guest.viewer->send(frame);
+  }
 }
 
 // Those that nobody has subscribed to any more.
@@ -392,6 +410,8 @@ void Studio::tell_system(SystemNews news) {
     logs_->take_system(system);
     tell("system", std::move(news.structure));
     if (has_changed) tell("signals", to_text(book_.event()));
+    system_event_ = system;
+    tell_graph();
   } else {
     tell("system.states", std::move(news.states));
   }

@@ -48,6 +48,7 @@ class Studio {
     std::uint64_t seen_poses = 0, seen_lines = 0;
     std::size_t open_requests = 0;
     std::map<std::uint32_t, channels::ChannelId> subscriptions;
+    bool sees_graph = false;
   };
   void join(std::shared_ptr<Viewer> viewer);
   void leave(Viewer& viewer);
@@ -74,6 +75,8 @@ class Studio {
   void tell_poses(std::shared_ptr<const Poses> poses);
   void subscribe(Guest& guest, const Subscribe& message);
   void unsubscribe(Guest& guest, const Unsubscribe& message);
+  void see_graph(Guest& guest, bool is_wanted);
+  void tell_graph();
   void want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed);
   void tell_channel(channels::ChannelId id, const channels::Channel& channel);
   void tell_no_channel(channels::ChannelId id);
@@ -91,6 +94,7 @@ class Studio {
   std::string session_;
   std::map<std::uint64_t, Guest> guests_;
   std::map<std::string, Frame> newest_;  // events by key
+  Json system_event_, graph_;            // of the newest structure
   PoseBoard board_;
   SignalBook book_;
   Drives drives_;

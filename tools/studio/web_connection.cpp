@@ -34,7 +34,7 @@ std::shared_ptr<const std::string> shared_text(std::string_view text) { return s
 // The first of ours that the client speaks; empty: none.
 std::string_view agreed_protocol(std::string_view offered) {
   const auto names = base::split_list(offered);
-  for (const std::string_view protocol : {studio_protocol, foxglove_protocol}) {
+  for (const std::string_view protocol : {studio_protocol, foxglove_sdk_protocol, foxglove_protocol}) {
     if (std::find(names.begin(), names.end(), protocol) != names.end()) return protocol;
   }
   return {};
@@ -131,7 +131,8 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
   void upgrade(const std::string& path, std::string_view protocols) {
     const auto protocol = agreed_protocol(protocols);
     if (path != "/ws") return refuse(404, "the WebSocket is at /ws");
-    if (protocol.empty()) return refuse(400, "expected the WebSocket subprotocol rtmsim.studio.v1 or foxglove.websocket.v1");
+    if (protocol.empty())
+      return refuse(400, "expected the WebSocket subprotocol rtmsim.studio.v1, foxglove.sdk.v1 or foxglove.websocket.v1");
     if (shared_->viewers >= most_viewers) return refuse(503, "there are 32 viewers already");
     stream_.expires_never();  // the WebSocket has its own
     serve_viewer(shared_, std::move(stream_), std::move(request_), protocol);
