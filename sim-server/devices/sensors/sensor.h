@@ -59,6 +59,10 @@ class Sensor : public Device {
   }
   std::span<float> ranges() const { return writer_->ranges(); }
   std::span<float> intensities() const { return writer_->intensities(); }
+  template <class Element>
+  std::span<Element> followers(std::size_t array) const {
+    return writer_->followers<Element>(array);
+  }
   std::span<shm::Contact> contacts() const { return writer_->contacts(); }
   shm::CommandChange poll_command(shm::Command& command) { return writer_->poll_command(command); }
 
