@@ -107,8 +107,8 @@ enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one l
 
 /* What a client commands. header.command_values doubles follow it; what a client does not give is 0. Velocity: position2d vx vy va;
  * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Joints: for each joint of the iface
- * mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows the commands
- * of all its clients, each for its own joints. */
+ * mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows the
+ * commands of all its clients, each for its own joints. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
   int64_t sim_time_ns; /* when the commander saw the clock, or 0 */
