@@ -54,6 +54,7 @@ coil::Properties properties_of(const Specification& specification) {
   properties["lang_type"] = "compile";
   properties["exec_cxt.periodic.rate"] = "1000";
   properties["exec_cxt.sim_time.phase"] = std::to_string(specification.phase);
+  if (specification.inport_buffer > 0) properties["port.inport.dataport.buffer.length"] = std::to_string(specification.inport_buffer);
   for (const auto& parameter : parameters) properties[std::string("conf.default.") + parameter.name] = parameter.value;
   for (const auto& parameter : parameters) properties[std::string("conf.__type__.") + parameter.name] = parameter.type;
   for (const auto& parameter : parameters) properties[std::string("conf.__widget__.") + parameter.name] = parameter.widget;

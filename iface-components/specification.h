@@ -34,6 +34,7 @@ struct Specification {
   int phase = sensor_phase;
   const char* device = "";              // the default of device_id; empty: there is no device_id
   std::vector<Parameter> parameters{};  // beside server_id and device_id
+  int inport_buffer = 0;                // samples that each InPort keeps; 0: the usual number
 
   // The default of a parameter of these.
   const char* value_of(const std::string& name) const;

@@ -38,6 +38,10 @@ using ForceTorqueSample = ::rtmsim_force_torque_sample;
 using AltimeterSample = ::rtmsim_altimeter_sample;
 using MagnetometerSample = ::rtmsim_magnetometer_sample;
 using AirPressureSample = ::rtmsim_air_pressure_sample;
+using JointsInfo = ::rtmsim_joints_info;
+using Joint = ::rtmsim_joint;
+using JointState = ::rtmsim_joint_state;
+using JointsSample = ::rtmsim_joints_sample;
 using TruthInfo = ::rtmsim_truth_info;
 using TruthSample = ::rtmsim_truth_sample;
 
@@ -58,6 +62,7 @@ enum class IfaceType : std::uint32_t {
   altimeter = RTMSIM_ALTIMETER,
   magnetometer = RTMSIM_MAGNETOMETER,
   air_pressure = RTMSIM_AIR_PRESSURE,
+  joints = RTMSIM_JOINTS,
 };
 
 struct IfaceRow {
@@ -210,6 +215,34 @@ inline constexpr std::array magnetometer_sample{field<&MagnetometerSample::stamp
 inline constexpr std::array air_pressure_sample{field<&AirPressureSample::stamp>("stamp"),
                                                 field<&AirPressureSample::pressure>("pressure", "Pa")};
 
+inline constexpr std::array joints_info{field<&JointsInfo::model>("model"), field<&JointsInfo::rate>("rate", "Hz"),
+                                        field<&JointsInfo::count>("count"), followers("joints", 0)};
+inline constexpr std::array joint_fields{field<&Joint::name>("name"),
+                                         field<&Joint::id>("id"),
+                                         field<&Joint::kind>("kind"),
+                                         field<&Joint::link>("link"),
+                                         field<&Joint::parent>("parent"),
+                                         field<&Joint::lower>("lower", "rad or m"),
+                                         field<&Joint::upper>("upper", "rad or m"),
+                                         field<&Joint::max_velocity>("max_velocity", "rad/s or m/s"),
+                                         field<&Joint::max_effort>("max_effort", "N m or N"),
+                                         field<&Joint::rest>("rest", "rad or m"),
+                                         field<&Joint::p>("p"),
+                                         field<&Joint::i>("i"),
+                                         field<&Joint::d>("d"),
+                                         field<&Joint::gains_from>("gains_from"),
+                                         flag<&Joint::compensated>("compensated"),
+                                         field<&Joint::axis>("axis"),
+                                         field<&Joint::pose>("pose")};
+inline constexpr std::array joints_sample{field<&JointsSample::stamp>("stamp"), field<&JointsSample::commanded>("commanded"),
+                                          followers("joints", 0)};
+inline constexpr std::array joint_state_fields{field<&JointState::position>("position", "rad or m"),
+                                               field<&JointState::velocity>("velocity", "rad/s or m/s"),
+                                               field<&JointState::effort>("effort", "N m or N"),
+                                               field<&JointState::target>("target"),
+                                               field<&JointState::mode>("mode"),
+                                               field<&JointState::status>("status")};
+
 inline constexpr std::array truth_info{field<&TruthInfo::model>("model")};
 inline constexpr std::array truth_sample{field<&TruthSample::stamp>("stamp"), field<&TruthSample::pose>("pose"),
                                          field<&TruthSample::velocity>("velocity", "m/s, rad/s")};
@@ -219,6 +252,7 @@ inline constexpr std::array truth_sample{field<&TruthSample::stamp>("stamp"), fi
 inline constexpr std::uint64_t most_values = std::uint64_t{1} << 24;
 inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
 inline constexpr std::uint64_t most_contacts = 65536;
+inline constexpr std::uint64_t most_joints = 4096;
 
 constexpr auto beams = [](const void* info) {
   const auto& laser = *static_cast<const LaserInfo*>(info);
@@ -226,6 +260,7 @@ constexpr auto beams = [](const void* info) {
 };
 constexpr auto transducers = [](const void* info) { return std::uint64_t{static_cast<const SonarInfo*>(info)->count}; };
 constexpr auto capacity = [](const void* info) { return std::uint64_t{static_cast<const BumperInfo*>(info)->capacity}; };
+constexpr auto joints_of = [](const void* info) { return std::uint64_t{static_cast<const JointsInfo*>(info)->count}; };
 constexpr auto pixels = [](const void* info) {
   const auto& camera = *static_cast<const CameraInfo*>(info);
   return std::uint64_t{camera.width} * camera.height;
@@ -365,6 +400,20 @@ inline constexpr std::array iface_types{
              .sample_size = detail::size<AirPressureSample, 40>(),
              .info = detail::meter_info_without_joint,
              .sample = detail::air_pressure_sample},
+    IfaceRow{.type = IfaceType::joints,
+             .name = "joints",
+             .meaning = "joints of an arm, hand or other model",
+             .info_size = detail::size<JointsInfo, 144>(),
+             .sample_size = detail::size<JointsSample, 40>(),
+             .info = detail::joints_info,
+             .sample = detail::joints_sample,
+             .count = detail::joints_of,
+             .most = detail::most_joints,
+             .info_tail = {1, detail::size<Joint, 448>(), detail::joint_fields},
+             .sample_tail = {1, detail::size<JointState, 40>(), detail::joint_state_fields},
+             .filled = detail::part<&JointsSample::count>(),
+             .is_always_full = true},
+    // A new type gets its row here.
 };
 
 // --- what follows from it

@@ -44,7 +44,12 @@ enum class AreaIndex : std::size_t {
   participants = RTMSIM_AREA_PARTICIPANTS,
 };
 
-enum class CommandKind : std::uint32_t { stop = RTMSIM_COMMAND_STOP, velocity = RTMSIM_COMMAND_VELOCITY, pose = RTMSIM_COMMAND_POSE };
+enum class CommandKind : std::uint32_t {
+  stop = RTMSIM_COMMAND_STOP,
+  velocity = RTMSIM_COMMAND_VELOCITY,
+  pose = RTMSIM_COMMAND_POSE,
+  joints = RTMSIM_COMMAND_JOINTS
+};
 
 // A command as a device sees it.
 struct Command {

@@ -41,6 +41,7 @@ enum {
   RTMSIM_ALTIMETER = 14,
   RTMSIM_MAGNETOMETER = 15,
   RTMSIM_AIR_PRESSURE = 16,
+  RTMSIM_JOINTS = 17,
 };
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
@@ -105,7 +106,9 @@ typedef struct {
 enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one lease has it */
 
 /* What a client commands. header.command_values doubles follow it; what a client does not give is 0. Velocity: position2d vx vy va;
- * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. */
+ * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Joints: for each joint of the iface
+ * mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows the
+ * commands of all its clients, each for its own joints. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
   int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
@@ -116,7 +119,7 @@ typedef struct {
 /* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had left. */
 enum { RTMSIM_COMMAND_TIMED = 1 };
 
-enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2 };
+enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2, RTMSIM_COMMAND_JOINTS = 3 };
 
 typedef struct {
   uint64_t owner;               /* [atomic] (pid << 32) | a number unique in that process; 0 = free */
@@ -404,6 +407,63 @@ typedef struct {
   rtmsim_pose pose;
   double velocity[6]; /* linear x y z, angular x y z, world frame */
 } rtmsim_truth_sample;
+
+/* Modes of a joint; in commands what `value` is. Velocity and effort of a command for a position are fed
+ * forward; the effort of one for a velocity is the highest that the joint may use, 0: its own. */
+enum {
+  RTMSIM_JOINT_NONE = 0,     /* nobody has commanded it */
+  RTMSIM_JOINT_POSITION = 1, /* value: target [rad or m]. With a velocity the target moves on with it until the next command, 50 ms at most;
+                                without, the joint goes there at its highest velocity */
+  RTMSIM_JOINT_VELOCITY = 2, /* value: [rad/s or m/s] */
+  RTMSIM_JOINT_EFFORT = 3,   /* value: [N m or N] */
+  RTMSIM_JOINT_FREE = 4,
+  RTMSIM_JOINT_BRAKE = 5,
+  RTMSIM_JOINT_DISABLED = 6,     /* only in samples: the joint left the numbers; until a reset */
+  RTMSIM_JOINT_COMPENSATED = 256 /* added to the mode of a command: the effort that gravity needs is added, whatever the gains say */
+};
+enum { RTMSIM_JOINT_IDLE = 0, RTMSIM_JOINT_MOVING = 1, RTMSIM_JOINT_BRAKED = 2, RTMSIM_JOINT_STALLED = 3 };
+enum { RTMSIM_JOINT_TURNS = 1, RTMSIM_JOINT_SLIDES = 2 };
+#define RTMSIM_JOINT_VALUES 4 /* of a command, for each joint */
+
+/* `count` joints (rtmsim_joint) follow. */
+typedef struct {
+  uint32_t count;
+  uint32_t reserved;
+  double rate;
+  char model[128];
+} rtmsim_joints_info;
+
+typedef struct {
+  char name[96];        /* as in the file, scoped */
+  char link[96];        /* that it moves */
+  char gains_from[96];  /* where p, i and d come from */
+  uint32_t id;          /* index into this list and those of samples and commands */
+  uint32_t kind;        /* RTMSIM_JOINT_TURNS or RTMSIM_JOINT_SLIDES */
+  uint32_t parent;      /* 1 + id of the joint that carries it; 0: the model's base */
+  uint32_t compensated; /* gravity is compensated when the position or velocity is controlled */
+  double lower, upper;  /* limits [rad or m]; infinite without */
+  double max_velocity, max_effort;
+  double rest;    /* position at the start */
+  double p, i, d; /* gains: effort for each unit of the position, of its integral, of the velocity */
+  double axis[3]; /* in the joint's frame */
+  rtmsim_pose
+      pose; /* of the joint's frame at position 0, in the frame of the parent joint or of the model; it is that of the link's motion */
+} rtmsim_joint;
+
+typedef struct {
+  double position, velocity; /* [rad or m]; whole turns count where the joint has limits */
+  double effort;             /* of the motor or brake in the last step [N m or N] */
+  double target;             /* in the unit of the mode */
+  uint32_t mode;             /* RTMSIM_JOINT_* */
+  uint32_t status;
+} rtmsim_joint_state;
+
+/* `count` states (rtmsim_joint_state) follow. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t commanded; /* joints that a living client commands */
+} rtmsim_joints_sample;
 
 /* ---- simulation: requests ---- */
 

@@ -36,13 +36,28 @@ IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slot
   return spec;
 }
 
+namespace {
+
+// The info and what follows it.
+template <class Info, class Element>
+IfaceSpec spec_with(IfaceType type, const std::string& name, Info info, std::span<const Element> elements) {
+  info.count = static_cast<std::uint32_t>(elements.size());
+  std::vector<std::byte> bytes(sizeof info + elements.size_bytes());
+  std::memcpy(bytes.data(), &info, sizeof info);
+  if (!elements.empty()) std::memcpy(bytes.data() + sizeof info, elements.data(), elements.size_bytes());
+  return iface_spec(type, name, std::span<const std::byte>(bytes));
+}
+
+}  // namespace
+
 IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses) {
-  SonarInfo counted = info;
-  counted.count = static_cast<std::uint32_t>(poses.size());
-  std::vector<std::byte> bytes(sizeof counted + poses.size_bytes());
-  std::memcpy(bytes.data(), &counted, sizeof counted);
-  if (!poses.empty()) std::memcpy(bytes.data() + sizeof counted, poses.data(), poses.size_bytes());
-  return iface_spec(IfaceType::sonar, name, std::span<const std::byte>(bytes));
+  return spec_with(IfaceType::sonar, name, info, poses);
+}
+
+IfaceSpec joints_spec(const std::string& name, const JointsInfo& info, std::span<const Joint> joints) {
+  IfaceSpec spec = spec_with(IfaceType::joints, name, info, joints);
+  spec.geometry.command_values = RTMSIM_JOINT_VALUES * static_cast<std::uint32_t>(joints.size());
+  return spec;
 }
 
 IfaceSpec camera_spec(IfaceType type, const std::string& name, const CameraInfo& info, std::uint32_t slots) {

@@ -34,7 +34,8 @@ inline constexpr std::uint32_t most_participants = 1024;
 
 // Those that are more than a copy of their info.
 IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = most_participants);
-IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses);  // info.count is set to poses.size()
+IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses);      // info.count is set to poses.size()
+IfaceSpec joints_spec(const std::string& name, const JointsInfo& info, std::span<const Joint> joints);  // info.count, likewise
 // type: camera, depth or points. stride and frame_size are computed when 0.
 IfaceSpec camera_spec(IfaceType type, const std::string& name, const CameraInfo& info, std::uint32_t slots = 4);
 

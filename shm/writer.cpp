@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "shm/writer_impl.h"
 
@@ -91,7 +93,7 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   impl.seen_command = latest;
   if (owner == 0) return impl.lose();  // commanded and went before we looked
   const bool is_finite = std::ranges::all_of(impl.fresh_values, [](double value) { return std::isfinite(value); });
-  if (!is_finite || fresh.kind > RTMSIM_COMMAND_POSE) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  if (!is_finite || fresh.kind > RTMSIM_COMMAND_JOINTS) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.commander = owner;
   impl.commander_lease = index;
   impl.command_values.swap(impl.fresh_values);
@@ -101,7 +103,53 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   return CommandChange::fresh;
 }
 
+bool IfaceWriter::poll_commands(const TakeCommand& take) {
+  Impl& impl = *impl_;
+  const std::uint64_t latest = load(impl.segment.header().command_latest);  // pairs with the release in Iface::command
+  if (latest == impl.seen_command) return false;
+  impl.seen_command = latest;
+  const std::size_t count = impl.segment.area(AreaIndex::leases).count, last = latest & 0xffff;
+  impl.seen_of_leases.resize(count);
+  const auto deliver = [&](std::size_t index) {
+    const auto& lease = impl.segment.as<Lease>(AreaIndex::leases, index);
+    const std::uint64_t owner = load(lease.owner);
+    auto& seen = impl.seen_of_leases[index];
+    CommandHead fresh;
+    if (owner == 0 || load(lease.command.sequence) == seen || !impl.read_command(index, fresh)) return;
+    if (std::exchange(seen, fresh.sequence) == fresh.sequence) return;
+    if (fresh.kind > RTMSIM_COMMAND_JOINTS || !std::ranges::all_of(impl.fresh_values, [](double v) { return std::isfinite(v); })) return;
+    take(owner, {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.fresh_values});
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i != last) deliver(i);
+  }
+  if (last < count) deliver(last);
+  return true;
+}
+
+bool IfaceWriter::holds_lease(std::uint64_t owner) const {
+  const std::size_t count = impl_->segment.area(AreaIndex::leases).count;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (load(impl_->segment.as<Lease>(AreaIndex::leases, i).owner) == owner) return true;
+  }
+  return false;
+}
+
+std::uint32_t IfaceWriter::owners_change() const { return load(impl_->segment.header().lease_epoch); }  // pairs with change_epoch
+
+std::string IfaceWriter::client_name(std::uint64_t owner) const {
+  const std::size_t count = impl_->segment.area(AreaIndex::leases).count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& lease = impl_->segment.as<Lease>(AreaIndex::leases, i);
+    if (load(lease.owner) == owner) return {lease.name, strnlen(lease.name, sizeof lease.name)};
+  }
+  return "pid " + std::to_string(owner_pid(owner));
+}
+
 void IfaceWriter::drop_command() {
+  auto& seen = impl_->seen_of_leases;
+  seen.resize(impl_->segment.area(AreaIndex::leases).count);
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = load(impl_->segment.as<Lease>(AreaIndex::leases, i).command.sequence);
   impl_->seen_command = load(impl_->segment.header().command_latest);  // pairs with the release in Iface::command
 }
 

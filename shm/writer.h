@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -73,6 +74,15 @@ class IfaceWriter {
   // ---- commands ----
   // The latest command of all clients wins. Values are finite and kind is known; anything else is not delivered.
   CommandChange poll_command(Command& command);
+  // For ifaces that follow all their clients: each command since the last call, one for each client, the latest of all last. Returns false,
+  // at the cost of one load, when there is none. `owner` names the client until it detaches.
+  using TakeCommand = std::function<void(std::uint64_t owner, const Command& command)>;
+  bool poll_commands(const TakeCommand& take);
+  // Whether this client, as poll_commands named it, still holds a lease. `owners_change()` differs after each lease that was taken or
+  // released.
+  bool holds_lease(std::uint64_t owner) const;
+  std::uint32_t owners_change() const;
+  std::string client_name(std::uint64_t owner) const;  // of its program, for people
   // What has been commanded and not been taken yet is not delivered.
   void drop_command();
   // Pid of the client whose command is in force, 0 = none.

@@ -52,7 +52,8 @@ struct IfaceWriter::Impl {
   std::uint64_t seen_command = 0;
   std::uint64_t commander = 0;  // owner word of the lease whose command is in force
   std::size_t commander_lease = 0;
-  bool is_cut_told = false;  // under the lock of the server's ifaces
+  std::vector<std::uint64_t> seen_of_leases;  // sequence of the command taken last, by lease; see poll_commands
+  bool is_cut_told = false;                   // under the lock of the server's ifaces
 
   Stamp next_stamp(std::chrono::nanoseconds sim_time, bool is_valid) const {
     return {sequence + 1, sim_time.count(), wall_ns(), is_valid ? 1U : 0U, resets};

@@ -5,6 +5,13 @@ rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES c
 rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
+rtmsim_component(ArmProbe scenario/arm_probe.cpp)
+foreach(case simctl act_array dead_commander gripper ptz robot_hardware)
+  add_test(NAME arms.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(arms.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
 foreach(case sonar imu gps bumper simulation motors wrong_device camera_formats camera_parameters camera_jpeg depth_camera drone

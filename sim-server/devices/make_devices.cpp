@@ -7,6 +7,7 @@
 #include "devices/device.h"
 #include "devices/drives/position2d.h"
 #include "devices/drives/position3d.h"
+#include "devices/joints/joints_device.h"
 #include "devices/sensors/camera.h"
 #include "devices/sensors/sensor_makers.h"
 #include "devices/sensors/sonar.h"
@@ -187,6 +188,12 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
   }
 }
 
+void make_joints(Makers& m) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  if (commandable_joints(def).empty() || !m.can_name(JointsDevice::name_of(def), "joints")) return;
+  m.take(JointsDevice::make(m.world, m.model));
+}
+
 }  // namespace
 
 base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
@@ -200,6 +207,7 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& wor
   }
   make_joint_sensors(m);
   make_sonars(m);
+  make_joints(m);
   if (!world.physics.is_static(model) && m.can_name(def.name, "true pose")) m.take(make_truth(world, model));
   if (m.failure) return *m.failure;
   return std::move(m.devices);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "physics/tree_solver.h"
-
 namespace sim {
 namespace {
 
@@ -23,7 +21,7 @@ void ContactGroups::add(ModelInstance& model) {
   member.parent = place;
   member.size = {.bodies = model.moving_body_count(),
                  .joint_rows = model.joint_rows(),
-                 .has_many_joints = model.tree().places.size() >= TreeSolver::least_bodies,
+                 .has_many_joints = model.is_for_tree(),
                  .has_trees_only = model.tree().is_one};
   members_.push_back(member);
 }

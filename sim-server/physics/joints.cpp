@@ -599,6 +599,29 @@ void JointInstance::set_drive(int axis, double velocity, double effort) {
   set_parameter(axis, dParamFMax, effort > 0 ? effort : def.friction);
 }
 
+// As ODE sees it in the next step.
+bool JointInstance::is_at_stop() const {
+  const Stops& stops = stops_[0];
+  const double position = sign_ * within_turn(0).position;
+  return position <= stops.low_in_ode || position >= stops.high_in_ode;
+}
+
+void JointInstance::set_row(const JointRow& row, bool is_in_tree) {
+  if (!has_row_) {
+    set_drive(0, 0, 0);
+    has_row_ = has_forces_ = true;
+  }
+  row_ = row;
+  drives_[0] = {row.velocity, row.most, true};
+  double most = row.most;
+  // At a stop ODE's own solver makes a motor an effort of all its strength.
+  if (most > 0 && !is_in_tree && stops_[0].exists() && is_at_stop())
+    most = std::min(most, std::abs(row.velocity - state(0).velocity) / std::max(row.give, 1e-9));
+  set_parameter(0, dParamVel, row.most > 0 ? sign_ * row.velocity : 0);
+  set_parameter(0, dParamFMax, row.most > 0 ? most : def_->axes[0].friction);
+  set_parameter(0, dParamCFM, row.most > 0 ? std::max(row.give, 1e-10) : 1e-10);
+}
+
 bool JointInstance::is_asleep() const {
   return (parent_ == nullptr || dBodyIsEnabled(parent_) == 0) && (child_ == nullptr || dBodyIsEnabled(child_) == 0);
 }
@@ -606,6 +629,7 @@ bool JointInstance::is_asleep() const {
 void JointInstance::apply(dJointGroupID step_joints, double dt) {
   // ODE keeps forces on sleeping bodies until they wake, and would add up those of every step.
   if (is_asleep()) return;
+  if (row_.push != 0) add_effort(0, row_.push);
   for (int i = 0; i < axis_count() && has_forces_; ++i) {
     const AxisDef& axis = def_->axes[static_cast<std::size_t>(i)];
     const double damping = damping_[static_cast<std::size_t>(i)];

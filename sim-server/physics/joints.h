@@ -80,6 +80,10 @@ class JointInstance {
   const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   void set_drive(int axis, double velocity, double effort);
 
+  // The motor of a controller, for the next step; `is_in_tree`: the solver along the tree of joints steps it.
+  void set_row(const JointRow& row, bool is_in_tree);
+  bool has_row() const { return has_row_; }
+
   // For joint_tree and tree_solver. Empty id: a gearbox.
   dJointID id() const { return joint_.id(); }
   std::uint32_t rows() const;            // of constraints that it makes while no stop is reached and no motor set
@@ -112,6 +116,7 @@ class JointInstance {
   void set_parameter(int axis, int base_parameter, double value);
   bool turns(int axis) const;
   bool is_screw() const;
+  bool is_at_stop() const;
   bool is_asleep() const;
   Eigen::Vector3d axis_in_world(int axis) const;
   double inertia_along(int axis) const;
@@ -142,6 +147,8 @@ class JointInstance {
   bool is_followed_ = false;
   std::array<Drive, 2> drives_;
   std::array<double, 2> damping_{0, 0};  // that is not ODE's
+  bool has_row_ = false;
+  JointRow row_;
   bool has_forces_ = false;
   std::optional<Coupling> coupling_;
   std::unique_ptr<dJointFeedback> feedback_;

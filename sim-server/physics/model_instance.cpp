@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "physics/tree_solver.h"
+
 namespace sim {
 namespace {
 
@@ -99,6 +101,14 @@ ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> bluepr
                              std::vector<std::string>& lost)
     : id_(id), blueprint_(std::move(blueprint)), base_(base) {
   ode::prepare_thread();
+  const auto& joints = blueprint_->model->joints;
+  for (std::uint32_t follower = 0; follower < joints.size(); ++follower) {
+    if (!joints[follower].mimic) continue;
+    for (std::uint32_t leader = 0; leader < joints.size(); ++leader) {
+      if (leader != follower && joints[leader].name == joints[follower].mimic->leader && joints[leader].axes.size() == 1)
+        mimics_.push_back({follower, leader});
+    }
+  }
   for (const Assembly& assembly : blueprint_->assemblies) mass_ += assembly.is_anchored ? 0 : assembly.mass;
   make_shapes(shapes, lost);
   place_anchored();
@@ -123,13 +133,14 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     int axis;
     double velocity, effort;
   };
-  std::vector<Order> orders;  // what the motors do now, they go on with
+  std::vector<Order> orders;  // what the motors do now, they go on with; controllers set theirs before each step
   for (const auto& joint : joints_) {
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 2 && !joint.has_row(); ++i) {
       if (joint.drive(i).is_set) orders.push_back({joint.index(), i, joint.drive(i).velocity, joint.drive(i).effort});
     }
   }
   joints_.clear();
+  has_rows_ = false;
   joint_places_.assign(blueprint_->model->joints.size(), -1);
   for (auto& shape : shapes_) {
     if (!blueprint_->assemblies[shape.assembly].is_anchored) dGeomSetBody(shape.geom.id(), nullptr);
@@ -253,6 +264,14 @@ void ModelInstance::set_drive(JointInstance& joint, int axis, double velocity, d
   has_forces_ = has_forces_ || joint.has_forces();
   if (velocity != 0 && effort > 0) wake();
 }
+
+void ModelInstance::set_row(JointInstance& joint, const JointRow& row) {
+  has_rows_ = has_forces_ = true;
+  joint.set_row(row, tree_.is_one);
+  if (row.keeps_awake) wake();
+}
+
+bool ModelInstance::is_for_tree() const { return has_rows_ || !mimics_.empty() || tree_.places.size() >= TreeSolver::least_bodies; }
 
 void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& physics) {
   if (!has_forces_) return;

@@ -86,6 +86,14 @@ class ModelInstance {
   void set_gravity(bool on);
   bool make_kinematic();
   void set_drive(JointInstance& joint, int axis, double velocity, double effort);
+  void set_row(JointInstance& joint, const JointRow& row);
+  // Joints that follow another one, by indexes into ModelDef::joints.
+  struct Mimic {
+    std::uint32_t follower = 0, leader = 0;
+  };
+  const std::vector<Mimic>& mimics() const { return mimics_; }
+  // The solver along the tree of joints steps it: it has many, or controllers, whose joints ODE's own solver would throw off their stops.
+  bool is_for_tree() const;
   // Of all that can move.
   Energy energy(const Eigen::Vector3d& gravity) const;
   bool has_stand_ins() const;
@@ -140,6 +148,8 @@ class ModelInstance {
   double mass_ = 0;
   bool has_forces_ = false;
   bool has_followed_ = false;  // joints
+  bool has_rows_ = false;      // controllers
+  std::vector<Mimic> mimics_;
   bool gravity_ = true, is_kinematic_ = false;
   std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster
   Aabb moving_box_;

@@ -415,8 +415,13 @@ JointState Physics::joint_state(JointId joint, int axis) const {
 void Physics::set_motor(JointId joint, int axis, double velocity, double effort) {
   ModelInstance& model = impl_->at(joint.model);
   JointInstance* instance = model.joint(joint.joint);
-  if (instance == nullptr || !std::isfinite(velocity) || std::isnan(effort)) return;
+  if (instance == nullptr || instance->has_row() || !std::isfinite(velocity) || std::isnan(effort)) return;
   model.set_drive(*instance, axis, velocity, effort);
+}
+
+void Physics::set_row(JointId joint, const JointRow& row) {
+  ModelInstance& model = impl_->at(joint.model);
+  if (JointInstance* instance = model.joint(joint.joint)) model.set_row(*instance, row);
 }
 
 std::optional<Wrench> Physics::joint_load(JointId joint) const {

@@ -46,6 +46,13 @@ struct JointState {
   double velocity = 0;  // [rad/s] or [m/s]
 };
 
+// A controlled motor in the next step: a row of the solver that asks for the velocity and gives way by `give` for each unit of effort, with
+// at most the effort `most`; and an effort `push` beside it.
+struct JointRow {
+  double velocity = 0, give = 1e-10, most = 0, push = 0;
+  bool keeps_awake = false;  // the model does not fall asleep in this step
+};
+
 // On a body, with the torque about a place in the world.
 struct Wrench {
   Eigen::Vector3d force{0, 0, 0}, torque{0, 0, 0};
@@ -124,6 +131,9 @@ class Physics {
   // The motor of the joint turns it with `velocity`, within the joint's own limit, and at most `effort` [N m or N] until it is set again.
   // Effort 0: runs free.
   void set_motor(JointId joint, int axis, double velocity, double effort);
+  // The same of a joint with one axis that has a controller; it is set before each step. From then on set_motor leaves the joint alone, and
+  // the model is stepped along its tree of joints, where that is one.
+  void set_row(JointId joint, const JointRow& row);
 
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
   // <provide_feedback>; empty for others and for joints that are no more than a weld.

@@ -134,7 +134,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   if (active_.empty()) return;
   has_many_joints_ = has_muddle_ = false;
   for (auto* model : active_) {
-    has_many_joints_ = has_many_joints_ || model->tree().places.size() >= TreeSolver::least_bodies;
+    has_many_joints_ = has_many_joints_ || model->is_for_tree();
     std::swap(model->contacts, model->previous_contacts);
     model->contacts.clear();
     for (auto& shape : model->shapes()) shape.partners = shape.deep_partners = 0;

@@ -148,6 +148,8 @@ void TreeSolver::add_joint(Node& node) {
 // The motor and the stops of a joint with one axis, in ODE's sense.
 void TreeSolver::add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent) {
   const dJointID joint = node.joint->id();
+  node.axis_own = node.is_child ? of_child : of_parent;
+  node.axis_parent = node.is_child ? of_parent : of_child;
   const Vector6 on_child = node.joint->sign() * of_child, on_parent = node.joint->sign() * of_parent;
   const bool slides = dJointGetType(joint) == dJointTypeSlider;
   const double low = parameter(joint, dParamLoStop), high = parameter(joint, dParamHiStop);
@@ -219,11 +221,41 @@ void TreeSolver::add_contact(const MadeContact& made) {
   };
   rub(first, surface.mu, has(dContactSlip1), surface.slip1, has(dContactApprox1_1));
   rub(second, has(dContactMu2) ? surface.mu2 : surface.mu, has(dContactSlip2), surface.slip2, has(dContactApprox1_2));
-  for (int i : {touch.a, touch.b}) {
-    for (; i >= 0 && !nodes_[static_cast<std::size_t>(i)].touches; i = nodes_[static_cast<std::size_t>(i)].parent)
-      nodes_[static_cast<std::size_t>(i)].touches = true;
-  }
+  mark_touched(touch.a);
+  mark_touched(touch.b);
   touches_.push_back(std::move(touch));
+}
+
+void TreeSolver::mark_touched(int node) {
+  for (; node >= 0 && !nodes_[static_cast<std::size_t>(node)].touches; node = nodes_[static_cast<std::size_t>(node)].parent)
+    nodes_[static_cast<std::size_t>(node)].touches = true;
+}
+
+// One row for each joint that follows another one, between the rates of both.
+void TreeSolver::add_mimics(ModelInstance& model, std::size_t first) {
+  const auto node_of_joint = [&](const JointInstance* joint) {
+    for (std::size_t i = first; i < nodes_.size(); ++i) {
+      if (joint != nullptr && nodes_[i].joint == joint) return static_cast<int>(i);
+    }
+    return -1;
+  };
+  for (const auto& mimic : model.mimics()) {
+    ContactRow row;
+    row.a = node_of_joint(model.joint(mimic.follower)), row.c = node_of_joint(model.joint(mimic.leader));
+    if (row.a < 0 || row.c < 0) continue;
+    const Node &follower = nodes_[static_cast<std::size_t>(row.a)], &leader = nodes_[static_cast<std::size_t>(row.c)];
+    const MimicDef& def = *follower.joint->def().mimic;
+    row.b = follower.parent, row.d = leader.parent;
+    row.on_a = follower.axis_own, row.on_b = follower.axis_parent;
+    row.on_c = -def.multiplier * leader.axis_own, row.on_d = -def.multiplier * leader.axis_parent;
+    const double wanted = def.multiplier * (leader.joint->state(0).position - def.reference) + def.offset;
+    row.target = 0.2 * (wanted - follower.joint->state(0).position) / physics_.step;
+    row.give = dWorldGetCFM(world_) / physics_.step;
+    row.low = -infinite;
+    rows_.push_back(row);
+    mark_touched(row.a);
+    mark_touched(row.c);
+  }
 }
 
 // --- the tree
@@ -286,7 +318,8 @@ void TreeSolver::sweep(bool is_homogeneous) {
 void TreeSolver::solve_contacts() {
   const auto at = [&](int node) -> Node& { return nodes_[static_cast<std::size_t>(node)]; };
   const auto motion = [&](const ContactRow& row) {
-    return (row.a >= 0 ? row.on_a.dot(at(row.a).velocity) : 0) + (row.b >= 0 ? row.on_b.dot(at(row.b).velocity) : 0);
+    return (row.a >= 0 ? row.on_a.dot(at(row.a).velocity) : 0) + (row.b >= 0 ? row.on_b.dot(at(row.b).velocity) : 0) +
+           (row.c >= 0 ? row.on_c.dot(at(row.c).velocity) : 0) + (row.d >= 0 ? row.on_d.dot(at(row.d).velocity) : 0);
   };
   const auto count = static_cast<Eigen::Index>(rows_.size());
   system_.resize(count);
@@ -303,6 +336,8 @@ void TreeSolver::solve_contacts() {
     }
     if (row.a >= 0) at(row.a).impulse += row.on_a;
     if (row.b >= 0) at(row.b).impulse += row.on_b;
+    if (row.c >= 0) at(row.c).impulse += row.on_c;
+    if (row.d >= 0) at(row.d).impulse += row.on_d;
     sweep(true);
     for (Eigen::Index k = 0; k < count; ++k) system_.a(k, i) = motion(rows_[static_cast<std::size_t>(k)]);
     system_.a(i, i) += row.give;
@@ -352,6 +387,8 @@ void TreeSolver::load(bool has_contacts) {
 void TreeSolver::press(const ContactRow& row, double impulse) {
   if (row.a >= 0) nodes_[static_cast<std::size_t>(row.a)].impulse += row.on_a * impulse;
   if (row.b >= 0) nodes_[static_cast<std::size_t>(row.b)].impulse += row.on_b * impulse;
+  if (row.c >= 0) nodes_[static_cast<std::size_t>(row.c)].impulse += row.on_c * impulse;
+  if (row.d >= 0) nodes_[static_cast<std::size_t>(row.d)].impulse += row.on_d * impulse;
 }
 
 // Motors that cannot do what they are to, and stops that need not hold, are at their bounds. False: all are right as they are.
@@ -385,7 +422,12 @@ bool TreeSolver::is_finite() const {
 bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vector<const MadeContact*>& contacts) {
   constexpr int at_once = 10, most_rounds = 40;
   nodes_.clear(), touches_.clear(), rows_.clear(), places_.clear();
-  for (auto* model : models) add_model(*model);
+  for (auto* model : models) {
+    const std::size_t first = nodes_.size();
+    add_model(*model);
+    add_mimics(*model, first);
+  }
+  mimic_rows_ = rows_.size();
   std::sort(places_.begin(), places_.end());
   for (const auto* contact : contacts) add_contact(*contact);
   for (int round = 0; round < most_rounds; ++round) {
@@ -426,6 +468,7 @@ void TreeSolver::put_forces() {
     dJointDisable(joint);
     switched_off_.push_back(joint);
   }
+  for (std::size_t i = 0; i < mimic_rows_; ++i) press(rows_[i], system_.x[static_cast<Eigen::Index>(i)]);
   for (const Touch& touch : touches_) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < touch.rows.size(); ++i) {

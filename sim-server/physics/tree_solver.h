@@ -60,7 +60,8 @@ class TreeSolver {
     dBodyID body = nullptr;
     int parent = -1;
     const JointInstance* joint = nullptr;
-    bool is_child = false, touches = false;  // touches: it or what hangs on it has a contact
+    bool is_child = false, touches = false;  // touches: it or what hangs on it has a contact, or follows another joint
+    Vector6 axis_own, axis_parent;           // of a joint with one axis: its rate, from the velocities of the two bodies
     Matrix6 mass;
     Vector6 momentum;  // without any joint, after the step
     std::vector<Row> rows;
@@ -83,6 +84,8 @@ class TreeSolver {
   struct ContactRow {
     int a = -1, b = -1;
     Vector6 on_a, on_b;
+    int c = -1, d = -1;  // of a joint that follows another one: the two bodies of the leader
+    Vector6 on_c, on_d;
     double target = 0, give = 0;
     double low = 0, high = infinite;
     double friction = 0;  // times the impulse of `normal` is the bound; 0: bounds as they are
@@ -94,6 +97,8 @@ class TreeSolver {
   void add_row(Node& node, const Vector6& on_child, const Vector6& on_parent, double target, double give, double low, double high);
   void add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent);
   void add_contact(const MadeContact& contact);
+  void add_mimics(ModelInstance& model, std::size_t first);
+  void mark_touched(int node);
   void add_contact_row(Touch& touch, const Eigen::Vector3d& line, const ContactRow& row);
   int node_of(dBodyID body) const;
 
@@ -112,7 +117,8 @@ class TreeSolver {
   const PhysicsDef& physics_;
   std::vector<Node> nodes_;
   std::vector<Touch> touches_;
-  std::vector<ContactRow> rows_;
+  std::vector<ContactRow> rows_;  // first those of joints that follow others
+  std::size_t mimic_rows_ = 0;
   std::vector<std::pair<dBodyID, int>> places_;  // sorted
   BoundedSystem system_;
   std::vector<dJointID> switched_off_;

@@ -60,6 +60,10 @@ void add_axes(JointDef& joint, pugi::xml_node node, const ResolvedJoint& frames,
     const Eigen::Vector3d xyz = i < frames.axes.size() ? frames.axes[i] : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
     joint.axes.push_back(build_axis(node.child(i == 0 ? "axis" : "axis2"), xyz, joint.kind == JointDef::Kind::continuous, complaints));
   }
+  if (const pugi::xml_attribute leader = node.child("axis").attribute(mimic_mark); leader && axes == 1) {
+    const auto numbers = parse_numbers(node.child("axis").attribute(mimic_numbers_mark).value()).value_or(std::vector<double>{});
+    if (numbers.size() == 3) joint.mimic = MimicDef{scoped(joint.scope, leader.value()), numbers[0], numbers[1], numbers[2]};
+  }
   const bool has_cross = joint.kind == JointDef::Kind::universal || joint.kind == JointDef::Kind::revolute2;
   if (has_cross && joint.axes[0].xyz.cross(joint.axes[1].xyz).norm() < 1e-3) {
     joint.axes[1].xyz = joint.axes[0].xyz.unitOrthogonal();  // ODE ends the process for such a joint

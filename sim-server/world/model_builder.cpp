@@ -101,8 +101,10 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
     context.complaints.warn(node, "drive " + base::in_quotes(plugin.filename.empty() ? plugin.name : plugin.filename) + " (" +
                                       describe_in_context(node) + ") is not simulated; nothing drives the model");
   } else if (kind_of(plugin) == PluginKind::joint_controller) {
-    context.complaints.warn(node,
-                            describe_in_context(node) + " is not commanded: its joints keep the position or speed that it starts with");
+    context.complaints.warn(
+        node, describe_in_context(node) +
+                  " is not commanded: its joints keep the position or speed that it starts with, until a client of the iface joints "
+                  "commands them");
   } else if (kind_of(plugin) == PluginKind::unknown ||
              (kind_of(plugin) == PluginKind::buoyancy && std::string_view(node.parent().name()) != "world")) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");

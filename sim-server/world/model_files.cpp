@@ -82,7 +82,7 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
       return base::Error{file_name + ": " + (fault ? "the URDF robot cannot be read: " + *fault : robot.error().message)};
     }
     robot->child("sdf").append_attribute(file_mark) = complaints_.add_file(file_name);
-    for (const std::string& line : left_out_of_urdf(written)) complaints_.warn(robot->child("sdf"), line);
+    for (const std::string& line : carry_mimics(written, robot->child("sdf"))) complaints_.warn(robot->child("sdf"), line);
     return robot;
   }
   if (!sdf) return wrong_root(first_element(*parsed), file_name);

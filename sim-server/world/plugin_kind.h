@@ -11,7 +11,7 @@ enum class PluginKind {
   car_drive,            // two steered wheels
   velocity_control,     // the model moves as it is told, without wheels
   trajectory_follower,  // the model follows way points
-  joint_controller,     // joints keep the position or speed that it starts with
+  joint_controller,     // joints keep the position or speed that it starts with until they are commanded
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   buoyancy,             // of the world
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)

@@ -110,6 +110,14 @@ void mark_initial_position(pugi::xml_node node, Complaints& complaints) {
   node.remove_child(written);
 }
 
+void take_mimic(pugi::xml_node node) {
+  const pugi::xml_node written = node.child("mimic");
+  if (!written || std::string_view(node.name()) != "axis") return;
+  mark_mimic(node, written.attribute("joint").value(), number_at(written, "multiplier", 1), number_at(written, "offset", 0),
+             number_at(written, "reference", 0));
+  node.remove_child(written);
+}
+
 // <screw_thread_pitch> of version 1.10 [m per turn] as the older <thread_pitch> [rad per metre, left-handed positive].
 void take_screw_pitch(pugi::xml_node joint) {
   const pugi::xml_node written = joint.child("screw_thread_pitch");
@@ -155,11 +163,18 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     take_urdf_origin(child, complaints);
     mark_automatic_inertia(child);
     mark_initial_position(child, complaints);
+    take_mimic(child);
     repair(child, complaints);
   }
 }
 
 }  // namespace
+
+void mark_mimic(pugi::xml_node axis, const std::string& leader, double multiplier, double offset, double reference) {
+  axis.append_attribute(mimic_mark) = leader.c_str();
+  axis.append_attribute(mimic_numbers_mark) =
+      (base::format_number(multiplier) + " " + base::format_number(offset) + " " + base::format_number(reference)).c_str();
+}
 
 void repair_document(pugi::xml_node sdf, Complaints& complaints) {
   repair(sdf, complaints);

@@ -31,4 +31,10 @@ inline constexpr const char* density_mark = "_density";
 // The same for <initial_position> of an axis, which version 1.9 does not have any more.
 inline constexpr const char* initial_mark = "_initial";
 
+// The same for <mimic> of an axis, of version 1.11: the leader, and three numbers.
+inline constexpr const char* mimic_mark = "_mimic";
+inline constexpr const char* mimic_numbers_mark = "_mimic_numbers";
+// Sets these attributes of an axis.
+void mark_mimic(pugi::xml_node axis, const std::string& leader, double multiplier, double offset, double reference);
+
 }  // namespace sim

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "world/repairs.h"
 
 namespace sim {
 namespace {
@@ -103,13 +104,26 @@ void mend_urdf(pugi::xml_node robot) {
   }
 }
 
-std::vector<std::string> left_out_of_urdf(pugi::xml_node robot) {
+std::vector<std::string> carry_mimics(pugi::xml_node robot, pugi::xml_node sdf) {
   std::vector<std::string> lines;
+  const auto axis_of = [&](std::string_view name) {
+    return sdf.child("model")
+        .find_child([&](pugi::xml_node node) { return node.name() == std::string_view("joint") && urdf_name(node) == name; })
+        .child("axis");
+  };
   for (const pugi::xml_node joint : robot.children("joint")) {
     const pugi::xml_node mimic = joint.child("mimic");
     if (!mimic) continue;
-    lines.push_back("joint " + base::in_quotes(urdf_name(joint)) + " does not mimic joint " +
-                    base::in_quotes(mimic.attribute("joint").value()) + "; it moves on its own");
+    const std::string leader = mimic.attribute("joint").value();
+    const auto number = [&](const char* key, double otherwise) {
+      return base::parse_number(mimic.attribute(key).value()).value_or(otherwise);
+    };
+    if (const pugi::xml_node axis = axis_of(urdf_name(joint)); axis && axis_of(leader)) {
+      mark_mimic(axis, leader, number("multiplier", 1), number("offset", 0), 0);
+      continue;
+    }
+    lines.push_back("joint " + base::in_quotes(urdf_name(joint)) + " does not mimic joint " + base::in_quotes(leader) +
+                    ": one of them does not move; it moves on its own");
   }
   return lines;
 }

@@ -13,8 +13,8 @@ namespace sim {
 // on.
 void mend_urdf(pugi::xml_node robot);
 
-// One line for each thing in it that is not simulated and that the library leaves out in silence.
-std::vector<std::string> left_out_of_urdf(pugi::xml_node robot);
+// Puts the <mimic> of joints, which the library leaves out in silence, into its translation. One line for each that means nothing.
+std::vector<std::string> carry_mimics(pugi::xml_node robot, pugi::xml_node sdf);
 
 // The first thing in it that URDF does not allow; in lower case, no full stop.
 std::optional<std::string> fault_of_urdf(pugi::xml_node robot);

@@ -211,6 +211,12 @@ struct AxisDef {
   std::optional<double> limit_stiffness, limit_dissipation;  // soft stops
 };
 
+// A joint that follows another one: position = multiplier * (position of the leader - reference) + offset.
+struct MimicDef {
+  std::string leader;  // a joint's name in the model
+  double multiplier = 1, offset = 0, reference = 0;
+};
+
 struct JointDef {
   enum class Kind { fixed, revolute, continuous, prismatic, ball, universal, revolute2, screw, gearbox };
   std::string name;  // unique in its model; scoped like link names
@@ -221,6 +227,7 @@ struct JointDef {
   Eigen::Isometry3d pose_in_child =
       Eigen::Isometry3d::Identity();  // joint frame in the child link (in the world when child is empty: see pose_in_model)
   Eigen::Isometry3d pose_in_model = Eigen::Isometry3d::Identity();  // the same frame in the model, at the start
+  std::optional<MimicDef> mimic;                                    // of a joint with one axis, which the leader has as well
   std::vector<AxisDef> axes;  // revolute, continuous, prismatic, screw: 1; universal, revolute2, gearbox: 2; fixed, ball: 0
   double thread_pitch = 0;    // screw: metres of travel along the axis per turn, right-handed positive
   double gearbox_ratio = 1;

@@ -29,6 +29,7 @@ executed = {
     "docs/third-party-components.md": "",
     "docs/recordings.md": avoidance,
     "docs/hash-logs.md": "",
+    "docs/arms.md": "",
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
     "docs/simulator.md": "",
     "docs/worlds.md": "cp worlds/obstacle_course.sdf my.world",
@@ -39,6 +40,7 @@ executed = {
 }
 # Pages that a test of their own executes.
 elsewhere = {
+    "docs/tutorial-arm.md": "package.tutorial_arm",
     "docs/tutorial-component.md": "package.tutorial",
     "docs/develop/new-component.md": "docs.new-component",
     "docs/develop/new-data-type.md": "docs.new-data-type",

@@ -122,6 +122,21 @@ void add_control(base::Command& app, Work& work) {
     };
   });
 
+  auto* joints = app.add_subcommand("joints", "Show the joints of a model, or move them: joints MODEL [JOINT=VALUE ...]");
+  auto joint_options = option_value<simctl::JointOptions>();
+  joints->add_option("MODEL", joint_options->model, "Model with joints that no drive turns")->required();
+  joints->add_option("JOINT", joint_options->settings,
+                     "JOINT=VALUE [rad, m; rad/s, m/s; N m, N], all=VALUE; JOINT or all with free and brake");
+  joints->add_option("--mode", joint_options->mode, "What VALUE is: position, velocity or effort; or free, brake")
+      ->check(base::one_of({"position", "velocity", "effort", "free", "brake"}))
+      ->capture_default_str();
+  joints->add_flag("--compensate", joint_options->is_compensated, "Add the effort that gravity needs");
+  joints
+      ->add_option("--for", joint_options->seconds,
+                   "Duration [simulated s] (default: until the positions are reached, else until interrupted)")
+      ->check(base::number_between(0.0, 1e9));
+  joints->callback([&work, joint_options] { work = [joint_options](Control& c) { simctl::joints(c, *joint_options); }; });
+
   auto* wrench = app.add_subcommand("wrench", "Push a model: wrench MODEL FX FY FZ [TX TY TZ]");
   auto pushed = option_value<std::string>();
   auto forces = option_value<std::vector<double>>();
@@ -324,7 +339,7 @@ int main(int argc, char** argv) {
   add_pictures(app, work);
   app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts"})
       ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
-      ->group_subcommands("Robots and models", {"pose", "velocity", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
+      ->group_subcommands("Robots and models", {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
       ->group_subcommands("Record", {"screenshot", "record", "export"})
       ->group_subcommands("Clean up", {"clean"});
   const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes

@@ -4,9 +4,10 @@
 #include <array>
 #include <cstdlib>
 #include <set>
+#include <tuple>
 
 #include "base/text.h"
-#include "shm/segment.h"
+#include "shm/client.h"
 
 namespace simctl {
 namespace {
@@ -24,6 +25,7 @@ long server_id(const std::vector<std::string>& words) {
 
 bool fits(IfaceType type, const std::string& value, const std::string& command) {
   const bool is_drive = shm::row_of(type).command_values > 0;
+  if (value == "MODEL" && command == "joints") return type == IfaceType::joints;
   if (value == "MODEL" || value == "--follow") return type == IfaceType::truth;
   if (value == "CAMERA" || value == "--camera") return type == IfaceType::camera;
   if (command == "velocity") return is_drive || type == IfaceType::truth;
@@ -32,12 +34,28 @@ bool fits(IfaceType type, const std::string& value, const std::string& command) 
   return true;
 }
 
+// Joints of the models that the line names.
+std::vector<base::Offer> joint_offers(const std::vector<std::string>& before) {
+  std::vector<base::Offer> found;
+  for (const auto& segment : shm::find_segments()) {
+    const auto& [type, iface, server] = std::tie(segment.name.type, segment.name.iface, segment.name.server_id);
+    if (!segment.is_alive || type != IfaceType::joints || server != server_id(before)) continue;
+    if (std::ranges::none_of(before, [&](const std::string& word) { return word + "::joints" == iface; })) continue;
+    const auto opened = shm::Iface::open(server, type, iface);
+    if (!opened) continue;
+    const auto* joints = reinterpret_cast<const shm::Joint*>(opened->info_followers(0));
+    for (std::size_t i = 0; i < opened->count(); ++i) found.push_back({joints[i].name});
+  }
+  return found;
+}
+
 }  // namespace
 
 std::optional<std::vector<base::Offer>> offers(const std::string& value, const std::vector<std::string>& before, const std::string&) {
+  if (value == "JOINT") return joint_offers(before);
   static constexpr std::array asked{"IFACE", "MODEL", "CAMERA", "--server-id", "--follow", "--camera"};
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
-  static constexpr std::array sharp{"odometry", "motors", "velocity", "fault"};
+  static constexpr std::array sharp{"odometry", "motors", "velocity", "fault", "joints"};
   const auto command = std::ranges::find_first_of(before, sharp);
   std::vector<base::Offer> found;
   std::set<std::string> seen;
@@ -48,7 +66,9 @@ std::optional<std::vector<base::Offer>> offers(const std::string& value, const s
       continue;
     }
     if (segment.name.server_id != server_id(before) || !fits(segment.name.type, value, command == before.end() ? "" : *command)) continue;
-    if (seen.insert(segment.name.iface).second) found.push_back({segment.name.iface, std::string(shm::to_text(segment.name.type))});
+    std::string name = segment.name.iface;
+    if (value == "MODEL" && segment.name.type == IfaceType::joints) name.erase(name.rfind("::joints"));
+    if (seen.insert(name).second) found.push_back({name, std::string(shm::to_text(segment.name.type))});
   }
   return found;
 }

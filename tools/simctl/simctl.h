@@ -48,6 +48,15 @@ void model_velocity(Control& control, const std::string& model, const std::vecto
 void wrench(Control& control, const std::string& name, const std::vector<double>& values, double seconds);
 // To X Y A, or to 0 when there are no numbers.
 void reset_odometry(Control& control, const std::string& iface, const std::vector<double>& values);
+struct JointOptions {
+  std::string model;
+  std::vector<std::string> settings;  // JOINT=VALUE, or JOINT for modes without a value; "all" stands for every joint
+  std::string mode = "position";      // velocity, effort, free, brake
+  double seconds = 0;                 // simulated; 0: until the positions are reached, for other modes until interrupted
+  bool is_compensated = false;        // the effort that gravity needs is added
+};
+// Shows the joints when there are no settings. A joint brakes when this command ends.
+void joints(Control& control, const JointOptions& options);
 struct SpawnOptions {
   std::string file, name;
   std::vector<double> pose;

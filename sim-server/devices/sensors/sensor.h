@@ -60,6 +60,10 @@ class Sensor : public Device {
   }
   std::span<float> ranges() const { return writer_->ranges(); }
   std::span<float> intensities() const { return writer_->intensities(); }
+  template <class Element>
+  std::span<Element> followers(std::size_t array) const {
+    return writer_->followers<Element>(array);
+  }
   std::span<shm::Contact> contacts() const { return writer_->contacts(); }
   // As the writer's. A command with a duration is `lost` when it is over.
   shm::CommandChange poll_command(const Moment& moment, shm::Command& command);

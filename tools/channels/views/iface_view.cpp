@@ -359,6 +359,29 @@ ros::Imu imu_message(const shm::Iface& iface) {
           .linear_acceleration_covariance = diagonal(push, push, push)};
 }
 
+ros::JointState joints_message(const shm::Iface& iface) {
+  const auto* joints = reinterpret_cast<const shm::Joint*>(iface.info_followers(0));
+  const auto* states = reinterpret_cast<const shm::JointState*>(iface.sample_followers(0));
+  ros::JointState message{.header = header_of(iface.sample<shm::JointsSample>().stamp, "")};
+  for (std::size_t i = 0; i < iface.count(); ++i) {
+    message.names.push_back(text_of(joints[i].name));
+    message.position.push_back(states[i].position);
+    message.velocity.push_back(states[i].velocity);
+    message.effort.push_back(states[i].effort);
+  }
+  return message;
+}
+
+IfaceView joints_view(const shm::Iface& iface) {
+  IfaceView view;
+  view.channels = {channel<ros::JointState>(iface)};
+  view.rate = iface.info<shm::JointsInfo>().rate;
+  view.tell = [](shm::Iface& from, const shm::HeldFrame*, Said& said) {
+    if (from.sample<shm::JointsSample>().stamp.valid != 0) said.add(0, joints_message(from));
+  };
+  return view;
+}
+
 ros::NavSatFix fix_message(const shm::Iface& iface) {
   const auto& info = iface.info<shm::GpsInfo>();
   const auto& sample = iface.sample<shm::GpsSample>();
@@ -453,6 +476,8 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
       return simple_view<ros::MagneticField, MeterInfo, shm::MagnetometerSample>(iface, field_message);
     case air_pressure:
       return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, pressure_message);
+    case joints:
+      return joints_view(iface);
     case simulation:
     case truth:
       break;

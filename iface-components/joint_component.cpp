@@ -1,0 +1,74 @@
+#include "joint_component.h"
+
+#include <utility>
+
+namespace iface {
+
+JointComponent::JointComponent(RTC::Manager* manager, const Specification& specification)
+    : IfaceComponent(manager, specification, shm::IfaceType::joints, true) {}
+
+void JointComponent::bindJoints() {
+  bindDevice();
+  bind("joints", names_);
+}
+
+void JointComponent::attached(const Device&) {
+  choose();
+  shared_.lock()->is_active = true;
+}
+
+void JointComponent::detaching() {
+  auto shared = shared_.lock();
+  shared->is_active = false;
+  shared->works.clear();
+}
+
+void JointComponent::choose() {
+  chosen_attachment_ = link().attachments();
+  chosen_names_ = all_names(names_);
+  auto* iface = link().live();
+  if (iface == nullptr) return;
+  const auto done = part_.choose(*iface, chosen_names_);
+  if (!done) part_.clear();
+  note(done);
+  std::vector<shm::Joint> joints;
+  for (std::size_t i = 0; i < part_.size(); ++i) joints.push_back(part_.joint(i));
+  shared_.lock()->joints = std::move(joints);
+  chosen();
+}
+
+void JointComponent::note(const base::Result<void>& done) {
+  if (!done) RTC_WARN(("%s", done.error().message.c_str()));
+}
+
+bool JointComponent::post(const std::string& what, std::function<void()> work) {
+  constexpr std::size_t most = 1000;  // that wait while time stands still
+  {
+    auto shared = shared_.lock();
+    if (shared->is_active && shared->works.size() < most) {
+      shared->works.push_back(std::move(work));
+      return true;
+    }
+  }
+  RTC_WARN(("%s is ignored: the component is not active, or 1000 calls wait", what.c_str()));
+  return false;
+}
+
+std::vector<shm::Joint> JointComponent::described() const { return shared_.lock()->joints; }
+
+RTC::ReturnCode_t JointComponent::onExecute(RTC::UniqueId) {
+  if (!follow_configuration()) return RTC::RTC_ERROR;
+  auto* iface = link().fresh(wait_limit());
+  if (iface == nullptr) return RTC::RTC_OK;
+  if (chosen_attachment_ != link().attachments() || chosen_names_ != all_names(names_)) choose();
+  part_.read(*iface);
+  const auto works = std::exchange(shared_.lock()->works, {});
+  for (const auto& work : works) work();
+  read_ports();
+  step();
+  note(part_.send(*iface));
+  if (const auto& stamp = iface->sample<shm::Stamp>(); stamp.valid != 0) publish(stamp);
+  return RTC::RTC_OK;
+}
+
+}  // namespace iface

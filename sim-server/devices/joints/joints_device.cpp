@@ -1,0 +1,207 @@
+#include "devices/joints/joints_device.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace sim {
+namespace {
+
+static_assert(static_cast<int>(JointMode::disabled) == RTMSIM_JOINT_DISABLED && static_cast<int>(JointMode::brake) == RTMSIM_JOINT_BRAKE);
+static_assert(static_cast<int>(JointStatus::stalled) == RTMSIM_JOINT_STALLED);
+
+std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<ListedJoint>& joints, const JointDynamics& dynamics) {
+  std::vector<shm::Joint> all;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const JointDef& def = model.joints[joints[i].joint];
+    const auto& setup = joints[i].setup;
+    const JointDynamics::Body& body = dynamics.body(i);
+    shm::Joint joint{};
+    shm::set_text(joint.name, def.name);
+    shm::set_text(joint.link, def.child);
+    shm::set_text(joint.gains_from, joints[i].gains_from);
+    joint.id = static_cast<std::uint32_t>(i);
+    joint.kind = setup.slides ? RTMSIM_JOINT_SLIDES : RTMSIM_JOINT_TURNS;
+    joint.parent = static_cast<std::uint32_t>(body.parent + 1);
+    joint.compensated = setup.is_compensated ? 1 : 0;
+    joint.lower = setup.low, joint.upper = setup.high;
+    joint.max_velocity = setup.velocity, joint.max_effort = setup.effort;
+    joint.rest = def.axes[0].initial_position;
+    joint.p = setup.gains.p, joint.i = setup.gains.i, joint.d = setup.gains.d;
+    for (int k = 0; k < 3; ++k) joint.axis[k] = body.axis[k];
+    joint.pose = to_pose(body.in_parent);
+    all.push_back(joint);
+  }
+  return all;
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Device>> JointsDevice::make(DeviceWorld& world, ModelId model) {
+  const ModelDef& def = world.physics.def(model);
+  const auto joints = commandable_joints(def);
+  if (joints.empty()) return std::unique_ptr<Device>();
+  JointDynamics dynamics(def, joints);
+  auto list = list_joints(def, joints, dynamics, world.world.physics.gravity.norm());
+  shm::JointsInfo info{};
+  info.rate = stated_rate(world, 0);
+  shm::set_text(info.model, def.name);
+  const auto described = describe(def, list, dynamics);
+  auto setup = set_up(world, model, 0, shm::joints_spec(name_of(def), info, described), {});
+  if (!setup) return setup.error();
+  return std::unique_ptr<Device>(std::make_unique<JointsDevice>(std::move(*setup), std::move(list), std::move(dynamics)));
+}
+
+JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDynamics dynamics)
+    : Sensor(std::move(setup)), dynamics_(std::move(dynamics)) {
+  for (auto& listed : joints) {
+    const JointServo servo(listed.setup);
+    axes_.push_back({std::move(listed), servo});
+  }
+  positions_.resize(axes_.size());
+  gravity_.resize(axes_.size());
+}
+
+void JointsDevice::warn(const std::string& line) const { base::log(base::Level::warn, writer().name(), "{}", line); }
+
+void JointsDevice::order(Axis& axis, std::uint64_t owner, const JointOrder& order) {
+  const std::string& name = physics().def(model()).joints[axis.listed.joint].name;
+  if (axis.listed.leader >= 0) {
+    if (std::exchange(axis.was_within, false))
+      warn(fmt::format("joint {}: follows joint {} and takes no commands", name,
+                       physics().def(model()).joints[axes_[static_cast<std::size_t>(axis.listed.leader)].listed.joint].name));
+    return;
+  }
+  if (axis.owner != 0 && axis.owner != owner && iface().holds_lease(axis.owner)) {
+    warn(fmt::format("joint {}: {} takes it from {}, which commanded it", name, iface().client_name(owner),
+                     iface().client_name(axis.owner)));
+  }
+  axis.owner = owner;
+  is_active_ = true;
+  const bool is_within = axis.servo.take(order, state_of(axis));
+  if (!is_within && axis.was_within) {
+    const auto& setup = axis.listed.setup;
+    const bool is_position = order.mode == JointMode::position;
+    const double most = order.mode == JointMode::velocity ? setup.velocity : setup.effort;
+    warn(fmt::format("joint {}: the command {:g} is outside of {:g} to {:g}, the nearest of which counts", name, order.value,
+                     is_position ? setup.low : -most, is_position ? setup.high : most));
+  }
+  axis.was_within = is_within;
+}
+
+void JointsDevice::take(std::uint64_t owner, const shm::Command& command) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    JointOrder order;
+    if (command.kind == shm::CommandKind::stop) {
+      if (axes_[i].owner != owner) continue;
+      order.mode = JointMode::brake;
+    } else if (command.kind == shm::CommandKind::joints) {
+      const double* values = command.values.data() + RTMSIM_JOINT_VALUES * i;
+      if (!(values[0] >= 1)) continue;
+      const auto mode = static_cast<std::uint32_t>(std::min(values[0], 1e6));
+      order.is_compensated = (mode & RTMSIM_JOINT_COMPENSATED) != 0;
+      order.mode = static_cast<JointMode>(mode & 0xffU);
+      if ((mode & ~(RTMSIM_JOINT_COMPENSATED | 0xffU)) != 0 || order.mode > JointMode::brake) continue;
+      order.value = values[1], order.velocity = values[2], order.effort = values[3];
+    } else {
+      continue;
+    }
+    this->order(axes_[i], owner, order);
+  }
+}
+
+// Those of a client that went.
+void JointsDevice::brake_lost_joints() {
+  if (std::exchange(owners_seen_, iface().owners_change()) == owners_seen_) return;
+  std::size_t count = 0;
+  for (Axis& axis : axes_) {
+    if (axis.owner == 0 || iface().holds_lease(axis.owner)) continue;
+    axis.owner = 0;
+    if (axis.servo.mode() == JointMode::brake) continue;
+    axis.servo.take({.mode = JointMode::brake}, state_of(axis));
+    ++count;
+  }
+  if (count > 0) warn(fmt::format("the client that commanded {} of {} joints has exited or detached: they brake", count, axes_.size()));
+}
+
+// Of what carries the first joint, which may lean, against its place in the model at the start.
+Eigen::Matrix3d JointsDevice::base_rotation() const {
+  const ModelDef& def = physics().def(model());
+  const auto parent = link_of(def, {}, def.joints[axes_.front().listed.joint].parent);
+  if (!parent || dynamics_.body(0).parent >= 0) return physics().model_pose(model()).linear();
+  return physics().link_pose({model(), *parent}).linear() * def.links[*parent].pose.linear().transpose();
+}
+
+void JointsDevice::compute_gravity() {
+  if (std::none_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.servo.wants_gravity(); })) return;
+  const Eigen::Vector3d gravity = base_rotation().transpose() * world().world.physics.gravity;
+  dynamics_.efforts(positions_, {}, {}, gravity, gravity_);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const auto& listed = axes_[i].listed;
+    if (listed.leader >= 0) gravity_[static_cast<std::size_t>(listed.leader)] += listed.multiplier * gravity_[i];
+  }
+}
+
+void JointsDevice::before_step(const Moment& moment) {
+  iface().poll_commands([this](std::uint64_t owner, const shm::Command& command) { take(owner, command); });
+  if (!is_active_) return;
+  brake_lost_joints();
+  for (std::size_t i = 0; i < axes_.size(); ++i) positions_[i] = state_of(axes_[i]).position;
+  compute_gravity();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    if (!axis.servo.is_active()) continue;
+    const bool was_disabled = axis.servo.mode() == JointMode::disabled;
+    const JointRow row = axis.servo.row(state_of(axis), axis.servo.wants_gravity() ? gravity_[i] : 0, moment.dt);
+    if (!was_disabled && axis.servo.mode() == JointMode::disabled)
+      warn(fmt::format("joint {}: its position or command is no number; it is disabled until a reset",
+                       physics().def(model()).joints[axis.listed.joint].name));
+    world().physics.set_row({model(), axis.listed.joint}, row);
+  }
+}
+
+void JointsDevice::after_step(const Moment& moment) {
+  if (!is_active_) return;
+  for (Axis& axis : axes_) {
+    if (axis.servo.is_active()) axis.servo.follow(state_of(axis), moment.dt);
+  }
+}
+
+void JointsDevice::measure(const Moment&) const {
+  auto& out = sample<shm::JointsSample>();
+  const std::span<shm::JointState> states = followers<shm::JointState>(0);
+  out.count = static_cast<std::uint32_t>(axes_.size());
+  out.commanded = 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Axis& axis = axes_[i];
+    const JointState now = state_of(axis);
+    if (axis.owner != 0) ++out.commanded;
+    states[i] = {now.position,
+                 now.velocity,
+                 axis.servo.effort(),
+                 axis.servo.target(),
+                 static_cast<std::uint32_t>(axis.servo.mode()),
+                 static_cast<std::uint32_t>(axis.servo.status())};
+  }
+}
+
+void JointsDevice::restart() {
+  for (Axis& axis : axes_) {
+    axis.servo.reset();
+    axis.owner = 0;
+    axis.was_within = true;
+  }
+  is_active_ = false;
+}
+
+void JointsDevice::add_state_to(StateHash& hash) const {
+  if (!is_active_) return;  // worlds whose joints nobody commands keep their hashes
+  hash.add(writer().name());
+  for (const Axis& axis : axes_) axis.servo.add_to(hash);
+}
+
+}  // namespace sim

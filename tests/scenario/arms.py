@@ -1,0 +1,175 @@
+# The components of arms and hands, and simctl joints, against a living simulator of worlds/arm.sdf, one case per run: arms.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
+import subprocess
+import sys
+
+from rig import Rig, await_
+
+case, *folders = sys.argv[1:]
+rig = Rig(*folders)
+device = rig.device
+arm = "waist,shoulder,elbow,roll,pitch,twist"
+
+
+def server():
+    rig.server(world=f"{rig.source}/worlds/arm.sdf")
+
+
+def up():
+    server()
+    rig.naming()
+    rig.host(device("RTCActArray", f"conf.default.joints={arm}"), device("RTCGripper", "conf.default.force=15"), "ArmProbe")
+    rig.there("RTCActArray0", "RTCGripper0", "ArmProbe0")
+    rig.rtse("con", "ArmProbe0:act_array", "RTCActArray0:act_array")
+    rig.rtse("con", "ArmProbe0:gripper", "RTCGripper0:gripper")
+    rig.rtse("act", "RTCActArray0", "RTCGripper0")
+
+
+def joints(model="arm"):
+    return {joint["name"]: joint for joint in json.loads(rig.simctl("--json", "joints", model))}
+
+
+def position(joint, model="arm"):
+    return joints(model)[joint]["position"]
+
+
+def sample(port):
+    return json.loads(rig.rtse("--json", "print", port, "-n", "1", "-t", "60"))["value"]
+
+
+def call(what):
+    rig.rtse("conf", "ArmProbe0", "set", "call", what)
+    rig.rtse("act", "ArmProbe0")
+    assert rig.state("ArmProbe0") == "Active", rig.log(rig.running[-1])
+    rig.rtse("deact", "ArmProbe0")
+
+
+def command(port, **values):
+    rig.rtse("inject", f"RTCActArray0:{port}", json.dumps({"tm": {"sec": 0, "nsec": 0}, **values}))
+
+
+def log():
+    return rig.log(rig.running[-1])
+
+
+# Shows, moves, waits, refuses; what it commanded brakes when it ends.
+def simctl():
+    server()
+    now = joints()
+    assert list(now) == arm.split(",") + ["left_finger", "right_finger"], list(now)
+    assert now["shoulder"]["mode"] == "none" and now["shoulder"]["upper"] == 1.9 and "derived" in now["shoulder"]["gains"]["from"], now["shoulder"]
+    text = rig.simctl("joints", "arm", "waist=0.5", "elbow=1.5")
+    assert "waist" in text and "position" in text, text
+    assert abs(position("waist") - 0.5) < 0.002 and abs(position("elbow") - 1.5) < 0.002, text
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake")
+    assert joints()["shoulder"]["mode"] == "none"
+    rig.simctl("joints", "arm", "waist=0.3", "--mode", "velocity", "--for", "1")
+    assert abs(position("waist") - 0.8) < 0.1, position("waist")
+    for words, line in ((["arm", "wrist=1"], 'model arm has no joint "wrist"; it has waist, shoulder'), (["arm", "waist"], 'joint "waist": expected JOINT=NUMBER with mode position'),
+                        (["arm", "waist=fast"], 'joint "waist=fast": expected JOINT=NUMBER'), (["table"], "table::joints")):
+        done = subprocess.run([f"{rig.bin_dir}/simctl", "-s", str(rig.server_id), "joints", *words], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 1 and line in done.stderr and done.stderr.count("\n") == 1, (words, done.stderr)
+    assert "waist" in rig.simctl("joints", "arm", "all", "--mode", "brake")
+    assert all(joint["mode"] == "brake" for joint in joints().values())
+
+
+def act_array():
+    up()
+    call("geometry")
+    state = sample("RTCActArray0:state")
+    assert len(state["actuators"]) == 6, state
+    # All commands of one moment count, each for its joint.
+    for index, goal in enumerate((0.4, 0.2, 1.2, -0.3, 1.0, 0.7)):
+        command("position", index=index, position=goal)
+    await_("the positions", lambda: all(abs(a["position"] - goal) < 0.002 for a, goal in zip(sample("RTCActArray0:state")["actuators"], (0.4, 0.2, 1.2, -0.3, 1.0, 0.7))))
+    command("position", index=0, position=99)
+    command("position", index=9, position=0)
+    await_("two lines", lambda: "joint waist: a position must be within -2.9 and 2.9, got 99" in log() and "there is no joint 9, only 0 to 5" in log())
+    call("no_joint")
+    call("too_fast")
+    await_("two more", lambda: "there is no joint 77" in log() and "joint waist: a speed must be within 0 and 2, got 1000" in log())
+    assert abs(position("waist") - 0.4) < 0.002
+    call("brakes_on")
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake")
+    command("position", index=0, position=1)
+    await_("a refusal", lambda: "the brakes are on; the command is ignored" in log())
+    call("brakes_off")
+    command("speed", index=0, speed=-0.5)
+    await_("a turning waist", lambda: joints()["waist"]["velocity"] < -0.4)
+    call("home")
+    await_("the start", lambda: abs(position("elbow") - 1.75) < 0.002 and abs(position("waist")) < 0.002)
+
+
+# A command of the component's process that ends leaves the arm to its brakes.
+def dead_commander():
+    up()
+    command("position", index=0, position=2.5)
+    await_("a moving waist", lambda: position("waist") > 0.2)
+    rig.kill(rig.running[-1])
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake" and abs(joints()["waist"]["velocity"]) < 1e-3)
+    line = "the client that commanded"
+    assert rig.log(rig.running[0]).count(line) <= 2, rig.log(rig.running[0])
+    assert line in rig.log(rig.running[0])
+    assert abs(position("elbow") - 1.75) < 0.05
+
+
+def gripper():
+    up()
+    await_("open fingers", lambda: sample("RTCGripper0:state")["status"] == "GRIPPER_STATE_OPEN")
+    # Over the green box, down, and up again.
+    for index, goal in enumerate((0, 0.8384, 1.73, 0, 0.5732, 0)):
+        command("position", index=index, position=goal)
+    await_("a hand at the box", lambda: all(joint["status"] == "idle" for joint in joints().values()))
+    call("close")
+    await_("closed fingers", lambda: sample("RTCGripper0:state")["status"] == "GRIPPER_STATE_CLOSED")
+    assert 0.015 < position("left_finger") < 0.035, position("left_finger")
+    command("position", index=1, position=0)
+    await_("a box in the air", lambda: float(rig.simctl("pose", "green_box").split()[2]) > 0.85)
+    call("open")
+    await_("the box on its way down", lambda: float(rig.simctl("pose", "green_box").split()[2]) < 0.8)
+    await_("open fingers", lambda: sample("RTCGripper0:state")["status"] == "GRIPPER_STATE_OPEN")
+
+
+def ptz():
+    server()
+    rig.naming()
+    rig.host(device("RTCPTZ"))
+    rig.there("RTCPTZ0")
+    rig.rtse("act", "RTCPTZ0")
+    rig.rtse("inject", "RTCPTZ0:angles", json.dumps({"tm": {"sec": 0, "nsec": 0}, "pan": 0.6, "tilt": -0.3}))
+    await_("the angles", lambda: abs(sample("RTCPTZ0:state")["angles"]["pan"] - 0.6) < 0.002 and abs(position("tilt", "eye") + 0.3) < 0.002)
+    rig.rtse("inject", "RTCPTZ0:angles", json.dumps({"tm": {"sec": 0, "nsec": 0}, "pan": 0.2, "tilt": 9}))
+    await_("a refusal", lambda: "joint tilt: a position must be within -0.8 and 1.2, got 9" in log())
+
+
+# The ports and the service of hrpsys.
+def robot_hardware():
+    server()
+    rig.naming()
+    rig.host(device("RTCRobotHardware", f"conf.default.joints={arm}"), "ArmProbe")
+    rig.there("RTCRobotHardware0", "ArmProbe0")
+    rig.rtse("con", "ArmProbe0:hardware", "RTCRobotHardware0:RobotHardwareService")
+    rig.rtse("act", "RTCRobotHardware0")
+
+    def reference(port, *values):
+        rig.rtse("inject", f"RTCRobotHardware0:{port}", json.dumps({"tm": {"sec": 0, "nsec": 0}, "data": values}))
+
+    goal = (0.3, 0.2, 1.4, 0.1, 1.2, -0.4)
+    reference("qRef", *goal)
+    await_("the positions", lambda: all(abs(a - b) < 0.002 for a, b in zip(sample("RTCRobotHardware0:q")["data"], goal)))
+    assert len(sample("RTCRobotHardware0:tau")["data"]) == 6
+    reference("qRef", 1, 2)
+    await_("a line", lambda: f"qRef has 2 values; expected 6: {arm.replace(',', ', ')}; it is ignored" in log())
+    call("servo_off")
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake")
+    call("servo_on")
+    await_("the servo", lambda: joints()["waist"]["mode"] == "position")
+    call("error_limit")
+    reference("qRef", 2.5, *goal[1:])
+    await_("a servo that switched off", lambda: "joint waist: servo error" in log() and joints()["waist"]["mode"] == "brake")
+
+
+cases = {f.__name__: f for f in (simctl, act_array, dead_commander, gripper, ptz, robot_hardware)}
+with rig:
+    cases[case]()
+print("ok")

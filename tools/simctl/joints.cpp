@@ -1,0 +1,150 @@
+// simctl joints: shows the joints of a model, and commands them.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "simctl/simctl.h"
+
+namespace simctl {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::array modes{"none", "position", "velocity", "effort", "free", "brake", "disabled"};
+constexpr std::array statuses{"idle", "moving", "braked", "stalled"};
+
+template <std::size_t n>
+const char* word_of(const std::array<const char*, n>& words, std::uint32_t number) {
+  return number < n ? words[number] : "?";
+}
+
+std::span<const shm::Joint> joints_of(const shm::Iface& iface) {
+  return {reinterpret_cast<const shm::Joint*>(iface.info_followers(0)), iface.count()};
+}
+std::span<const shm::JointState> states_of(const shm::Iface& iface) {
+  return {reinterpret_cast<const shm::JointState*>(iface.sample_followers(0)), iface.count()};
+}
+std::string name_of(const shm::Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const shm::Joint& joint, const shm::JointState& state) {
+  return {{"name", name_of(joint)},
+          {"id", joint.id},
+          {"kind", joint.kind == RTMSIM_JOINT_SLIDES ? "slides" : "turns"},
+          {"position", state.position},
+          {"velocity", state.velocity},
+          {"effort", state.effort},
+          {"target", state.target},
+          {"mode", word_of(modes, state.mode)},
+          {"status", word_of(statuses, state.status)},
+          {"lower", number(joint.lower)},
+          {"upper", number(joint.upper)},
+          {"max_velocity", joint.max_velocity},
+          {"max_effort", joint.max_effort},
+          {"rest", joint.rest},
+          {"gains", {{"p", joint.p}, {"i", joint.i}, {"d", joint.d}, {"from", joint.gains_from}, {"compensated", joint.compensated != 0}}}};
+}
+
+void show(Control& control, const shm::Iface& iface) {
+  const auto joints = joints_of(iface);
+  const auto states = states_of(iface);
+  if (control.json()) {
+    Json all = Json::array();
+    for (std::size_t i = 0; i < joints.size(); ++i) all.push_back(json_of(joints[i], states[i]));
+    return control.print(all);
+  }
+  std::size_t width = 5;
+  for (const auto& joint : joints) width = std::max(width, name_of(joint).size());
+  std::printf("%3s  %-*s  %10s  %10s  %10s  %10s  %-8s  %-6s  %s\n", "id", static_cast<int>(width), "joint", "position", "velocity",
+              "effort", "target", "mode", "status", "limits, gains");
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto& joint = joints[i];
+    const auto& state = states[i];
+    std::printf("%3u  %-*s  %10.4f  %10.4f  %10.3f  %10.4f  %-8s  %-6s  %s to %s %s, %s %s, %s %s; p %s i %s d %s %s%s\n", joint.id,
+                static_cast<int>(width), name_of(joint).c_str(), state.position, state.velocity, state.effort, state.target,
+                word_of(modes, state.mode), word_of(statuses, state.status), base::format_number(joint.lower).c_str(),
+                base::format_number(joint.upper).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "m" : "rad",
+                base::format_number(joint.max_velocity).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "m/s" : "rad/s",
+                base::format_number(joint.max_effort).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "N" : "N m",
+                base::format_number(joint.p).c_str(), base::format_number(joint.i).c_str(), base::format_number(joint.d).c_str(),
+                joint.gains_from, joint.compensated != 0 ? ", gravity compensated" : "");
+  }
+}
+
+// The commands of all joints; nothing when a word is wrong, which is printed.
+std::optional<std::vector<double>> commands_of(Control& control, const shm::Iface& iface, const JointOptions& options) {
+  const auto joints = joints_of(iface);
+  std::vector<double> values(RTMSIM_JOINT_VALUES * joints.size(), 0.0);
+  const auto fail = [&](const std::string& line) {
+    control.fail(line);
+    return std::optional<std::vector<double>>();
+  };
+  const auto mode = static_cast<double>(std::ranges::find(modes, options.mode) - modes.begin());
+  const bool has_value = options.mode != "free" && options.mode != "brake";
+  for (const std::string& word : options.settings) {
+    const auto at = word.rfind('=');
+    const std::string name = word.substr(0, at);
+    const auto value = at == std::string::npos ? std::nullopt : base::parse_number(word.substr(at + 1));
+    if (has_value != (at != std::string::npos) || (has_value && !value))
+      return fail("joint " + base::in_quotes(word) + ": expected " + (has_value ? "JOINT=NUMBER" : "JOINT") + " with mode " + options.mode);
+    bool is_known = false;
+    for (const auto& joint : joints) {
+      if (name != "all" && name != name_of(joint)) continue;
+      is_known = true;
+      values[RTMSIM_JOINT_VALUES * joint.id] = mode + (options.is_compensated ? RTMSIM_JOINT_COMPENSATED : 0);
+      values[RTMSIM_JOINT_VALUES * joint.id + 1] = value.value_or(0);
+    }
+    if (is_known) continue;
+    std::vector<std::string> names;
+    for (const auto& joint : joints) names.push_back(name_of(joint));
+    return fail("model " + options.model + " has no joint " + base::in_quotes(name) + "; it has " + base::join(names, ", "));
+  }
+  return values;
+}
+
+// All that were commanded to a position stand there, or push against something.
+bool have_arrived(const shm::Iface& iface, const std::vector<double>& values) {
+  const auto states = states_of(iface);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (values[RTMSIM_JOINT_VALUES * i] == 0) continue;
+    if (states[i].mode != RTMSIM_JOINT_POSITION || states[i].status == RTMSIM_JOINT_MOVING) return false;
+  }
+  return true;
+}
+
+void command(Control& control, shm::Iface& iface, const JointOptions& options) {
+  const auto values = commands_of(control, iface, options);
+  if (!values) return;
+  auto simulation = control.open(shm::IfaceType::simulation, "world");
+  if (!simulation) return;
+  if (is_paused(control.server_id())) return control.fail("the simulation is paused: joints move when time runs (simctl run)");
+  if (const auto done = iface.command(shm::CommandKind::joints, *values); !done) return control.fail(done.error().message);
+  catch_interrupts();
+  const auto now = [&] { return simulation->read() ? simulation->sample<shm::SimulationSample>().stamp.sim_time_ns : 0; };
+  const auto begin = now(), end = begin + static_cast<std::int64_t>(options.seconds * 1e9);
+  constexpr std::int64_t taken = 50'000'000;  // [ns] after which the simulator has taken the command
+  while (!is_interrupted()) {
+    if (options.seconds > 0 && now() >= end) break;
+    if (options.seconds <= 0 && options.mode == "brake" && now() > begin) break;
+    if (options.seconds <= 0 && options.mode == "position" && now() >= begin + taken && iface.read() && have_arrived(iface, *values)) break;
+    if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
+      return control.fail("the simulator has exited");
+  }
+  if (iface.read()) show(control, iface);
+}
+
+}  // namespace
+
+void joints(Control& control, const JointOptions& options) {
+  auto iface = control.open(shm::IfaceType::joints, options.model + "::joints");
+  if (!iface) return;
+  if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
+  if (iface->wait(0, std::chrono::seconds(2)) != shm::Wait::fresh) return control.fail("joints of " + options.model + ": no sample comes");
+  if (options.settings.empty()) return show(control, *iface);
+  command(control, *iface, options);
+}
+
+}  // namespace simctl
