@@ -50,7 +50,7 @@ struct FileStamp {
   std::uint64_t device = 0, inode = 0, size = 0;
   std::int64_t modified_ns = 0, changed_ns = 0;
   std::int64_t seen_ns = 0;  // when it was looked at
-  std::string content;       // hash of what was read (base/content_hash.h); empty: nothing was
+  std::string content{};     // hash of what was read (base/content_hash.h); empty: nothing was
 };
 // As it is now, without its content.
 FileStamp stamp_of(const std::string& path);
