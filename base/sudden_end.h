@@ -1,11 +1,12 @@
 // A process that ends inside a callback of a component, by a fatal signal or by exit(): one line on standard error names the component and
-// the callback, so that whoever reads the log of a process with many components knows which of them it was.
+// the callback, so that the log of a process with many components shows which of them it was.
 //
 //   Relay0: the process ends in onExecute (signal 11)
 //   Relay0: the process ends in onExecute (exit code 3)
 //
-// The signals are SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT, where nobody else handles them. The process then ends by the same signal as
-// it would have without the line, with the same core file. No line: SIGKILL, _exit(), an overflow of the stack, a thread of the author's.
+// The signals are SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT, where no other handler is installed. The process then ends by the same
+// signal as it would have without the line, with the same core file. No line: SIGKILL, _exit(), an overflow of the stack, a thread of the
+// author's.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What the components of joints have in common: a part of the joints of one iface (parameter `joints`, names separated by commas; empty:
+// Common base of the components of joints: a part of the joints of one iface (parameter `joints`, names separated by commas; empty:
 // all), services that are answered at once, also while simulated time stands still, and done in the next onExecute, and the step of all of
 // it. When the component is deactivated or its process ends, its joints brake.
 #pragma once
@@ -51,7 +51,7 @@ class JointComponent : public IfaceComponent {
   std::string names_, chosen_names_;
   JointPart part_;
   std::uint64_t chosen_attachment_ = 0;
-  base::Guarded<Shared, base::Rank::buffer> shared_;
+  base::Guarded<Shared, base::Rank::details> shared_;
 };
 
 }  // namespace iface

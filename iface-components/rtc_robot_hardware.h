@@ -105,8 +105,8 @@ class RTCRobotHardware : public iface::JointComponent {
   RTC::CorbaPort service_port_;
   RobotHardware service_;
   std::vector<Servo> servos_;
-  base::Guarded<Status, base::Rank::buffer> status_;
-  base::Guarded<std::map<std::string, std::vector<std::string>>, base::Rank::buffer> groups_;
+  base::Guarded<Status, base::Rank::details> status_;
+  base::Guarded<std::map<std::string, std::vector<std::string>>, base::Rank::details> groups_;
 };
 
 extern "C" {

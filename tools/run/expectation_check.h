@@ -1,4 +1,4 @@
-// Whether what expectations name exists, so that a misspelt name is found before the run and not after it. Each error begins with the
+// Checks that the names in expectations exist, so that a misspelt name is found before the run and not after it. Each error begins with the
 // expectation, and says what there is instead. One thread at a time.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The joints of a model that nothing else drives: commands of all clients, each for its own joints, go to controllers in the solver. A
-// joint that nobody has commanded is as the file has it. When the client that commands a joint detaches or exits, the joint brakes. See
+// joint that no client has commanded is as the file has it. When the client that commands a joint detaches or exits, the joint brakes. See
 // device.h for the thread rule.
 #pragma once
 

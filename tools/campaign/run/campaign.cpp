@@ -297,7 +297,7 @@ Result<void> Campaign::hash_everything() {
   base_key_ = hash.text();
   base::ContentHash questions;
   hash_questions(questions);
-  parts_ += "the plan's duration, deeds or expectations\t" + questions.text() + "\n";
+  parts_ += "the plan's duration, actions or expectations\t" + questions.text() + "\n";
   return {};
 }
 

@@ -75,7 +75,7 @@ std::string status_line(const HuntProgress& progress, std::chrono::seconds budge
     std::snprintf(text, sizeof text, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds,
                   progress.features, progress.wall_s, static_cast<long>(budget.count()));
   } else {
-    std::snprintf(text, sizeof text, "shrinking case %zu: try %zu, %zu deeds so far  %.0f s", progress.case_number, progress.tries,
+    std::snprintf(text, sizeof text, "shrinking case %zu: try %zu, %zu actions so far  %.0f s", progress.case_number, progress.tries,
                   progress.deeds, progress.wall_s);
   }
   return text;
