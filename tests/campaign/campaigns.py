@@ -48,7 +48,7 @@ measure:
     system.write_text(system.read_text() + "<!-- changed -->\n")
     p.write_text(p.read_text().replace("duration: 1", "duration: 1.5"))
     said = rtse("sweep", p).stderr
-    assert f"2 rows run again, because these have changed since the results were made: {system}, the plan's duration, deeds or expectations\n" in said, said
+    assert f"2 rows run again, because these have changed since the results were made: {system}, the plan's duration, actions or expectations\n" in said, said
     # A number that no sample has is no number that is not there by chance, also of a port whose type the profile does not tell.
     for text in ("measure: [{value: {port: PORT, member: data.wx, take: min}}]\n", "never: [{port: PORT, member: data.wx, min: 1}]\n"):
         done = rtse("sweep", plan(text.replace("PORT", '"RTCPosition2d0:actual_velocity"'), "member.yaml"), code=1)
