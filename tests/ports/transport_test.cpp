@@ -11,6 +11,7 @@
 
 #include "base/hash64.h"
 #include "base/tick.h"
+#include "component/runtime_access.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/transport/cdr.h"
 #include "ports/support.h"
@@ -447,8 +448,8 @@ TEST(Payload, the_octets_between_members_are_zero_whatever_was_encoded_before) {
   value.data[1] = 1.0;
   RTC::CORBA_CdrMemoryStream own;
   for (const auto order : {rt::ByteOrder::little, rt::ByteOrder::big}) {
-    std::ignore = corba::encode(RTC::detail::data_type<RTC::TimedOctetSeq>().ops(), &full, order);
-    const auto block = corba::encode(RTC::detail::data_type<RTC::TimedDoubleSeq>().ops(), &value, order);
+    std::ignore = corba::encode(RTC::RuntimeAccess::ops(RTC::detail::data_type<RTC::TimedOctetSeq>()), &full, order);
+    const auto block = corba::encode(RTC::RuntimeAccess::ops(RTC::detail::data_type<RTC::TimedDoubleSeq>()), &value, order);
     ASSERT_TRUE(own.serializeCDR(full));
     own.setEndian(order == rt::ByteOrder::little);
     ASSERT_TRUE(own.serializeCDR(value));
@@ -466,7 +467,8 @@ TEST(Payload, lengths_that_overflow_32_bits_are_refused) {
   for (const CORBA::ULong length : {0x20000000u, 0x20000001u, 0x80000000u, 0xffffffffu}) {
     alignas(8) std::byte octets[64] = {};
     std::memcpy(octets + 8, &length, 4);
-    EXPECT_FALSE(corba::decode_safely(RTC::detail::data_type<RTC::TimedDoubleSeq>().ops(), &value, octets, rt::ByteOrder::little))
+    EXPECT_FALSE(
+        corba::decode_safely(RTC::RuntimeAccess::ops(RTC::detail::data_type<RTC::TimedDoubleSeq>()), &value, octets, rt::ByteOrder::little))
         << length;
     EXPECT_EQ(value.data.length(), 2u);
   }
