@@ -127,7 +127,7 @@ void add_control(base::Command& app, Work& work) {
   joints->add_option("MODEL", joint_options->model, "Model with joints that no drive turns")->required();
   joints->add_option("JOINT", joint_options->settings,
                      "JOINT=VALUE [rad, m; rad/s, m/s; N m, N], all=VALUE; JOINT or all with free and brake");
-  joints->add_option("--mode", joint_options->mode, "What VALUE is: position, velocity or effort; or free, brake")
+  joints->add_option("--mode", joint_options->mode, "Meaning of VALUE: position, velocity or effort; or free, brake")
       ->check(base::one_of({"position", "velocity", "effort", "free", "brake"}))
       ->capture_default_str();
   joints->add_flag("--compensate", joint_options->is_compensated, "Add the effort that gravity needs");
