@@ -78,7 +78,7 @@ def echoes_every_sample():
     first = json.loads(echo.stdout.readline())["stamp"]["sequence"]
     for _ in range(2):
         echo.send_signal(signal.SIGSTOP)
-        ok("step", "100")  # ten samples of a drive
+        ok("step", "200")  # ten samples of a drive
         echo.send_signal(signal.SIGCONT)
         await_("samples", lambda: bool(select.select([echo.stdout], [], [], 0)[0]))
     numbers = [json.loads(line)["stamp"]["sequence"] for line in echo.communicate(timeout=watchdog)[0].splitlines()]
@@ -88,7 +88,7 @@ def echoes_every_sample():
     running.append(late)
     late.stdout.readline()
     late.send_signal(signal.SIGSTOP)
-    ok("step", "10000")
+    ok("step", "20000")
     late.send_signal(signal.SIGCONT)
     said = late.communicate(timeout=watchdog)[1]
     assert said.startswith(f"simctl: warning: iface {robot}::position2d: 9") and "were overwritten" in said, said
