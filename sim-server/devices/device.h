@@ -36,6 +36,8 @@ class Schedule {
   explicit Schedule(double rate = 0);  // [Hz]; 0: every step
   // For the subscribers of this era: an era begins when somebody subscribes to a device that nobody was subscribed to.
   bool is_due(std::chrono::nanoseconds now, std::uint64_t era = 0) const;
+  // Without an answer for whom: false while nobody can be owed a sample.
+  bool may_be_due(std::chrono::nanoseconds now) const { return now >= next_; }
   void done(std::chrono::nanoseconds now) { next_ = after(now); }
   // A sample was made out of turn while time stood still, for the subscribers of this era: their next one is due at the next multiple.
   // At time 0 all are due once more, as after a reset.

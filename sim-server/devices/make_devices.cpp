@@ -197,7 +197,7 @@ void make_joints(Makers& m) {
 }  // namespace
 
 base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
-  Makers m{world, model, left_out, {}, {}};
+  Makers m{world, model, left_out, {}, {}, {}};
   const ModelDef& def = world.physics.def(model);
   for (const auto& plugin : def.plugins) make_plugin(m, plugin);
   for (std::uint32_t l = 0; l < def.links.size(); ++l) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t most_pixels_a_side = 4096;
+constexpr std::int64_t most_plan_pixels = 4096;
 constexpr std::size_t most_walls = 20'000;
 
 struct Picture {
@@ -42,8 +42,8 @@ base::Result<Picture> read_picture(const fs::path& file) {
   const AssetReader::Question question{AssetKind::image, file.string(), "image", details.bytes()};
   const auto answer = AssetReader::mine().ask(question);
   auto picture = AssetReader::decoded<Picture>(question, answer, take_picture);
-  if (picture && std::max(picture->width, picture->height) > most_pixels_a_side)
-    return base::Error{fmt::format("image {} is larger than {} pixels a side", file.string(), most_pixels_a_side)};
+  if (picture && std::max(picture->width, picture->height) > most_plan_pixels)
+    return base::Error{fmt::format("image {} is larger than {} pixels a side", file.string(), most_plan_pixels)};
   return picture;
 }
 

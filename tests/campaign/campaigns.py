@@ -52,7 +52,7 @@ measure:
     # A number that no sample has is no number that is not there by chance, also of a port whose type the profile does not tell.
     for text in ("measure: [{value: {port: PORT, member: data.wx, take: min}}]\n", "never: [{port: PORT, member: data.wx, min: 1}]\n"):
         done = rtse("sweep", plan(text.replace("PORT", '"RTCPosition2d0:actual_velocity"'), "member.yaml"), code=1)
-        assert "the samples have no number data.wx; they have " in done.stderr, done.stderr
+        assert "have no number data.wx; they have " in done.stderr, done.stderr
 
 
 # What fails keeps its files and is shown in every form.
@@ -299,9 +299,10 @@ def disk_full():
     p = plan("repeat: 20\n")
     rtse("sweep", p, "--rows", "1..2")
     before = times()
-    limit = (folder / "plan.db").stat().st_size // 1024  # kB; a file of SQLite grows in a log beside it
+    plan("repeat: 100000\n")
+    limit = 2048  # kB; enough for the shared memory of the simulator that is asked about the world, and not for a list of all rows
     words = " ".join(map(shlex.quote, [f"{bin_dir}/rtse", "sweep", p, "-j", "2", "--rows", "1..12"]))
-    done = subprocess.run(["bash", "-c", f"ulimit -f {max(8, limit // 2)}; exec {words}"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    done = subprocess.run(["bash", "-c", f"ulimit -f {limit}; exec {words}"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           timeout=200)
     lines = done.stderr.splitlines()
     assert done.returncode == 1 and len(lines) == 1 and f'results "{folder}/plan.db": ' in lines[0], done
@@ -501,7 +502,7 @@ hunt:
     p.write_text(p.read_text().replace(f"{source}/tests/campaign/hunt/hunt_subject.xml", "nobody.xml"))
     done = rtse("hunt", p, "--cases", 8, code=1)
     assert "does not start: component HuntSubject0" in done.stderr or "does not start: host of" in done.stderr, done
-    assert len(done.stderr.splitlines()) == 1 and done.stdout == "", done
+    assert len(done.stderr.splitlines()) == 1 and " failures found" not in done.stdout, done
 
 
 try:

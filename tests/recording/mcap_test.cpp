@@ -167,14 +167,17 @@ TEST_P(Single, what_a_killed_writer_had_flushed_is_read_and_repaired) {
 }
 
 TEST_P(Single, a_channel_without_messages_outlives_its_killed_writer) {
-  auto writer = Writer::create(path_);
-  const auto channel = writer->add_channel(0, "/loud", "json");
-  ASSERT_TRUE(writer->add_channel(0, "/silent", "json"));
-  ASSERT_TRUE(writer->write({*channel, 0, Time(1), Time(1), "{}"}) && writer->flush());
-  const std::string left = octets();
-  ASSERT_TRUE(writer->close());
+  std::string left;
+  {
+    auto writer = Writer::create(path_);
+    const auto channel = writer->add_channel(0, "/loud", "json");
+    ASSERT_TRUE(writer->add_channel(0, "/silent", "json"));
+    ASSERT_TRUE(writer->write({*channel, 0, Time(1), Time(1), "{}"}) && writer->flush());
+    left = octets();
+  }
   put(left);
-  ASSERT_TRUE(repair(path_, path_));
+  const auto repaired = repair(path_, path_);
+  ASSERT_TRUE(repaired) << repaired.error().message;
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_FALSE(reader->damage().has_value());

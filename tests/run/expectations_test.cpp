@@ -51,7 +51,7 @@ class ExpectationsTest : public testing::Test {
 
 TEST_F(ExpectationsTest, paths_are_as_long_as_their_pieces) {
   EXPECT_EQ(problem("- path_length: {model: robot, min: 7, max: 7}"), "");
-  EXPECT_EQ(problem("- path_length: {model: robot, max: 6.5}"), "it was 7 m, expected at most 6.5");
+  EXPECT_EQ(problem("- path_length: {model: robot, max: 6.5}"), "its path was 7 m long, expected at most 6.5");
   EXPECT_NE(problem("- path_length: {model: nobody, min: 1}").find("nobody"), std::string::npos);
 }
 

@@ -34,6 +34,9 @@ RunOptions all_different() {
   options.picture = "/p.png";
   options.record = "/run.mcap";
   options.record_last_s = 5;
+  options.page = "/p.html";
+  options.page_camera_rate = 2.5;
+  options.page_limit_mib = 8;
   options.hash_log = "/h";
   options.hash_period_s = 0.001;
   options.keep = "/k";

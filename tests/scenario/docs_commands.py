@@ -31,6 +31,7 @@ executed = {
     "docs/hash-logs.md": "",
     "docs/arms.md": "",
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
+    "docs/run-page.md": "",
     "docs/simulator.md": "",
     "docs/worlds.md": "cp worlds/obstacle_course.sdf my.world",
     "docs/campaigns.md": "",

@@ -160,7 +160,7 @@ def terminal():
         done = rtse("recording", *words)
         said = (done.stdout + done.stderr).decode()
         assert said and not [c for c in said if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160)], (words, done)
-    value = json.loads(rtse("recording", "cat", file).stdout)["value"]
+    value = json.loads(rtse("recording", "cat", file).stdout.splitlines()[0])["value"]
     assert value == {"v": c1 + "\x7f"}, value
     turned = "\u202egpj\u2066"
     raw = b"\x9b31m\xff" + turned.encode()

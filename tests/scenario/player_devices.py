@@ -58,7 +58,7 @@ def identity():
                 assert not client.access(*device, OPEN)
         log = rig.log(rig.process)
         assert log.count("subscription refused: there is no position2d:0; there are laser:0 laser:1") == 1, log
-        assert log.count("there is no laser:3;") == 1 and log.count("there is no 77:0;") == 1, log
+        assert log.count("there is no laser:3;") == 1 and log.count("interface 77 is not served;") == 1, log
         for index in range(3, 100):
             assert not client.access(LASER, index, OPEN)
         assert rig.log(rig.process).count("subscription refused") == 20

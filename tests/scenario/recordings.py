@@ -403,7 +403,7 @@ def replayed_without_inputs():
     done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0")
     assert done.returncode == 0, done
     assert "input LaserObstacleAvoid0:range: missing, the recording has no /RTCLaser0/range" in done.stderr, done
-    refused("replay", rig.path("nothing.mcap"), "--into", "A", says="No such file")
+    refused("replay", rig.path("nothing.mcap"), "--into", "A", says="no such file")
     os.remove(file)
     process = recording("RTCLaser0:range", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
     seconds(2)

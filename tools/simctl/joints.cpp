@@ -141,8 +141,12 @@ void command(Control& control, shm::Iface& iface, const JointOptions& options) {
 void joints(Control& control, const JointOptions& options) {
   auto iface = control.open(shm::IfaceType::joints, options.model + "::joints");
   if (!iface) return;
+  // A sample of now. While time stands still, a new one comes only if nobody else is subscribed; then the one that is there is of now.
+  const std::uint64_t old = iface->sequence();
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
-  if (iface->wait(0, std::chrono::seconds(2)) != shm::Wait::fresh) return control.fail("joints of " + options.model + ": no sample comes");
+  const auto limit = old > 0 && is_paused(control.server_id()) ? std::chrono::milliseconds(200) : std::chrono::milliseconds(2000);
+  if (iface->wait(old, limit) != shm::Wait::fresh && !iface->read())
+    return control.fail("joints of " + options.model + ": no sample comes");
   if (options.settings.empty()) return show(control, *iface);
   command(control, *iface, options);
 }

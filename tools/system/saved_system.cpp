@@ -71,8 +71,10 @@ SavedConnector to_saved(const ConnectorView& connector, const PortOwner& source,
   saved.interface_type = property(connector.properties, "dataport.interface_type");
   saved.dataflow_type = property(connector.properties, "dataport.dataflow_type");
   saved.subscription_type = property(connector.properties, "dataport.subscription_type", "flush");
+  // Each loaded connection comes back by itself unless the profile says NO: YES would only be in profiles that had not asked for it.
+  const auto is_of_loading = [](const std::string& key, const std::string& value) { return key == "dataport.reconnect" && value == "YES"; };
   for (const auto& [key, value] : connector.properties) {
-    if (!is_reference(key, value)) saved.properties.emplace_back(key, value);
+    if (!is_reference(key, value) && !is_of_loading(key, value)) saved.properties.emplace_back(key, value);
   }
   return saved;
 }

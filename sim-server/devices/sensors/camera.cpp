@@ -174,8 +174,9 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   bool holds_context() const override { return worker_.holds_context(); }
 
   bool wants_sample(const Moment& moment) override {
+    if (!schedule_.may_be_due(moment.time)) return false;
+    auto wanted = subscribed_channels();  // counts them: the era is that of now
     if (!schedule_.is_due(moment.time, era())) return false;
-    auto wanted = subscribed_channels();
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) {
       rest_when_long_idle(moment.time);
       return false;

@@ -19,7 +19,8 @@ class Sensor : public Device {
   shm::IfaceWriter& iface() final { return *writer_; }
   ModelId model() const final { return model_; }
   bool wants_sample(const Moment& moment) final {
-    return schedule_.is_due(moment.time, writer_->times_switched_on()) && writer_->is_subscribed();
+    // Subscribers are counted first: the era is that of now.
+    return schedule_.may_be_due(moment.time) && writer_->is_subscribed() && schedule_.is_due(moment.time, writer_->times_switched_on());
   }
   void take_sample(const Moment& moment) final { measure(moment); }
   void publish(const Moment& moment) final;

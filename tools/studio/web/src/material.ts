@@ -194,7 +194,7 @@ void main() {
     if (shine.w > 0.0 && d > 0.0) specular += lobe(n, l, v) * strength * lamp_specular[i];
   }
   #endif
-  vec3 light = base.rgb * diffuse;
+  vec3 light = base.rgb * min(diffuse, 1.2 - 0.2 / max(diffuse, vec3(1.0))); // as the simulator: light above 1 counts little
 #else
   vec3 light = base.rgb;
   vec3 specular = vec3(0.0);
