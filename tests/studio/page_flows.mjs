@@ -433,6 +433,7 @@ const flows = [
       mock.say({ op: 'values', watch: fan, t: [seconds], value: { ranges: Array.from({ length: 60 }, () => (seconds - 200) / 2) } }, false);
       mock.say(time({ sim_time: seconds }), false);
       await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time.sim_time === t, seconds));
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // what is drawn has followed, also the first jump
     }
     const now = await seen();
     check(Math.abs(now.first - 3) < 1e-5 && now.trail >= 6, JSON.stringify(now));

@@ -53,9 +53,9 @@ const flows = [
     await page.locator('#pause-when').click();
     await page.locator('#break-member').selectOption('data.vx');
     await page.locator('#break-compare').selectOption('>');
-    await page.locator('#break-value').fill('0.1');
+    await page.locator('#break-value').fill('0.199');
     await page.locator('dialog[open] button.main').click();
-    await until('a later time', async () => (await moment(page)) > 0 && (await page.locator('.status .act').textContent()).includes('data.vx > 0.1 at'));
+    await until('a later time', async () => (await moment(page)) > 0 && (await page.locator('.status .act').textContent()).includes('data.vx > 0.199 at'));
   }],
   ['two viewers have two moments', async ({ browser, page, url }) => {
     const other = await open(browser, url);
@@ -215,4 +215,4 @@ const flows = [
   }],
 ];
 
-run([...flows, ...recorded_flows], set_up, async (shared) => shared?.rig.end_all());
+run([...flows.slice(0, 2), ...recorded_flows, ...flows.slice(2)], set_up, async (shared) => shared?.rig.end_all());

@@ -74,7 +74,7 @@ const flows = [
         check(!(await reply.text()).includes('glTF'), 'no world');
       }
     }
-    for (const [end, wanted] of [['/', 'no token'], [`/#token=${'0'.repeat(32)}`, 'another token']]) {
+    for (const [end, wanted] of [['/', 'no token'], [`/#token=${'0'.repeat(32)}`, 'wrong token']]) {
       const page = await open(browser, `${origin}${end}`);
       await until(wanted, async () => (await page.locator('.link-state').textContent()).includes(wanted));
       same(await page.locator('.diagram .box').count(), 0, 'boxes');
@@ -321,7 +321,7 @@ const flows = [
   ['a robot is put somewhere else by dragging, and pushed', async ({ page, rig }) => {
     const place = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).position;
     await rig.simctl('pause');
-    await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.hands.set_tool('move'); }, robot);
+    await page.evaluate((name) => { window.studio.world.follow(name); window.studio.world.hands.set_tool('move'); window.studio.select(null); }, robot); // without arrows above it
     await page.evaluate(() => window.studio.world.draw());
     const before = await place();
     await pull(page, 70);
@@ -336,6 +336,7 @@ const flows = [
     await until('it is seen there', () => page.evaluate(([name, x]) => { window.studio.world.draw(); return Math.abs(window.studio.world.world.models.get(name).canonical.position.x - x) < 0.01; }, [robot, before[0]]));
     const yaw = async () => JSON.parse(await rig.simctl('--json', 'pose', robot)).yaw;
     const straight = await yaw();
+    await page.evaluate(() => { window.studio.select(null); window.studio.world.draw(); });
     await page.keyboard.down('Control');
     await pull(page, 50);
     await page.keyboard.up('Control');

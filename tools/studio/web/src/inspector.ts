@@ -33,6 +33,7 @@ export interface Parts {
 type Content = (HTMLElement | string | null | false | HTMLElement[])[];
 
 export class Inspector {
+  private newest: unknown; // sample of the signal that is shown
   readonly element = h('div', { class: 'inspector', tabindex: 0, role: 'region', 'aria-label': 'Selection' });
   private shown = '';
   private facts_shown = '';
@@ -248,6 +249,7 @@ export class Inspector {
   }
 
   private async ask_break(topic: string): Promise<void> {
+    if (store.hello?.recording) return this.parts.pause_when(topic, flatten(this.newest ?? {}).filter(([, value]) => typeof value === 'number').map(([key]) => key));
     const { result } = await wire.request('members', { topic }).catch(() => ({ result: null }));
     this.parts.pause_when(topic, ((result?.members ?? []) as { path: string; type: string }[]).filter((m) => m.type === 'number').map((m) => m.path));
   }
@@ -255,6 +257,7 @@ export class Inspector {
   // The newest sample: each number can go into a plot; long arrays as polar plot.
   private sample(into: HTMLElement, topic: string, sample: Values): void {
     if (sample.error) return put(into, h('p', { class: 'problem' }, sample.error));
+    this.newest = sample.value;
     const all = flatten(sample.value ?? {});
     const scan = (sample.value as { ranges?: number[] } | undefined)?.ranges;
     // Values change in place: a button that is held must not go.
