@@ -9,7 +9,7 @@
 namespace iface {
 namespace {
 
-constexpr double time_to_full_speed = 0.25;  // [s] when nobody has set an acceleration
+constexpr double time_to_full_speed = 0.25;  // [s] while no acceleration is set
 
 std::string name_of(const shm::Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
 

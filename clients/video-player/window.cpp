@@ -306,13 +306,13 @@ class Window::Screen : public std::enable_shared_from_this<Screen> {
   }
 
   const int bell_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  coil::Mutex turnstile_;  // whoever opens or closes goes through here, one at a time, and waits for the display meanwhile
+  coil::Mutex turnstile_;  // one opening or closing at a time, which waits for the display meanwhile
   std::thread thread_;
   coil::Mutex mutex_;  // of what follows
   std::condition_variable_any changed_;
   std::vector<std::function<void()>> tasks_;
   std::uint64_t tasks_given_ = 0, tasks_done_ = 0;
-  std::uint64_t tasks_missed_ = 0;  // the last one that nobody waits for any more
+  std::uint64_t tasks_missed_ = 0;  // the last one whose wait has ended
   bool is_lost_ = false;
   std::vector<std::unique_ptr<Pane>> panes_;  // the thread's, like what follows
   Display* display_ = nullptr;                // of X11; SDL's

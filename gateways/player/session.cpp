@@ -169,7 +169,7 @@ base::Error Session::why_unknown(const player::Address& device) const {
   std::vector<std::string> there;
   for (const auto& one : robot_.devices()) there.push_back(player::to_text(one));
   const std::string list = there.empty() ? "" : "; there are " + base::join(there, " ");
-  // Numbers are read by nobody, and another index would not help.
+  // No program reads the numbers, and another index would not help.
   if (player::to_text(device.interface).empty()) {
     const auto name = player::any_name(device.interface);
     return {(name.empty() ? "interface " + std::to_string(static_cast<unsigned>(device.interface)) : std::string(name)) + " is not served" +

@@ -127,6 +127,7 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   }
   auto child =
       ChildProcess::start({.words = {own_program("rtse"), "--json", "run", options.system, "--world", options.world, options_from_input},
+                           .environment = {},
                            .input = input->get()});
   if (!child) {
     failed.problem = child.error().message;

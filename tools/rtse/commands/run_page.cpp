@@ -88,6 +88,10 @@ void write_page(Console& console, const RunOptions& given, const RunOptions& mad
   };
   if (!std::filesystem::exists(made.record, error)) {
     cleanup();
+    // A run that did not start has said so, and with --last one that passes keeps nothing.
+    if (!result.is_passed()) return;
+    if (given.record_last_s > 0)
+      return console.warn("page " + base::in_quotes(given.page) + ": not written, since --last keeps failed runs only");
     return console.fail({"page " + base::in_quotes(given.page) + ": the run left no recording"});
   }
   const auto text = summary_of(given, result).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -97,7 +101,8 @@ void write_page(Console& console, const RunOptions& given, const RunOptions& mad
   }
   auto child = ChildProcess::start(
       {.words = {own_program("rtse-page"), made.record, "--output", given.page, "--summary", summary, "--page-camera-rate",
-                 number_text(given.page_camera_rate), "--page-limit", number_text(given.page_limit_mib)}});
+                 number_text(given.page_camera_rate), "--page-limit", number_text(given.page_limit_mib)},
+       .environment = {}});
   const bool is_done = child && child->wait_or_interrupt(longest_writing) == Ending::ended && child->exit_code() == 0;
   if (!is_done) {
     const auto said = child ? base::split_list(child->said(), '\n') : std::vector<std::string>{child.error().message};

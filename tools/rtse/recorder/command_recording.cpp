@@ -257,11 +257,17 @@ void export_samples(Console& console, const ExportOptions& options) {
 
 // The page is written by a program of its own, which has the viewer.
 void export_page(Console& console, const Selection& selection, const std::string& page) {
-  auto child = editor::ChildProcess::start(
-      {.words = {editor::own_program("rtse-page"), selection.file, "--output", page}, .output = editor::own_output});
+  auto child =
+      editor::ChildProcess::start({.words = {editor::own_program("rtse-page"), selection.file, "--output", page}, .environment = {}});
   if (!child) return console.fail(child.error());
-  if (child->wait_or_interrupt(longest_page) == editor::Ending::ended && child->exit_code() == 0) return;
-  console.fail({"page " + base::in_quotes(page) + ": was not written: rtse-page " + child->how_it_ended()});
+  if (child->wait_or_interrupt(longest_page) == editor::Ending::ended && child->exit_code() == 0) {
+    if (!console.json()) std::cout << child->said();
+    return;
+  }
+  constexpr std::string_view name = "rtse-page: ";
+  auto lines = base::split_list(child->said(), '\n');
+  if (lines.empty()) lines.push_back("rtse-page " + child->how_it_ended());
+  console.fail({"page " + base::in_quotes(page) + ": " + lines.back().substr(lines.back().starts_with(name) ? name.size() : 0)});
 }
 
 // ---- compare ----
