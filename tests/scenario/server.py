@@ -336,6 +336,20 @@ def names():
     assert server("--check", world=world).wait(watchdog) == 1, "a sensor was left out: its name does not fit after the model's"
 
 
+def waits():
+    waiting = [subprocess.Popen([f"{bin_dir}/simctl", "-s", server_id, "wait", *ifaces], stderr=subprocess.PIPE, text=True)
+               for ifaces in ([], [f"{robot}::laser", f"position2d:{robot}::position2d"])]
+    running.extend(waiting)
+    refused("wait", "--timeout", "0.1", says="is not there after 0.1 s")
+    assert all(one.poll() is None for one in waiting), "nobody is there to wait for"
+    process = started("-u")
+    for one in waiting:
+        assert one.wait(watchdog) == 0, one.stderr.read()
+    refused("wait", "laser:nobody", "nobody::else", f"{robot}::laser", "--timeout", "0.1", says="has no laser:nobody, nobody::else after 0.1 s")
+    refused("wait", "--timeout", "-1", code=2, says="--timeout")
+    stop(process)
+
+
 # The factor that was asked for, by the stamps of the clock. Delays only ever make a stamp late, so the least delayed ones at both ends
 # tell the rate on a loaded machine, too. And the warning when it cannot be kept.
 def rate():
@@ -380,4 +394,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, waits, rate, paused_is_idle)

@@ -626,11 +626,17 @@ const flows = [
     await entry('Save this layout');
     await page.locator('#ask-text').fill('tuning');
     await page.locator('dialog[open] button.main').click();
+    await until('kept', () => page.evaluate(() => 'tuning' in JSON.parse(localStorage.getItem('rtm-studio')).layouts));
     await entry('Usual layout');
     check((await page.locator('.bottom-panel').boundingBox()).x < 2 && (await page.locator('.tree-panel').boundingBox()).y < 60 && (await page.locator('.bottom-panel').boundingBox()).y > 300, 'the usual one');
-    await until('kept', () => page.evaluate(() => 'tuning' in JSON.parse(localStorage.getItem('rtm-studio')).layouts));
-    await page.evaluate(() => { location.hash = ''; });
-    await page.reload();
+    await entry(/^tuning$/);
+    await page.locator('#layouts').click();
+    // A change is kept although the page is left in the same moment.
+    await Promise.all([page.waitForEvent('load'), page.evaluate(() => {
+      [...document.querySelectorAll('.menu button')].find((button) => button.textContent.includes('Usual layout')).click();
+      location.hash = '';
+      location.reload();
+    })]);
     await is_ready(page);
     await has_world(page);
     await entry(/^tuning$/);

@@ -3,10 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/text.h"
 #include "shm/iface_json.h"
@@ -174,6 +176,30 @@ void stats(Control& control) {
   if (!contacts.empty()) std::printf("\n%-30s %10s %14s\n", "MODEL", "CONTACTS", "SINCE START");
   for (const auto& [model, count] : contacts.items())
     std::printf("%-30s %10d %14llu\n", model.c_str(), count.value("now", 0), static_cast<unsigned long long>(count.value("total", 0ULL)));
+}
+
+void wait(Control& control, const std::vector<std::string>& ifaces, double seconds) {
+  catch_interrupts();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto is_over = [&] { return std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(seconds); };
+  for (;;) {
+    std::vector<std::string> missing = ifaces;
+    bool is_there = false;
+    for (const auto& found : shm::find_segments(control.server_id())) {
+      if (!found.is_alive) continue;
+      is_there |= found.name.type == shm::IfaceType::simulation;
+      std::erase_if(missing, [&](const std::string& name) {
+        return name == found.name.iface || name == std::string(shm::to_text(found.name.type)) + ":" + found.name.iface;
+      });
+    }
+    if (is_there && missing.empty()) return void(control.ask(shm::StatsRequest{}));
+    if (is_interrupted() || is_over()) {
+      const std::string server = "server " + std::to_string(control.server_id());
+      const std::string end = is_interrupted() ? " before the interrupt" : " after " + base::format_number(seconds) + " s";
+      return control.fail(is_there ? server + " has no " + base::join(missing, ", ") + end : server + " is not there" + end);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
 }
 
 void participants(Control& control) {

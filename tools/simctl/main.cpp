@@ -58,6 +58,13 @@ void add_looks(base::Command& app, Work& work) {
   tree->add_option("MODEL", *model, "Show this model only");
   tree->callback([&work, model] { work = [model](Control& c) { simctl::tree(c, *model); }; });
 
+  auto* wait = app.add_subcommand("wait", "Wait until the simulator runs");
+  auto wait_names = option_value<std::vector<std::string>>();
+  auto timeout = option_value(30.0);
+  wait->add_option("IFACE", *wait_names, "Wait for these ifaces, too: NAME, or TYPE:NAME");
+  wait->add_option("--timeout", *timeout, "Timeout [s]")->capture_default_str()->check(base::number_between(0.0, 1e6));
+  wait->callback([&work, wait_names, timeout] { work = [=](Control& c) { simctl::wait(c, *wait_names, *timeout); }; });
+
   add_simple(app, work, "models", "List the models of the model path, which spawn accepts as model://NAME", simctl::models);
 
   auto* clean = app.add_subcommand("clean", "Remove shared memory left by crashed simulators; with -s: of this simulator only");
@@ -337,7 +344,7 @@ int main(int argc, char** argv) {
   add_control(app, work);
   add_fault(app, work);
   add_pictures(app, work);
-  app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts"})
+  app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts", "wait"})
       ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
       ->group_subcommands("Robots and models", {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
       ->group_subcommands("Record", {"screenshot", "record", "export"})

@@ -90,6 +90,9 @@ void echo(Control& control, const std::string& name, int count);
 void stats(Control& control);
 void participants(Control& control);
 void tree(Control& control, const std::string& model);
+// Until the simulator answers and has these ifaces, each NAME or TYPE:NAME; fails after `seconds` [s of wall-clock time], or when
+// interrupted.
+void wait(Control& control, const std::vector<std::string>& ifaces, double seconds);
 void models(Control& control);
 void dump(Control& control, const std::string& name);
 void clean(Control& control, bool is_of_one_server);

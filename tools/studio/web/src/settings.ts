@@ -61,15 +61,19 @@ export const linked = from_link();
 export const settings: Settings = merged(stored(), linked.settings ?? {});
 
 let timer = 0;
+function store_now(): void {
+  clearTimeout(timer);
+  timer = 0;
+  try {
+    localStorage.setItem(key, JSON.stringify(settings));
+  } catch { /* a browser that keeps nothing */ }
+}
 export function keep(): void {
   changed('settings');
   clearTimeout(timer);
-  timer = window.setTimeout(() => {
-    try {
-      localStorage.setItem(key, JSON.stringify(settings));
-    } catch { /* a browser that keeps nothing */ }
-  }, 200);
+  timer = window.setTimeout(store_now, 200);
 }
+addEventListener('pagehide', () => { if (timer) store_now(); }); // what was changed a moment before a reload is kept, too
 
 export function apply_theme(): void {
   const root = document.documentElement;
