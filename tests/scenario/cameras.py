@@ -120,13 +120,15 @@ def only_for_readers():
     second.end()
     reader.kill()
     system.until("leases taken back", lambda: listed()["subscribers"] == 0 and listed("robot::other")["subscribers"] == 0)
-    at = system.seconds()
-    system.until("what was begun to be drawn", lambda: system.seconds() > at + 0.3)
-    drawn, worked = listed()["sequence"], work_of_cameras(server)
-    at = system.seconds()
-    system.until("a second", lambda: system.seconds() > at + 1)
-    assert listed()["sequence"] == drawn, "it draws for a dead reader"
-    assert work_of_cameras(server) == worked, "its threads work though nobody looks"
+
+    # What was begun is drawn to its end, late on a busy machine, since the threads have the least priority.
+    def rests():
+        before = listed()["sequence"], work_of_cameras(server)
+        at = system.seconds()
+        system.until("a second", lambda: system.seconds() > at + 1)
+        return before == (listed()["sequence"], work_of_cameras(server))
+
+    system.until("cameras that draw nothing for dead readers", rests)
     third = Reader()
     third.more(3)
     third.end()

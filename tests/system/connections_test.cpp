@@ -81,5 +81,14 @@ TEST_F(ConnectionsTest, a_connection_is_ended_by_its_id) {
   EXPECT_FALSE(disconnect_connector(in_view_, "id8"));
 }
 
+TEST_F(ConnectionsTest, a_connection_that_its_port_dropped_meanwhile_is_ended) {
+  in_view_.connectors.push_back({.id = "id7"});
+  in_->answer = RTC::BAD_PARAMETER;
+  EXPECT_TRUE(disconnect_connector(in_view_, "id7"));
+  in_->connectors.length(1);
+  in_->connectors[0].connector_id = "id7";
+  EXPECT_FALSE(disconnect_connector(in_view_, "id7")) << "it has it still";
+}
+
 }  // namespace
 }  // namespace editor

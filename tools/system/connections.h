@@ -11,6 +11,7 @@ namespace editor {
 // Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& properties);
+// One that the port has dropped by itself since it was looked at counts as ended.
 Result<void> disconnect_connector(const PortView& port, const std::string& id);
 
 }  // namespace editor
