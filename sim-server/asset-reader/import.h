@@ -12,6 +12,8 @@
 
 namespace sim {
 
+class MeshIo;
+
 class Import {
  public:
   Import(std::string path, FileLog& files);
@@ -25,6 +27,7 @@ class Import {
   std::string path_;
   bool is_known_ = false;
   Assimp::Importer importer_;
+  const MeshIo* io_;  // the importer's
 };
 
 }  // namespace sim
