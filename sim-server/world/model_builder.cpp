@@ -232,6 +232,26 @@ class ModelBuilder {
       context_.complaints.warn(gripper, "grippers are not simulated; " + describe_in_context(gripper) + " is ignored");
   }
 
+  // Wheels without <inertial>: those of a small robot would keep it from turning with the specification's 1 kg m^2.
+  void weigh_wheels() {
+    pugi::xml_node first;
+    std::size_t count = 0;
+    for (const JointDef& joint : model_.joints) {
+      const auto node = weightless_.find(joint.child);
+      const auto link = std::find_if(model_.links.begin(), model_.links.end(), [&](const LinkDef& one) { return one.name == joint.child; });
+      if (node == weightless_.end() || link == model_.links.end() || !is_wheel(joint, *link)) continue;
+      const std::optional<Eigen::Matrix3d> inertia = inertia_of_shapes(link->collisions, link->mass, context_.triangles);
+      if (!inertia) continue;
+      link->inertia = *inertia;
+      if (count++ == 0) first = node->second;
+    }
+    if (count == 0) return;
+    const std::string others =
+        count == 1 ? "" : ", and so for " + std::to_string(count - 1) + (count == 2 ? " other wheel" : " other wheels");
+    context_.complaints.note(first,
+                             describe_in_context(first) + " has no <inertial>; 1 kg and the inertia of its collisions are taken" + others);
+  }
+
   // One line for all links of the model: many robots give no inertia at all.
   void tell_of_inertias() const {
     if (weighed_ == 0) return;
@@ -243,6 +263,14 @@ class ModelBuilder {
   }
 
  private:
+  static bool is_wheel(const JointDef& joint, const LinkDef& link) {
+    const bool turns_on = (joint.kind == JointDef::Kind::revolute || joint.kind == JointDef::Kind::continuous) && !joint.axes.empty() &&
+                          !std::isfinite(joint.axes[0].lower) && !std::isfinite(joint.axes[0].upper);
+    return turns_on && !link.collisions.empty() && std::all_of(link.collisions.begin(), link.collisions.end(), [](const CollisionDef& c) {
+             return std::holds_alternative<CylinderShape>(c.geometry) || std::holds_alternative<SphereShape>(c.geometry);
+           });
+  }
+
   // The pose of something in a link: its own, or that of the frame that stands for it.
   Eigen::Isometry3d pose_in_link(pugi::xml_node node, const Eigen::Isometry3d& raw, const Eigen::Isometry3d& link,
                                  const ResolvedModel& resolved) const {
@@ -295,6 +323,8 @@ class ModelBuilder {
       take_automatic_inertia(link, inertial, context_);
     } else if (inertial.child("mass") && !inertial.child("inertia") && !model_.is_static) {
       take_inertia_of_shapes(link, inertial);
+    } else if (!inertial && !model_.is_static) {
+      weightless_.emplace(link.name, node);
     }
     for (const char* kind : {"projector", "audio_sink", "audio_source", "battery", "particle_emitter"}) {
       for (pugi::xml_node child : node.children(kind))
@@ -410,6 +440,7 @@ class ModelBuilder {
   BuildContext& context_;
   std::size_t weighed_ = 0;  // links whose inertia is that of their shapes
   pugi::xml_node first_weighed_;
+  std::map<std::string, pugi::xml_node> weightless_;  // links without <inertial>
 };
 
 }  // namespace
@@ -440,6 +471,7 @@ ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildCo
   model.source = context.complaints.place_of(node).text();
   ModelBuilder builder(model, context);
   builder.add(node, resolved, {}, Eigen::Isometry3d::Identity());
+  builder.weigh_wheels();
   builder.tell_of_inertias();
   model.canonical_link = resolved.canonical_link;
   if (!model.link(model.canonical_link) && !model.links.empty()) model.canonical_link = model.links.front().name;

@@ -54,6 +54,21 @@ void expect_moments(const WorldFiles& files, const std::string& collisions, cons
   EXPECT_EQ(result.world.models[0].links[0].center_of_mass, Eigen::Vector3d::Zero());
 }
 
+TEST(WorldInertia, of_a_wheel_without_inertial_is_that_of_its_shape) {
+  const WorldFiles files;
+  const std::string wheel =
+      "<link name='wheel'><collision name='c'><geometry><cylinder><radius>0.1</radius><length>0.02</length></cylinder>"
+      "</geometry></collision></link><joint name='j' type='revolute'><parent>base</parent><child>wheel</child><axis>";
+  const auto inertia = [&](const std::string& limit) {
+    const LoadResult result = files.load("<model name='m'><link name='base'/>" + wheel + limit + "</axis></joint></model>");
+    EXPECT_EQ(result.world.models.at(0).links.at(0).inertia, Eigen::Matrix3d::Identity());
+    EXPECT_EQ(findings_with(result, "has no <inertial>; 1 kg and the inertia of its collisions are taken"), limit.empty() ? 1 : 0);
+    return result.world.models.at(0).links.at(1).inertia;
+  };
+  EXPECT_TRUE(inertia("").isApprox(Eigen::Vector3d(0.03 + 0.0004, 0.03 + 0.0004, 0.06).asDiagonal().toDenseMatrix() / 12, 1e-9));
+  EXPECT_EQ(inertia("<limit><lower>-1</lower><upper>1</upper></limit>"), Eigen::Matrix3d::Identity()) << "an arm";
+}
+
 TEST(WorldInertia, is_that_of_the_shapes_where_only_a_mass_is_given) {
   const WorldFiles files;
   expect_moments(files, collision_of("<box><size>1 2 3</size></box>"), Eigen::Vector3d(13, 10, 5) / 6);
