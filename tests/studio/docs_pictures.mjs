@@ -80,7 +80,9 @@ async function hundred(browser, rig) {
   await save(page, 'studio-hundred');
 }
 
+// Lines to paste are relative to the folder that the program was started in: that of the build tree.
 async function empty(browser, rig) {
+  rig.folder = resolve(bin, '../../..');
   const studio = await rig.studio();
   const page = await open(browser, studio.url, size);
   await page.locator('.world .card').waitFor();

@@ -85,7 +85,7 @@ export class Rig {
     const log = join(this.work, `${this.running.length}.log`);
     const file = openSync(log, 'w');
     const program = name === 'rtm-studio' && process.env.STUDIO_SERVER ? process.env.STUDIO_SERVER : existsSync(join(this.bin, name)) ? join(this.bin, name) : name;
-    const child = spawn(program, words, { stdio: ['ignore', file, file], cwd: this.work, env: { ...process.env, RTMSIM_SERVER_ID: String(this.server_id) } });
+    const child = spawn(program, words, { stdio: ['ignore', file, file], cwd: this.folder ?? this.work, env: { ...process.env, RTMSIM_SERVER_ID: String(this.server_id) } });
     child.log = () => readFileSync(log, 'utf8');
     child.words = [name, ...words];
     child.ended = new Promise((resolve) => child.once('exit', resolve));
