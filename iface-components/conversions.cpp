@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace iface {
 namespace {
 
 constexpr std::int64_t nanoseconds_per_second = 1'000'000'000;
 constexpr double pi = 3.14159265358979323846;
-
-void set_geometry(const shm::Pose& pose, RTC::Geometry3D& geometry) {
-  geometry.pose = to_pose(pose);
-  geometry.size = {0, 0, 0};
-}
 
 }  // namespace
 
@@ -31,6 +27,17 @@ RTC::Orientation3D to_orientation(const shm::Pose& p) {
 
 RTC::Pose3D to_pose(const shm::Pose& pose) { return {to_point(pose), to_orientation(pose)}; }
 
+RTC::Geometry3D to_geometry(const shm::Pose& pose, const double* size) {
+  RTC::Geometry3D geometry{};
+  geometry.pose = to_pose(pose);
+  if (size != nullptr) geometry.size = {size[0], size[1], size[2]};
+  return geometry;
+}
+
+RTC::Geometry2D to_geometry_2d(const shm::Pose& pose, const double* size) {
+  return {{{pose.x, pose.y}, to_orientation(pose).y}, {size[0], size[1]}};
+}
+
 double port_range(float range, double min_range, double max_range) {
   if (std::isnan(range)) return max_range;
   return std::clamp(static_cast<double>(range), std::max(0.0, min_range), max_range);
@@ -43,22 +50,56 @@ std::uint32_t level_layer(const shm::LaserInfo& info) {
   return static_cast<std::uint32_t>(std::clamp(std::round(-info.min_vertical / step), 0.0, static_cast<double>(info.layers - 1)));
 }
 
-void to_range_data(const shm::LaserInfo& info, const shm::ScanView& scan, std::uint32_t layer, RTC::RangeData& data) {
-  data.tm = to_time(scan.sample->stamp.sim_time_ns);
+RTC::RangerGeometry ranger_geometry(const shm::LaserInfo& info) {
+  RTC::RangerGeometry geometry;
+  geometry.geometry = to_geometry(info.pose);
+  return geometry;
+}
+
+RTC::RangerGeometry ranger_geometry(const shm::SonarInfo& info, std::span<const shm::Pose> poses) {
+  RTC::RangerGeometry geometry;
+  geometry.geometry = to_geometry(info.pose);
+  geometry.elementGeometries.length(static_cast<CORBA::ULong>(poses.size()));
+  for (std::size_t i = 0; i < poses.size(); ++i) geometry.elementGeometries[static_cast<CORBA::ULong>(i)] = to_geometry(poses[i]);
+  return geometry;
+}
+
+RTC::RangerConfig ranger_config(const shm::LaserInfo& info) {
+  return {info.min_angle, info.max_angle, info.angle_step, info.min_range, info.max_range, info.range_step, info.rate};
+}
+
+// A ring has no scan angles: each transducer's direction is in its element geometry, and the cone is the angular resolution.
+RTC::RangerConfig ranger_config(const shm::SonarInfo& info) { return {0, 0, info.cone, info.min_range, info.max_range, 0, info.rate}; }
+
+namespace {
+
+// The values of one layer; none when there is no such layer.
+std::span<const float> layer_of(const shm::LaserInfo& info, std::span<const float> values, std::uint32_t layer) {
   const auto first = static_cast<std::size_t>(layer) * info.beams;
-  const auto count = first < scan.ranges.size() ? std::min<std::size_t>(info.beams, scan.ranges.size() - first) : 0;
-  data.ranges.length(static_cast<CORBA::ULong>(count));
-  for (std::size_t i = 0; i < count; ++i)
-    data.ranges[static_cast<CORBA::ULong>(i)] = port_range(scan.ranges[first + i], info.min_range, info.max_range);
-  set_geometry(info.pose, data.geometry.geometry);
-  data.geometry.elementGeometries.length(0);
-  data.config.minAngle = info.min_angle;
-  data.config.maxAngle = info.max_angle;
-  data.config.angularRes = info.angle_step;
-  data.config.minRange = info.min_range;
-  data.config.maxRange = info.max_range;
-  data.config.rangeRes = info.range_step;
-  data.config.frequency = info.rate;
+  return first < values.size() ? values.subspan(first, std::min<std::size_t>(info.beams, values.size() - first)) : std::span<const float>{};
+}
+
+float port_intensity(float value) { return value > 0 ? std::min(value, 1.0F) : 0; }  // NaN becomes 0
+
+}  // namespace
+
+void to_range_data(const shm::LaserInfo& info, const shm::ScanView& scan, std::uint32_t layer, RTC::RangeData& data) {
+  const auto ranges = layer_of(info, scan.ranges, layer);
+  data.tm = to_time(scan.sample->stamp.sim_time_ns);
+  data.ranges.length(static_cast<CORBA::ULong>(ranges.size()));
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    data.ranges[static_cast<CORBA::ULong>(i)] = port_range(ranges[i], info.min_range, info.max_range);
+  data.geometry = ranger_geometry(info);
+  data.config = ranger_config(info);
+}
+
+void to_intensity_data(const shm::LaserInfo& info, const shm::ScanView& scan, std::uint32_t layer, RTC::IntensityData& data) {
+  const auto values = layer_of(info, scan.intensities, layer);
+  data.tm = to_time(scan.sample->stamp.sim_time_ns);
+  data.intensities.length(static_cast<CORBA::ULong>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) data.intensities[static_cast<CORBA::ULong>(i)] = port_intensity(values[i]);
+  data.geometry = ranger_geometry(info);
+  data.config = ranger_config(info);
 }
 
 void to_range_data(const shm::SonarInfo& info, std::span<const shm::Pose> poses, const shm::SonarView& scan, RTC::RangeData& data) {
@@ -66,17 +107,28 @@ void to_range_data(const shm::SonarInfo& info, std::span<const shm::Pose> poses,
   data.ranges.length(static_cast<CORBA::ULong>(scan.ranges.size()));
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
     data.ranges[static_cast<CORBA::ULong>(i)] = port_range(scan.ranges[i], info.min_range, info.max_range);
-  set_geometry(info.pose, data.geometry.geometry);
-  data.geometry.elementGeometries.length(static_cast<CORBA::ULong>(poses.size()));
-  for (std::size_t i = 0; i < poses.size(); ++i) set_geometry(poses[i], data.geometry.elementGeometries[static_cast<CORBA::ULong>(i)]);
-  // A ring has no scan angles: each transducer's direction is in its element geometry, and the cone is the angular resolution.
-  data.config.minAngle = 0;
-  data.config.maxAngle = 0;
-  data.config.angularRes = info.cone;
-  data.config.minRange = info.min_range;
-  data.config.maxRange = info.max_range;
-  data.config.rangeRes = 0;
-  data.config.frequency = info.rate;
+  data.geometry = ranger_geometry(info, poses);
+  data.config = ranger_config(info);
+}
+
+void to_points(const shm::LaserInfo& info, const shm::ScanView& scan, bool with_misses, std::vector<RayPoint>& points) {
+  points.clear();
+  const std::uint32_t layers = std::max(info.layers, 1u);
+  const double rise = layers > 1 ? (info.max_vertical - info.min_vertical) / (layers - 1) : 0;
+  for (std::uint32_t ring = 0; ring < layers; ++ring) {
+    const auto ranges = layer_of(info, scan.ranges, ring), intensities = layer_of(info, scan.intensities, ring);
+    const double up = std::sin(info.min_vertical + ring * rise), level = std::cos(info.min_vertical + ring * rise);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const bool is_hit = std::isfinite(ranges[i]);
+      if (!is_hit && !with_misses) continue;
+      const double range = is_hit ? ranges[i] : std::numeric_limits<double>::quiet_NaN();
+      const double angle = info.min_angle + static_cast<double>(i) * info.angle_step;
+      points.push_back({{static_cast<float>(range * level * std::cos(angle)), static_cast<float>(range * level * std::sin(angle)),
+                         static_cast<float>(range * up)},
+                        i < intensities.size() ? port_intensity(intensities[i]) : 0,
+                        ring});
+    }
+  }
 }
 
 void to_gps_data(const shm::GpsInfo& info, const shm::GpsSample& sample, RTC::GPSData& data) {

@@ -14,9 +14,10 @@ std::vector<Parameter> drive_parameters() {
 }
 
 Drive::Drive(RTC::Manager* manager, const Specification& specification, shm::IfaceType type)
-    : IfaceComponent(manager, specification, type, true), commander_(type, say()), errand_(say()) {}
+    : IfaceComponent(manager, specification, type, true), commander_(type, say()), errand_(say()), service_port_("drive") {}
 
 void Drive::bindDrive() {
+  addPort(service_port_);
   bindDevice();
   bind("motors_enabled", motors_enabled_);
   bind("command_timeout", command_timeout_);
@@ -28,6 +29,18 @@ void Drive::attached(const Device& device) {
 }
 
 void Drive::detaching() { commander_.detach(); }
+
+void Drive::describe(const shm::Iface&) { *described_.lock() = link().device(); }
+
+void Drive::set_odometry(shm::ResetOdometryRequest request) {
+  const Device device = described_.snapshot();
+  if (device.device_id.empty()) {
+    RTC_WARN(("SetOdometry is ignored: the component has not been active yet"));
+    return;
+  }
+  request.iface = device.device_id;
+  errand_.post(device.server_id, request);
+}
 
 void Drive::switch_motors() {
   if (!link().live()) return;

@@ -1,6 +1,7 @@
-// Common base of RTCPosition2d and RTCPosition3d: the InPort `velocity` drives the robot, the motors are switched by configuration, and the
-// robot stops when velocities stop coming. Configuration: server_id, device_id, motors_enabled; command_timeout [s of simulated time]: the
-// robot stops when no velocity has come for so long (0: never).
+// Common base of RTCPosition2d and RTCPosition3d: the InPort `velocity` drives the robot, the motors are switched by configuration, the
+// robot stops when velocities stop coming, and the service port `drive` has the guidelines' services of odometry and of drives by velocity.
+// Configuration: server_id, device_id, motors_enabled; command_timeout [s of simulated time]: the robot stops when no velocity has come for
+// so long (0: never).
 //
 // Threads: in real time a velocity goes to the robot on the thread that brings it; in simulated time in onExecute, in the context's phase.
 #pragma once
@@ -9,10 +10,14 @@
 
 #include <rtm/DataInPort.h>
 
+#include <rtm/CorbaPort.h>
+
 #include <array>
+#include <functional>
 
 #include "commander.h"
 #include "errand.h"
+#include "geometry_service.h"
 #include "iface_component.h"
 #include "sim_clock.h"
 
@@ -30,6 +35,17 @@ inline std::array<double, 6> values_of(const RTC::TimedVelocity3D& velocity) {
 // Those of every drive, for its specification.
 std::vector<Parameter> drive_parameters();
 
+// RTC::Odometry2D or 3D. SetOdometry returns at once; the simulator does it between two ticks.
+template <class Skeleton, class Pose>
+class OdometryService : public GeometryService<Skeleton> {
+ public:
+  explicit OdometryService(std::function<void(const Pose&)> set) : set_(std::move(set)) {}
+  void SetOdometry(const Pose& pose) override { set_(pose); }
+
+ private:
+  std::function<void(const Pose&)> set_;
+};
+
 // The part that does not depend on the type of the velocity.
 class Drive : public IfaceComponent {
  public:
@@ -40,12 +56,13 @@ class Drive : public IfaceComponent {
   void bindDrive();
   void attached(const Device& device) override;
   void detaching() override;
-  // Carries the newest sample of the iface to the ports.
-  virtual void publish(const shm::Iface& robot) = 0;
-
+  void describe(const shm::Iface& robot) override;
+  // Any thread; the iface of the request is filled in.
+  void set_odometry(shm::ResetOdometryRequest request);
   void switch_motors();
   void watch_and_publish();
   Commander& commander() { return commander_; }
+  RTC::CorbaPort& service_port() { return service_port_; }
 
  private:
   double command_timeout();
@@ -58,6 +75,8 @@ class Drive : public IfaceComponent {
   bool motors_ = true;  // as told to the simulator
   std::uint64_t told_attachment_ = 0;
   Errand errand_;
+  base::Guarded<Device, base::Rank::details> described_;  // whose odometry services set
+  RTC::CorbaPort service_port_;
 };
 
 template <class Velocity>

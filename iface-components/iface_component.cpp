@@ -27,7 +27,16 @@ bool IfaceComponent::attach() {
     return false;
   }
   attached(device);
+  describe_when_new();
   return true;
+}
+
+void IfaceComponent::describe_when_new() {
+  if (described_ == link_.attachments()) return;
+  const auto* iface = link_.live();
+  if (iface == nullptr) return;
+  described_ = link_.attachments();
+  describe(*iface);
 }
 
 void IfaceComponent::detach() {
@@ -36,12 +45,22 @@ void IfaceComponent::detach() {
 }
 
 bool IfaceComponent::follow_configuration() {
-  if (configured() == link_.device()) return true;
+  if (configured() == link_.device()) {
+    describe_when_new();
+    return true;
+  }
   detach();
   return attach();
 }
 
 RTC::ReturnCode_t IfaceComponent::onActivated(RTC::UniqueId) { return attach() ? RTC::RTC_OK : RTC::RTC_ERROR; }
+
+RTC::ReturnCode_t IfaceComponent::onExecute(RTC::UniqueId) {
+  if (!follow_configuration()) return RTC::RTC_ERROR;
+  const auto* device = link_.fresh(wait_limit());
+  if (device != nullptr && device->sample<shm::Stamp>().valid != 0) publish(*device);
+  return RTC::RTC_OK;
+}
 
 RTC::ReturnCode_t IfaceComponent::onDeactivated(RTC::UniqueId) {
   detach();

@@ -1,5 +1,5 @@
 // The common part of device components with one iface: the configuration server_id and device_id, attaching on activation, detaching on
-// deactivation, and changes of both while running.
+// deactivation, changes of both while running, and the newest sample in onExecute.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>
@@ -18,6 +18,8 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   IfaceComponent(RTC::Manager* manager, const Specification& specification, shm::IfaceType type, bool subscribe);
 
   RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
+  // publish() with each new sample.
+  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onAborting(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onFinalize() override;
@@ -35,18 +37,24 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   // Called after each attachment, and before the iface is let go.
   virtual void attached(const Device&) {}
   virtual void detaching() {}
+  // Tells services what the iface is; called when a simulator was found, also by the link itself after a restart.
+  virtual void describe(const shm::Iface&) {}
+  // Carries the sample to the ports. Not called for samples that a fault has made invalid.
+  virtual void publish(const shm::Iface&) {}
   Say say();
 
  private:
   Device configured() const { return {server_id_, device_id_}; }
   bool attach();
   void detach();
+  void describe_when_new();
 
   const Specification& specification_;
   int server_id_ = 0;
   std::string device_id_;
   bool subscribe_;
   IfaceLink link_;
+  std::uint64_t described_ = 0;  // of link_.attachments()
 };
 
 }  // namespace iface

@@ -22,12 +22,8 @@ RTC::ReturnCode_t RTCBumper::onInitialize() {
   return RTC::RTC_OK;
 }
 
-RTC::ReturnCode_t RTCBumper::onExecute(RTC::UniqueId) {
-  if (!follow_configuration()) return RTC::RTC_ERROR;
-  auto* device = link().fresh(iface::wait_limit());
-  if (!device) return RTC::RTC_OK;
-  const auto view = device->bumper();
-  if (!view.sample->stamp.valid) return RTC::RTC_OK;
+void RTCBumper::publish(const shm::Iface& bumper) {
+  const auto view = bumper.bumper();
   contact_.tm = force_.tm = iface::to_time(view.sample->stamp.sim_time_ns);
   contact_.data.length(1);
   contact_.data[0] = view.sample->total > 0;
@@ -37,7 +33,6 @@ RTC::ReturnCode_t RTCBumper::onExecute(RTC::UniqueId) {
   }
   contact_out_.write();
   force_out_.write();
-  return RTC::RTC_OK;
 }
 
 extern "C" {

@@ -12,7 +12,9 @@ class RTCBumper : public iface::IfaceComponent {
  public:
   explicit RTCBumper(RTC::Manager* manager);
   RTC::ReturnCode_t onInitialize() override;
-  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+ protected:
+  void publish(const shm::Iface& bumper) override;
 
  private:
   RTC::TimedBooleanSeq contact_;

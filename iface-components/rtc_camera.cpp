@@ -27,14 +27,23 @@ void give_back(Sequence& sequence) {
 
 }  // namespace
 
+void CameraService::describe(const shm::CameraInfo& info) {
+  GeometryService::describe(iface::to_geometry(info.pose));
+  const auto& d = info.distortion;  // k1 k2 p1 p2 k3
+  *info_.lock() = {{info.fx, info.fy}, {info.cx, info.cy}, d[0], d[1], d[2], d[3]};
+}
+
 RTCCamera::RTCCamera(RTC::Manager* manager)
     : IfaceComponent(manager, specification, shm::IfaceType::camera, true),
       image_out_("image", image_),
-      timed_image_out_("timed_image", timed_image_) {}
+      timed_image_out_("timed_image", timed_image_),
+      service_port_("camera") {}
 
 RTC::ReturnCode_t RTCCamera::onInitialize() {
   addOutPort("image", image_out_);
   addOutPort("timed_image", timed_image_out_);
+  service_port_.registerProvider("camera", "RTC::Camera", service_);
+  addPort(service_port_);
   bindDevice();
   bind("encoding", encoding_);
   bind("quality", quality_);

@@ -1,11 +1,13 @@
 // RTCCamera: bridges a camera iface to the OutPorts `image` (RTC::CameraImage) and `timed_image` (Img::TimedCameraImage; only when
 // connected). Rows from top to bottom, pixels from left to right, without gaps. The camera's world chooses the format: docs/cameras.md
-// has the table of names and bytes. Configuration: server_id, device_id; encoding raw or jpeg, quality 1..100 of the latter.
+// has the table of names and bytes. Service port `camera` (RTC::Camera; focal length and principal point in pixels). Configuration:
+// server_id, device_id; encoding raw or jpeg, quality 1..100 of the latter.
 #pragma once
 
 #include <rtm/ext/CameraCommonInterfaceSkel.h>
-#include <rtm/idl/InterfaceDataTypesSkel.h>
+#include <rtm/ext/CameraSkel.h>
 
+#include <rtm/CorbaPort.h>
 #include <rtm/DataOutPort.h>
 
 #include <cstddef>
@@ -14,7 +16,18 @@
 #include <vector>
 
 #include "camera_image.h"
+#include "geometry_service.h"
 #include "iface_component.h"
+
+// Calls from any thread.
+class CameraService : public iface::GeometryService<POA_RTC::Camera> {
+ public:
+  void describe(const shm::CameraInfo& info);
+  RTC::CameraInfo GetCameraInfo() override { return *info_.lock(); }
+
+ private:
+  base::Guarded<RTC::CameraInfo, base::Rank::details> info_;
+};
 
 class RTCCamera : public iface::IfaceComponent {
  public:
@@ -23,6 +36,9 @@ class RTCCamera : public iface::IfaceComponent {
   RTC::ReturnCode_t onActivated(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
   RTC::ReturnCode_t onDeactivated(RTC::UniqueId ec_id) override;
+
+ protected:
+  void describe(const shm::Iface& camera) override { service_.describe(camera.info<shm::CameraInfo>()); }
 
  private:
   void count(std::uint64_t sequence);
@@ -39,6 +55,8 @@ class RTCCamera : public iface::IfaceComponent {
   RTC::OutPort<RTC::CameraImage> image_out_;
   Img::TimedCameraImage timed_image_;
   RTC::OutPort<Img::TimedCameraImage> timed_image_out_;
+  RTC::CorbaPort service_port_;
+  CameraService service_;
 };
 
 extern "C" {

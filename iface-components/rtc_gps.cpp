@@ -11,14 +11,19 @@ static const iface::Specification specification{
 };
 
 RTCGps::RTCGps(RTC::Manager* manager)
-    : IfaceComponent(manager, specification, shm::IfaceType::gps, true), position_out_("position", position_) {}
+    : IfaceComponent(manager, specification, shm::IfaceType::gps, true), position_out_("position", position_), service_port_("gps") {}
 
 RTC::ReturnCode_t RTCGps::onInitialize() {
   addOutPort("position", position_out_);
+  service_port_.registerProvider("gps", "RTC::GPS", service_);
+  addPort(service_port_);
   bindDevice();
   return RTC::RTC_OK;
 }
 
+void RTCGps::describe(const shm::Iface& gps) { service_.describe(iface::to_geometry(gps.info<shm::GpsInfo>().pose)); }
+
+// Samples without a fix are sent, too.
 RTC::ReturnCode_t RTCGps::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
   auto* device = link().fresh(iface::wait_limit());

@@ -1,11 +1,13 @@
 // RTCGps: bridges a gps iface to the OutPort `position` (RTC::GPSData; latitude and longitude in degrees, as receivers give them).
-// Configuration: server_id, device_id.
+// Service port `gps` (RTC::GPS). Configuration: server_id, device_id.
 #pragma once
 
-#include <rtm/idl/InterfaceDataTypesSkel.h>
+#include <rtm/ext/GPSSkel.h>
 
+#include <rtm/CorbaPort.h>
 #include <rtm/DataOutPort.h>
 
+#include "geometry_service.h"
 #include "iface_component.h"
 
 class RTCGps : public iface::IfaceComponent {
@@ -14,9 +16,14 @@ class RTCGps : public iface::IfaceComponent {
   RTC::ReturnCode_t onInitialize() override;
   RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
 
+ protected:
+  void describe(const shm::Iface& gps) override;
+
  private:
   RTC::GPSData position_;
   RTC::OutPort<RTC::GPSData> position_out_;
+  RTC::CorbaPort service_port_;
+  iface::GeometryService<POA_RTC::GPS> service_;
 };
 
 extern "C" {

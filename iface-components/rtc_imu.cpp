@@ -14,22 +14,23 @@ RTCImu::RTCImu(RTC::Manager* manager)
     : IfaceComponent(manager, specification, shm::IfaceType::imu, true),
       orientation_out_("orientation", orientation_),
       angular_velocity_out_("angular_velocity", angular_velocity_),
-      acceleration_out_("acceleration", acceleration_) {}
+      acceleration_out_("acceleration", acceleration_),
+      service_port_("imu") {}
 
 RTC::ReturnCode_t RTCImu::onInitialize() {
   addOutPort("orientation", orientation_out_);
   addOutPort("angular_velocity", angular_velocity_out_);
   addOutPort("acceleration", acceleration_out_);
+  service_port_.registerProvider("imu", "RTC::IMU", service_);
+  addPort(service_port_);
   bindDevice();
   return RTC::RTC_OK;
 }
 
-RTC::ReturnCode_t RTCImu::onExecute(RTC::UniqueId) {
-  if (!follow_configuration()) return RTC::RTC_ERROR;
-  auto* device = link().fresh(iface::wait_limit());
-  if (!device) return RTC::RTC_OK;
-  const auto& sample = device->sample<shm::ImuSample>();
-  if (!sample.stamp.valid) return RTC::RTC_OK;
+void RTCImu::describe(const shm::Iface& imu) { service_.describe(iface::to_geometry(imu.info<shm::ImuInfo>().pose)); }
+
+void RTCImu::publish(const shm::Iface& imu) {
+  const auto& sample = imu.sample<shm::ImuSample>();
   const auto& q = sample.orientation;
   orientation_.tm = angular_velocity_.tm = acceleration_.tm = iface::to_time(sample.stamp.sim_time_ns);
   orientation_.data = iface::to_orientation({0, 0, 0, q[0], q[1], q[2], q[3]});
@@ -38,7 +39,6 @@ RTC::ReturnCode_t RTCImu::onExecute(RTC::UniqueId) {
   orientation_out_.write();
   angular_velocity_out_.write();
   acceleration_out_.write();
-  return RTC::RTC_OK;
 }
 
 extern "C" {

@@ -1,19 +1,24 @@
 // RTCImu: bridges an imu iface to three OutPorts, as there is no standard type for all of it: `orientation` (RTC::TimedOrientation3D),
 // `angular_velocity` (RTC::TimedAngularVelocity3D, sensor frame), `acceleration` (RTC::TimedAcceleration3D: specific force, sensor frame).
-// Configuration: server_id, device_id.
+// Service port `imu` (RTC::IMU). Configuration: server_id, device_id.
 #pragma once
 
-#include <rtm/idl/ExtendedDataTypesSkel.h>
+#include <rtm/ext/IMUSkel.h>
 
+#include <rtm/CorbaPort.h>
 #include <rtm/DataOutPort.h>
 
+#include "geometry_service.h"
 #include "iface_component.h"
 
 class RTCImu : public iface::IfaceComponent {
  public:
   explicit RTCImu(RTC::Manager* manager);
   RTC::ReturnCode_t onInitialize() override;
-  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+ protected:
+  void describe(const shm::Iface& imu) override;
+  void publish(const shm::Iface& imu) override;
 
  private:
   RTC::TimedOrientation3D orientation_;
@@ -22,6 +27,8 @@ class RTCImu : public iface::IfaceComponent {
   RTC::OutPort<RTC::TimedAngularVelocity3D> angular_velocity_out_;
   RTC::TimedAcceleration3D acceleration_;
   RTC::OutPort<RTC::TimedAcceleration3D> acceleration_out_;
+  RTC::CorbaPort service_port_;
+  iface::GeometryService<POA_RTC::IMU> service_;
 };
 
 extern "C" {

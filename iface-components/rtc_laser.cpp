@@ -14,26 +14,35 @@ static const iface::Specification specification{
 };
 
 RTCLaser::RTCLaser(RTC::Manager* manager)
-    : IfaceComponent(manager, specification, shm::IfaceType::laser, true), range_out_("range", range_) {}
+    : RangerComponent(manager, specification, shm::IfaceType::laser),
+      range_out_("range", range_),
+      intensities_out_("intensities", intensities_) {}
 
 RTC::ReturnCode_t RTCLaser::onInitialize() {
   addOutPort("range", range_out_);
+  addOutPort("intensities", intensities_out_);
+  addRangerPort();
   bindDevice();
   bind("layer", layer_);
   return RTC::RTC_OK;
 }
 
-RTC::ReturnCode_t RTCLaser::onExecute(RTC::UniqueId) {
-  if (!follow_configuration()) return RTC::RTC_ERROR;
-  auto* laser = link().fresh(iface::wait_limit());
-  if (!laser) return RTC::RTC_OK;
-  const auto scan = laser->laser_scan();
-  if (!scan.sample->stamp.valid) return RTC::RTC_OK;
-  const auto& info = laser->info<shm::LaserInfo>();
+void RTCLaser::describe(const shm::Iface& laser) {
+  const auto& info = laser.info<shm::LaserInfo>();
+  service().describe(iface::ranger_geometry(info), iface::ranger_config(info));
+}
+
+void RTCLaser::publish(const shm::Iface& laser) {
+  const auto& info = laser.info<shm::LaserInfo>();
   const auto layer = layer_ < 0 ? iface::level_layer(info) : std::min(static_cast<std::uint32_t>(layer_), std::max(info.layers, 1u) - 1);
-  iface::to_range_data(info, scan, layer, range_);
+  const auto wanted = service().wanted();
+  iface::to_range_data(info, laser.laser_scan(), layer, range_);
+  if (wanted) iface::cut(*wanted, range_);
   range_out_.write();
-  return RTC::RTC_OK;
+  if (intensities_out_.connectors().empty() || !service().sends_intensities()) return;
+  iface::to_intensity_data(info, laser.laser_scan(), layer, intensities_);
+  if (wanted) iface::cut(*wanted, intensities_);
+  intensities_out_.write();
 }
 
 extern "C" {

@@ -14,14 +14,28 @@ static const iface::Specification specification{
 RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position2d),
       odometry_out_("odometry", odometry_),
-      actual_velocity_out_("actual_velocity", actual_velocity_) {}
+      actual_velocity_out_("actual_velocity", actual_velocity_),
+      odometry_service_([this](const RTC::Pose2D& pose) {
+        shm::ResetOdometryRequest request;
+        request.x = pose.position.x, request.y = pose.position.y, request.a = pose.heading;
+        set_odometry(std::move(request));
+      }) {}
 
 RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   addVelocityPort();
   addOutPort("odometry", odometry_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
+  service_port().registerProvider("odometry", "RTC::Odometry2D", odometry_service_);
+  service_port().registerProvider("velocity_control", "RTC::VelocityControl2D", velocity_service_);
   bindDrive();
   return RTC::RTC_OK;
+}
+
+void RTCPosition2d::describe(const shm::Iface& robot) {
+  DriveComponent::describe(robot);
+  const auto& info = robot.info<shm::Position2dInfo>();
+  odometry_service_.describe(iface::to_geometry(info.pose, info.size));
+  velocity_service_.describe(iface::to_geometry_2d(info.pose, info.size));
 }
 
 void RTCPosition2d::publish(const shm::Iface& robot) {

@@ -14,14 +14,30 @@ static const iface::Specification specification{
 RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position3d),
       pose_out_("pose", pose_),
-      actual_velocity_out_("actual_velocity", actual_velocity_) {}
+      actual_velocity_out_("actual_velocity", actual_velocity_),
+      odometry_service_([this](const RTC::Pose3D& pose) {
+        const auto& [at, turn] = pose;
+        shm::ResetOdometryRequest request;
+        request.is_3d = true;
+        request.pose = shm::euler_pose(at.x, at.y, at.z, turn.r, turn.p, turn.y);
+        set_odometry(std::move(request));
+      }) {}
 
 RTC::ReturnCode_t RTCPosition3d::onInitialize() {
   addVelocityPort();
   addOutPort("pose", pose_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
+  service_port().registerProvider("odometry", "RTC::Odometry3D", odometry_service_);
+  service_port().registerProvider("velocity_control", "RTC::VelocityControl3D", velocity_service_);
   bindDrive();
   return RTC::RTC_OK;
+}
+
+void RTCPosition3d::describe(const shm::Iface& robot) {
+  DriveComponent::describe(robot);
+  const auto& info = robot.info<shm::Position3dInfo>();
+  odometry_service_.describe(iface::to_geometry(info.pose, info.size));
+  velocity_service_.describe(iface::to_geometry(info.pose, info.size));
 }
 
 void RTCPosition3d::publish(const shm::Iface& robot) {

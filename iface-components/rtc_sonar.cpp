@@ -10,24 +10,24 @@ static const iface::Specification specification{
     .device = "pioneer2dx::sonar",
 };
 
-RTCSonar::RTCSonar(RTC::Manager* manager)
-    : IfaceComponent(manager, specification, shm::IfaceType::sonar, true), range_out_("range", range_) {}
+RTCSonar::RTCSonar(RTC::Manager* manager) : RangerComponent(manager, specification, shm::IfaceType::sonar), range_out_("range", range_) {}
 
 RTC::ReturnCode_t RTCSonar::onInitialize() {
   addOutPort("range", range_out_);
+  addRangerPort();
   bindDevice();
   return RTC::RTC_OK;
 }
 
-RTC::ReturnCode_t RTCSonar::onExecute(RTC::UniqueId) {
-  if (!follow_configuration()) return RTC::RTC_ERROR;
-  auto* device = link().fresh(iface::wait_limit());
-  if (!device) return RTC::RTC_OK;
-  const auto scan = device->sonar_scan();
-  if (!scan.sample->stamp.valid) return RTC::RTC_OK;
-  iface::to_range_data(device->info<shm::SonarInfo>(), device->sonar_poses(), scan, range_);
+void RTCSonar::describe(const shm::Iface& sonar) {
+  const auto& info = sonar.info<shm::SonarInfo>();
+  service().describe(iface::ranger_geometry(info, sonar.sonar_poses()), iface::ranger_config(info));
+}
+
+void RTCSonar::publish(const shm::Iface& sonar) {
+  iface::to_range_data(sonar.info<shm::SonarInfo>(), sonar.sonar_poses(), sonar.sonar_scan(), range_);
+  if (const auto wanted = service().wanted()) iface::cut(*wanted, range_);
   range_out_.write();
-  return RTC::RTC_OK;
 }
 
 extern "C" {

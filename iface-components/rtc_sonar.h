@@ -6,13 +6,16 @@
 
 #include <rtm/DataOutPort.h>
 
-#include "iface_component.h"
+#include "ranger_component.h"
 
-class RTCSonar : public iface::IfaceComponent {
+class RTCSonar : public iface::RangerComponent {
  public:
   explicit RTCSonar(RTC::Manager* manager);
   RTC::ReturnCode_t onInitialize() override;
-  RTC::ReturnCode_t onExecute(RTC::UniqueId ec_id) override;
+
+ protected:
+  void describe(const shm::Iface& sonar) override;
+  void publish(const shm::Iface& sonar) override;
 
  private:
   RTC::RangeData range_;

@@ -1,5 +1,5 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
-rtmsim_test(iface_components_test iface-components/conversions_test.cpp LIBRARIES iface_link)
+rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/ranger_test.cpp LIBRARIES iface_link)
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
 rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
@@ -14,7 +14,8 @@ endforeach()
 
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
-foreach(case sonar imu gps bumper simulation motors wrong_device camera_formats camera_parameters camera_jpeg depth_camera drone
+rtmsim_component(DeviceProbe scenario/device_probe.cpp)
+foreach(case sonar imu gps bumper ranger places point_cloud odometry meters simulation motors wrong_device camera_formats camera_parameters camera_service camera_jpeg depth_camera drone
     wrong_camera_device restarted_server)
   add_test(NAME components.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/components.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

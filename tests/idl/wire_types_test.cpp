@@ -1,9 +1,33 @@
 // Every type and interface of the wire contract has the repository id, the members and the order that the contract names.
 #include <gtest/gtest.h>
+#include <rtm/ext/AIOSkel.h>
+#include <rtm/ext/ActArraySkel.h>
+#include <rtm/ext/BumperSkel.h>
 #include <rtm/ext/CameraCommonInterfaceSkel.h>
+#include <rtm/ext/CameraSkel.h>
+#include <rtm/ext/CarlikeControlSkel.h>
+#include <rtm/ext/DIOSkel.h>
+#include <rtm/ext/FiducialSkel.h>
+#include <rtm/ext/GPSSkel.h>
+#include <rtm/ext/GripperSkel.h>
+#include <rtm/ext/HeadingControlSkel.h>
+#include <rtm/ext/IMUSkel.h>
+#include <rtm/ext/INSSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_CommonSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_DataTypesSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_MiddleSkel.h>
+#include <rtm/ext/MulticameraSkel.h>
+#include <rtm/ext/OGMapSkel.h>
+#include <rtm/ext/OdometrySkel.h>
+#include <rtm/ext/PanTiltSkel.h>
+#include <rtm/ext/PathFollowerSkel.h>
+#include <rtm/ext/PathPlannerSkel.h>
+#include <rtm/ext/PointCloudServicesSkel.h>
+#include <rtm/ext/PointCloudTypesSkel.h>
+#include <rtm/ext/PoseControlSkel.h>
+#include <rtm/ext/RFIDSkel.h>
+#include <rtm/ext/RangerSkel.h>
+#include <rtm/ext/VelocityControlSkel.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ComponentObserverSkel.h>
 #include <rtm/idl/DataPortSkel.h>
@@ -357,6 +381,9 @@ const CORBA::TypeCode_ptr types[] = {
     RTC::_tc_IntensityList,
     RTC::_tc_IntensityData,
     RTC::_tc_RFIDTagData,
+    PointCloudTypes::_tc_DataType,
+    PointCloudTypes::_tc_PointField,
+    PointCloudTypes::_tc_PointCloud,
     Img::_tc_Vec3,
     Img::_tc_Mat44,
     Img::_tc_ColorFormat,
@@ -432,6 +459,36 @@ const Interface interfaces[] = {
     {OpenRTM::LogicalTimeTriggeredEC::_PD_repoId, OpenRTM::_tc_LogicalTimeTriggeredEC,
      "IDL:openrtm.org/OpenRTM/LogicalTimeTriggeredEC:1.0"},
     {Img::CameraCaptureService::_PD_repoId, Img::_tc_CameraCaptureService, "IDL:Img/CameraCaptureService:1.0"},
+    // The service interfaces of the RT Component interface guidelines.
+    {RTC::ActArray::_PD_repoId, RTC::_tc_ActArray, "IDL:RTC/ActArray:1.0"},
+    {RTC::AIO::_PD_repoId, RTC::_tc_AIO, "IDL:RTC/AIO:1.0"},
+    {RTC::Bumper::_PD_repoId, RTC::_tc_Bumper, "IDL:RTC/Bumper:1.0"},
+    {RTC::Camera::_PD_repoId, RTC::_tc_Camera, "IDL:RTC/Camera:1.0"},
+    {RTC::CarlikeControl::_PD_repoId, RTC::_tc_CarlikeControl, "IDL:RTC/CarlikeControl:1.0"},
+    {RTC::DIO::_PD_repoId, RTC::_tc_DIO, "IDL:RTC/DIO:1.0"},
+    {RTC::Fiducial::_PD_repoId, RTC::_tc_Fiducial, "IDL:RTC/Fiducial:1.0"},
+    {RTC::GPS::_PD_repoId, RTC::_tc_GPS, "IDL:RTC/GPS:1.0"},
+    {RTC::Gripper::_PD_repoId, RTC::_tc_Gripper, "IDL:RTC/Gripper:1.0"},
+    {RTC::HeadingControl2D::_PD_repoId, RTC::_tc_HeadingControl2D, "IDL:RTC/HeadingControl2D:1.0"},
+    {RTC::HeadingControl3D::_PD_repoId, RTC::_tc_HeadingControl3D, "IDL:RTC/HeadingControl3D:1.0"},
+    {RTC::IMU::_PD_repoId, RTC::_tc_IMU, "IDL:RTC/IMU:1.0"},
+    {RTC::INS::_PD_repoId, RTC::_tc_INS, "IDL:RTC/INS:1.0"},
+    {RTC::Multicamera::_PD_repoId, RTC::_tc_Multicamera, "IDL:RTC/Multicamera:1.0"},
+    {RTC::Odometry2D::_PD_repoId, RTC::_tc_Odometry2D, "IDL:RTC/Odometry2D:1.0"},
+    {RTC::Odometry3D::_PD_repoId, RTC::_tc_Odometry3D, "IDL:RTC/Odometry3D:1.0"},
+    {RTC::OGMap::_PD_repoId, RTC::_tc_OGMap, "IDL:RTC/OGMap:1.0"},
+    {RTC::PanTilt::_PD_repoId, RTC::_tc_PanTilt, "IDL:RTC/PanTilt:1.0"},
+    {RTC::PathFollower2D::_PD_repoId, RTC::_tc_PathFollower2D, "IDL:RTC/PathFollower2D:1.0"},
+    {RTC::PathFollower3D::_PD_repoId, RTC::_tc_PathFollower3D, "IDL:RTC/PathFollower3D:1.0"},
+    {RTC::PathPlanner2D::_PD_repoId, RTC::_tc_PathPlanner2D, "IDL:RTC/PathPlanner2D:1.0"},
+    {RTC::PathPlanner3D::_PD_repoId, RTC::_tc_PathPlanner3D, "IDL:RTC/PathPlanner3D:1.0"},
+    {RTC::PointCloudServices::_PD_repoId, RTC::_tc_PointCloudServices, "IDL:RTC/PointCloudServices:1.0"},
+    {RTC::PoseControl2D::_PD_repoId, RTC::_tc_PoseControl2D, "IDL:RTC/PoseControl2D:1.0"},
+    {RTC::PoseControl3D::_PD_repoId, RTC::_tc_PoseControl3D, "IDL:RTC/PoseControl3D:1.0"},
+    {RTC::Ranger::_PD_repoId, RTC::_tc_Ranger, "IDL:RTC/Ranger:1.0"},
+    {RTC::RFID::_PD_repoId, RTC::_tc_RFID, "IDL:RTC/RFID:1.0"},
+    {RTC::VelocityControl2D::_PD_repoId, RTC::_tc_VelocityControl2D, "IDL:RTC/VelocityControl2D:1.0"},
+    {RTC::VelocityControl3D::_PD_repoId, RTC::_tc_VelocityControl3D, "IDL:RTC/VelocityControl3D:1.0"},
     {JARA_ARM::ManipulatorCommonInterface_Common::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Common,
      "IDL:JARA_ARM/ManipulatorCommonInterface_Common:1.0"},
     {JARA_ARM::ManipulatorCommonInterface_Middle::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Middle,

@@ -69,6 +69,29 @@ TEST(Conversions, one_layer_of_a_scanner_with_many_is_taken) {
   EXPECT_EQ(data.ranges.length(), 0u);
 }
 
+TEST(Conversions, points_of_all_layers_come_ring_by_ring_from_the_lowest) {
+  auto info = scanner();
+  info.layers = 2;
+  info.min_vertical = -0.2617993878;  // 15 degrees; the ground, 1 m below, is 3.864 m away
+  info.max_vertical = 0;
+  shm::LaserSample sample{};
+  const std::vector<float> ranges = {3.8637F, 3.8637F, infinity, 2, std::numeric_limits<float>::quiet_NaN(), -infinity};
+  const std::vector<float> intensities = {0.5F, 7, 0, -1, 0, 0};
+  std::vector<RayPoint> points;
+  to_points(info, {&sample, ranges, intensities}, false, points);
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_NEAR(points[0].position[2], -1, 1e-4);
+  EXPECT_NEAR(points[1].position[0], 3.7321, 1e-4);
+  EXPECT_NEAR(points[0].position[1], -3.7321 * std::sin(1), 1e-4);
+  EXPECT_EQ(points[0].intensity, 0.5F);
+  EXPECT_EQ(points[1].intensity, 1);
+  EXPECT_EQ(points[2].ring, 1u);
+  EXPECT_EQ(points[2].intensity, 0);
+  to_points(info, {&sample, ranges, intensities}, true, points);
+  ASSERT_EQ(points.size(), 6u);
+  for (const std::size_t missed : {2, 4, 5}) EXPECT_TRUE(std::isnan(points[missed].position[0])) << missed;
+}
+
 TEST(Conversions, orientations_are_roll_pitch_and_yaw) {
   const double half = 0.25;
   const auto yaw = to_orientation({0, 0, 0, std::cos(half), 0, 0, std::sin(half)});

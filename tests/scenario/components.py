@@ -14,8 +14,16 @@ rig = Rig(*folders)
 device = rig.device
 
 sensors = """
-<sensor name='imu' type='imu'><update_rate>50</update_rate></sensor>
-<sensor name='gps' type='navsat'><update_rate>20</update_rate></sensor>
+<sensor name='imu' type='imu'><pose>0.1 0 0 0 0 0</pose><update_rate>50</update_rate></sensor>
+<sensor name='gps' type='navsat'><pose>0.2 0 0 0 0 0</pose><update_rate>20</update_rate></sensor>
+<sensor name='altimeter' type='altimeter'><update_rate>20</update_rate></sensor>
+<sensor name='air_pressure' type='air_pressure'><update_rate>20</update_rate></sensor>
+<sensor name='laser' type='gpu_lidar'><pose>0 0 0.2 0 0 0</pose><update_rate>10</update_rate><lidar><scan><horizontal><samples>181</samples><min_angle>-1.5708</min_angle>
+<max_angle>1.5708</max_angle></horizontal></scan><range><min>0.1</min><max>8</max></range></lidar></sensor>
+<sensor name='lidar' type='gpu_lidar'><pose>0 0 0.85 0 0 0</pose><update_rate>10</update_rate><lidar><scan>
+<horizontal><samples>36</samples><min_angle>-3.1415</min_angle><max_angle>3.1415</max_angle></horizontal>
+<vertical><samples>16</samples><min_angle>-0.2617993878</min_angle><max_angle>0.2617993878</max_angle></vertical></scan><range><min>0.1</min><max>50</max></range></lidar></sensor>
+<sensor name='magnetometer' type='magnetometer'><update_rate>20</update_rate></sensor>
 <sensor name='bumper' type='contact'><update_rate>50</update_rate><contact><collision>c</collision></contact></sensor>
 """
 world = f"""<sdf version='1.9'><world name='w'>
@@ -25,15 +33,19 @@ world = f"""<sdf version='1.9'><world name='w'>
 <include><uri>model://pioneer2dx</uri><name>pioneer2dx</name></include>
 <model name='robot'><pose>-4 3 2 0 0 0.7</pose><link name='l'><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial>
 <collision name='c'><geometry><box><size>.3 .3 .3</size></box></geometry></collision>{sensors}</link></model>
+<model name='scale'><link name='base'/><joint name='base' type='fixed'><parent>world</parent><child>base</child></joint>
+<link name='load'><pose>0 8 1 0 0 0</pose><inertial><mass>2</mass></inertial></link>
+<joint name='j' type='revolute'><parent>base</parent><child>load</child><axis><xyz>0 0 1</xyz></axis>
+<sensor name='force_torque' type='force_torque'><update_rate>50</update_rate></sensor></joint></model>
 </world></sdf>"""
 
 
-def up(component, iface=None, *options):
+def up(component, iface=None, *options, beside=("SimulationProbe",)):
     with open(rig.path("w.sdf"), "w") as file:
         file.write(world)
     rig.server(*options, world=rig.path("w.sdf"))
     rig.naming()
-    rig.host(device(component, *([f"conf.default.device_id={iface}"] if iface else [])), "SimulationProbe")
+    rig.host(device(component, *([f"conf.default.device_id={iface}"] if iface else [])), *beside)
     rig.there(f"{component}0")
     rig.rtse("act", f"{component}0")
 
@@ -79,8 +91,8 @@ def gps():
     value = sample("RTCGps0:position")
     wanted = truth("robot::gps")
     close([value["latitude"], value["longitude"]], [wanted["latitude"], wanted["longitude"]], 1e-6)
-    # Four metres west and three north of the origin.
-    close([value["latitude"], value["longitude"]], [36.06 + 3 / 110950, 140.13 - 4 / 90050], 1e-6)
+    # The robot stands four metres west and three north of the origin and looks to 0.7 rad.
+    close([value["latitude"], value["longitude"]], [36.06 + (3 + 0.2 * math.sin(0.7)) / 110950, 140.13 - (4 - 0.2 * math.cos(0.7)) / 90050], 1e-6)
     await_("the floor's height", lambda: abs(sample("RTCGps0:position")["altitude"] - 25.15) < 0.05)
 
 
@@ -97,6 +109,115 @@ def bumper():
     rig.simctl("pose", "robot", "-4", "3", "50", "0")
     rig.simctl("run")
     assert await_("a box in the air", lambda: sample("RTCBumper0:contact")["data"] == [False])
+
+
+# The probe calls a service; it goes to the error state at another answer than it expects.
+def call(what):
+    rig.rtse("conf", "DeviceProbe0", "set", "call", what)
+    rig.rtse("act", "DeviceProbe0")
+    assert rig.state("DeviceProbe0") == "Active", rig.log(rig.running[-1])
+    rig.rtse("deact", "DeviceProbe0")
+
+
+def ranger():
+    up("RTCLaser", "robot::laser", beside=("DeviceProbe",))
+    rig.rtse("con", "DeviceProbe0:ranger", "RTCLaser0:ranger")
+    whole = sample("RTCLaser0:range")
+    call("laser")
+    intensities = sample("RTCLaser0:intensities")
+    assert len(intensities["intensities"]) == len(whole["ranges"]) and all(0 <= one <= 1 for one in intensities["intensities"])
+    call("narrow")
+    scan = await_("a part of the scan", lambda: (got := sample("RTCLaser0:range"))["config"]["angularRes"] > 1.5 * whole["config"]["angularRes"] and got)
+    config, step = scan["config"], whole["config"]["angularRes"]
+    assert -0.5 <= config["minAngle"] < -0.5 + step and 0.5 - 2 * step < config["maxAngle"] <= 0.5 and config["maxRange"] == 1, config
+    assert len(scan["ranges"]) == round((config["maxAngle"] - config["minAngle"]) / config["angularRes"]) + 1 and max(scan["ranges"]) == 1, scan
+    assert len(sample("RTCLaser0:intensities")["intensities"]) == len(scan["ranges"])
+    call("nan")
+    assert "SetConfig: expected finite numbers" in rig.log(rig.running[-1])
+    assert sample("RTCLaser0:range")["config"] == config
+    call("all")
+    await_("all of the scan", lambda: sample("RTCLaser0:range")["config"] == whole["config"])
+    call("power_off")
+    used = lambda: next(one["subscribers"] for one in json.loads(rig.simctl("--json", "list")) if one["name"] == "robot::laser")
+    await_("a sensor that rests", lambda: used() == 0)
+    call("power_on")
+    assert len(sample("RTCLaser0:range")["ranges"]) == len(whole["ranges"])
+    call("intensities_off")
+    assert rig.try_rtse("print", "RTCLaser0:intensities", "-n", "1", "-t", "1").returncode != 0
+    call("intensities_on")
+    assert sample("RTCLaser0:intensities")
+
+
+def places():
+    up("RTCImu", "robot::imu", beside=(device("RTCGps", "conf.default.device_id=robot::gps"), device("RTCSonar"), "DeviceProbe"))
+    rig.rtse("act", "RTCGps0", "RTCSonar0")
+    for port, provider in (("imu", "RTCImu0"), ("gps", "RTCGps0"), ("ranger", "RTCSonar0")):
+        rig.rtse("con", f"DeviceProbe0:{port}", f"{provider}:{port}")
+    call("place")
+    call("sonar")
+
+
+# Of a lidar 1 m above flat ground: the lowest ring, 15 degrees down, sees it at 3.864 m, those that look up see nothing.
+def point_cloud():
+    up("RTCPointCloud", "robot::lidar")
+
+    def lowest_ring():
+        points = [one["point"] for one in sample("RTCPointCloud0:points")["points"][:30]]
+        return all(abs(math.dist((0, 0, 0), (p["x"], p["y"], p["z"])) - 3.864) < 0.05 and abs(p["z"] + 1) < 0.02 for p in points)
+
+    await_("a robot that lies on the ground", lowest_ring)
+    cloud = sample("RTCPointCloud0:cloud")
+    assert (cloud["height"], cloud["type"], cloud["point_step"], cloud["is_dense"]) == (1, "xyz", 12, True), cloud
+    assert len(cloud["data"]) == 12 * cloud["width"] and 0 < cloud["width"] < 16 * 36 and [one["name"] for one in cloud["fields"]] == ["x", "y", "z"]
+    rig.rtse("conf", "RTCPointCloud0", "set", "organised", "1")
+    rig.rtse("conf", "RTCPointCloud0", "set", "fields", "all")
+    whole = await_("one row per layer", lambda: (got := sample("RTCPointCloud0:cloud"))["point_step"] == 20 and got)
+    assert (whole["height"], whole["width"], whole["row_step"], whole["is_dense"]) == (16, 36, 720, False), whole
+    x, y, z, intensity, ring = struct.unpack_from("<ffffI", bytes(whole["data"]), 20 * 36 * 15)
+    assert math.isnan(x) and ring == 15 and intensity == 0
+
+
+def odometry():
+    up("RTCPosition2d", beside=("DeviceProbe",))
+    rig.rtse("con", "DeviceProbe0:drive", "RTCPosition2d0:drive")
+    call("size")
+    call("odometry")
+
+    def is_set():
+        pose = sample("RTCPosition2d0:odometry")["data"]
+        return abs(pose["position"]["x"] - 7) + abs(pose["position"]["y"] + 3) + abs(pose["heading"] - 1) < 0.01
+
+    await_("odometry that was set", is_set)
+    call("odometry_nan")
+    await_("a line", lambda: "finite" in rig.log(rig.running[-1]) or "NaN" in rig.log(rig.running[-1]))
+    assert is_set()
+
+
+# Each against what the simulator says of the same device.
+def meters():
+    meters = {"RTCForceTorque": "scale::force_torque", "RTCAltimeter": "robot::altimeter", "RTCAirPressure": "robot::air_pressure",
+              "RTCMagnetometer": "robot::magnetometer", "RTCTruth": "robot"}
+    first, *others = meters
+    up(first, meters[first], beside=[device(one, f"conf.default.device_id={meters[one]}") for one in others])
+    rig.there(*(f"{one}0" for one in others))
+    rig.rtse("act", *(f"{one}0" for one in others))
+
+    def rests():
+        force = sample("RTCForceTorque0:force")["data"]
+        assert len(force) == 6
+        return abs(abs(force[2]) - 2 * 9.8) < 0.1 and abs(sample("RTCTruth0:velocity")["data"]["vz"]) < 1e-3
+
+    await_("a load that hangs, and a box that lies", rests)
+    wanted = truth("scale::force_torque")
+    close(sample("RTCForceTorque0:force")["data"], wanted["force"] + wanted["torque"], 0.1)
+    wanted = truth("robot::altimeter")
+    close([sample("RTCAltimeter0:height")["data"], sample("RTCAltimeter0:climb")["data"]], [wanted["height"], wanted["climb"]], 0.01)
+    assert wanted["height"] < -1, wanted
+    close([sample("RTCAirPressure0:pressure")["data"]], [truth("robot::air_pressure")["pressure"]], 1)
+    field = sample("RTCMagnetometer0:field")["data"]
+    close([field["x"], field["y"], field["z"]], truth("robot::magnetometer")["field"], 1e-7)
+    pose = sample("RTCTruth0:pose")["data"]
+    close([pose["position"]["x"], pose["position"]["y"], pose["position"]["z"], pose["orientation"]["y"]], [-4, 3, 0.15, 0.7], 0.02)
 
 
 def simulation():
@@ -232,6 +353,14 @@ def camera_parameters():
     await_("the pose of the other camera", turned)
 
 
+def camera_service():
+    camera_up(device("RTCCamera", "conf.default.device_id=robot::bent"), "DeviceProbe")
+    rig.there("RTCCamera0", "DeviceProbe0")
+    rig.rtse("act", "RTCCamera0")
+    rig.rtse("con", "DeviceProbe0:camera", "RTCCamera0:camera")
+    call("camera")
+
+
 # JPEG on request decodes near the frame; VideoPlayer does it.
 def camera_jpeg():
     camera_up(device("RTCCamera", "conf.default.device_id=robot::r8g8b8"), f"VideoPlayer?conf.default.window=0&conf.default.record_dir={rig.path('frames')}")
@@ -335,7 +464,7 @@ def restarted_server():
     assert [rig.state(name) for name in names] == ["Active"] * 3
 
 
-cases = {f.__name__: f for f in (sonar, imu, gps, bumper, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_jpeg, depth_camera, drone, wrong_camera_device,
+cases = {f.__name__: f for f in (sonar, imu, gps, bumper, ranger, places, point_cloud, odometry, meters, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_service, camera_jpeg, depth_camera, drone, wrong_camera_device,
                                  restarted_server)}
 with rig:
     cases[case]()

@@ -71,10 +71,10 @@ def write_layers():
     (docs / "ARCHITECTURE.md").write_text(text[:start] + "\n".join(rows_of_layers()) + "\n" + text[end:])
 
 
-# (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of a drive are in a common file.
+# (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of drives and rangers are in common files.
 def facts_of_components():
     sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp", source / "clients/video-player/video_player.cpp"]
-    drive = (source / "iface-components/drive_component.cpp").read_text()
+    drive, ranger = ((source / f"iface-components/{name}_component.cpp").read_text() for name in ("drive", "ranger"))
     for file in sources:
         text, header = file.read_text(), file.with_suffix(".h").read_text()
         name = re.search(r'type_name(?: = |", )"(\w+)"', text)[1]
@@ -84,7 +84,7 @@ def facts_of_components():
             yield "port", name, f"{way.lower()} `{port}`", re.search(rf"Port<([\w:]+)> {member};", header)[1]
         if velocity := re.search(r"Drive\w*<(RTC::Timed\w+)", header):
             yield "port", name, "in `velocity`", velocity[1]
-        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text):
+        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text + (ranger if "RangerComponent" in header else "")):
             yield "port", name, f"provides `{port}`", service
         listed = drive if "drive_parameters()" in text else text
         for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):

@@ -2,7 +2,9 @@
 #include <map>
 
 #include "rtm/ext/CameraCommonInterfaceStub.h"
+#include "rtm/ext/HRPDataTypesStub.h"
 #include "rtm/ext/ManipulatorCommonInterface_DataTypesStub.h"
+#include "rtm/ext/PointCloudTypesStub.h"
 #include "rtm/idl/InterfaceDataTypesStub.h"
 #include "system/value_codec.h"
 
@@ -144,7 +146,9 @@ const std::map<std::string, CORBA::TypeCode_ptr>& types() {
                             Img::_tc_MultiCameraImage,
                             Img::_tc_TimedMultiCameraImage,
                             Img::_tc_CameraDeviceProfile,
-                            JARA_ARM::_tc_TimedJointPos}) {
+                            JARA_ARM::_tc_TimedJointPos,
+                            OpenHRP::_tc_TimedLongSeqSeq,
+                            PointCloudTypes::_tc_PointCloud}) {
       map.emplace(type->id(), type);
     }
     return map;
