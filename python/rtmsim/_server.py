@@ -24,14 +24,16 @@ os.register_at_fork(after_in_child=_forget_pipes)
 
 
 def program(name: str) -> str:
-    """A program of rtm-sim: in the folder RTMSIM_BIN_DIR, else beside this module in a build tree, else one of PATH."""
+    """A program of rtm-sim: in the folder RTMSIM_BIN_DIR, else beside this module, else one of PATH."""
     import shutil
     folder = os.environ.get("RTMSIM_BIN_DIR")
     if folder:
         return os.path.join(folder, name)
-    beside = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "bin", name))
-    if os.access(beside, os.X_OK):
-        return beside
+    here = os.path.dirname(os.path.abspath(__file__))
+    for up in ("../../bin", "../../../../bin"):  # of a build tree, of an installation
+        beside = os.path.normpath(os.path.join(here, up, name))
+        if os.access(beside, os.X_OK):
+            return beside
     found = shutil.which(name)
     if found is None:
         raise Error(f"program {name} not found; expected it in PATH, or its folder in RTMSIM_BIN_DIR")

@@ -90,11 +90,11 @@ class Drive:
 
     def set_odometry(self, x: float, y: float, a: float) -> None:
         """Sets the odometry [m, rad]."""
-        self._world._simulator.reset_odometry(self.name, [x, y, a], self._world.timeout)
+        self._world._line().reset_odometry(self.name, [x, y, a], self._world.timeout)
 
     def motors(self, on: bool) -> None:
         """Switches the motors on or off."""
-        self._world._simulator.set_motors(self.name, on, self._world.timeout)
+        self._world._line().set_motors(self.name, on, self._world.timeout)
 
 
 class Joints:
