@@ -87,15 +87,7 @@ PYBIND11_MODULE(_recording, module) {
   using namespace python;
   py::options options;
   options.disable_function_signatures();
-  const py::object error = py::module_::import("rtmsim._core").attr("Error");
-  PyModule_AddObject(module.ptr(), "Error", error.inc_ref().ptr());
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const Error& problem) {
-      PyErr_SetString(py::module_::import("rtmsim._core").attr("Error").ptr(), problem.what());
-    }
-  });
+  py::module_::import("rtmsim._core");  // which translates the exceptions of both: translators are those of all modules
   py::class_<File>(module, "File")
       .def(py::init<const std::string&>())
       .def_property_readonly("channels", &File::channels)

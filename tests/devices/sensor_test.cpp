@@ -128,6 +128,7 @@ TEST(Device, after_a_reset_with_another_seed_it_says_what_it_says_in_a_simulator
   f->simulation->set_seed(77);
   ASSERT_TRUE(f->simulation->reset(notes));
   const auto reseeded = said(*f);
+  f.reset();
   f = std::make_unique<SimulationFixture>(every_device(), 77);
   const auto expected = said(*f);
   EXPECT_EQ(reseeded.second, expected.second);

@@ -259,6 +259,13 @@ def test_wrong_names_are_answered_with_one_line_that_says_what_there_is(course_w
         course_world.set_pose("pioneer2dx", (math.nan, 2, 0))
 
 
+def test_the_kinds_of_errors_are_the_same_when_recordings_are_loaded(course_world):
+    with pytest.raises(rtmsim.Error, match="no_such.mcap"):
+        rtmsim.Recording("no_such.mcap")
+    with pytest.raises(rtmsim.NotFound):
+        course_world.pose("no_such")
+
+
 def test_worlds_can_be_text_and_step_at_the_same_time():
     text = ('<sdf version="1.9"><world name="w"><model name="ball"><pose>0 0 10 0 0 0</pose><link name="l"><collision name="c"><geometry>'
             '<sphere><radius>.1</radius></sphere></geometry></collision></link></model></world></sdf>')
