@@ -17,16 +17,35 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 28> names = {"",           "pause",          "run",
-                                                    "step",       "reset",          "get-pose",
-                                                    "set-pose",   "get-velocity",   "set-velocity",
-                                                    "wrench",     "list",           "tree",
-                                                    "spawn",      "delete",         "screenshot",
-                                                    "statistics", "reset-odometry", "set-motors",
-                                                    "set-rtf",    "contacts",       "drop-participant",
-                                                    "export",     "poses",          "fault",
-                                                    "end-faults", "faults",         "models",
-                                                    "pose-log"};
+constexpr std::array<std::string_view, 29> names = {"",
+                                                    "pause",
+                                                    "run",
+                                                    "step",
+                                                    "reset",
+                                                    "get-pose",
+                                                    "set-pose",
+                                                    "get-velocity",
+                                                    "set-velocity",
+                                                    "wrench",
+                                                    "list",
+                                                    "tree",
+                                                    "spawn",
+                                                    "delete",
+                                                    "screenshot",
+                                                    "statistics",
+                                                    "reset-odometry",
+                                                    "set-motors",
+                                                    "set-rtf",
+                                                    "contacts",
+                                                    "drop-participant",
+                                                    "export",
+                                                    "poses",
+                                                    "fault",
+                                                    "end-faults",
+                                                    "faults",
+                                                    "models",
+                                                    "pose-log",
+                                                    "show"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -44,7 +63,10 @@ struct Encoder {
     raw.body.count = r.steps;
     raw.body.flags = (r.is_paced ? flag_1 : 0) | (r.ends_at_death ? flag_2 : 0);
   }
-  void operator()(const ResetRequest& r) { raw.body.flags = r.poses_only ? flag_1 : 0; }
+  void operator()(const ResetRequest& r) {
+    raw.body.flags = (r.poses_only ? flag_1 : 0) | (r.seed ? flag_2 : 0);
+    raw.body.count = static_cast<std::int64_t>(r.seed.value_or(0));
+  }
   void operator()(const GetPoseRequest& r) { name(r.name); }
   void operator()(const SetPoseRequest& r) {
     name(r.model);
@@ -84,7 +106,8 @@ struct Encoder {
     using View = ScreenshotRequest::View;
     raw.body.flags = (r.view == View::top ? RTMSIM_VIEW_TOP : 0) | (r.view == View::follow ? RTMSIM_VIEW_FOLLOW : 0) |
                      (r.view == View::from ? RTMSIM_VIEW_FROM : 0) | (r.with_scans ? RTMSIM_VIEW_SCANS : 0) |
-                     (r.view == View::camera ? RTMSIM_VIEW_CAMERA : 0) | (r.with_collisions ? RTMSIM_VIEW_COLLISIONS : 0);
+                     (r.view == View::camera ? RTMSIM_VIEW_CAMERA : 0) | (r.with_collisions ? RTMSIM_VIEW_COLLISIONS : 0) |
+                     (r.as_pixels ? RTMSIM_VIEW_PIXELS : 0);
   }
   void operator()(const StatsRequest&) {}
   void operator()(const ResetOdometryRequest& r) {
@@ -120,6 +143,7 @@ struct Encoder {
   void operator()(const FaultsRequest& r) { name(r.iface); }
   void operator()(const ModelsRequest&) {}
   void operator()(const PoseLogRequest& r) { raw.body.count = r.from; }
+  void operator()(const ShowRequest&) {}
 };
 
 class Decoder {
@@ -142,6 +166,7 @@ class Decoder {
     return Request(std::move(request));
   }
   base::Result<Request> step() const;
+  base::Result<Request> reset() const;
   base::Result<Request> set_pose() const;
   base::Result<Request> twist() const;
   base::Result<Request> spawn() const;
@@ -179,6 +204,13 @@ std::optional<Pose> Decoder::pose() const {
 base::Result<Request> Decoder::step() const {
   if (body().count < 1 || body().count > max_steps) return fail("steps must be 1 to 1e9, got " + std::to_string(body().count));
   return Request(StepRequest{body().count, (body().flags & flag_1) != 0, (body().flags & flag_2) != 0});
+}
+
+base::Result<Request> Decoder::reset() const {
+  ResetRequest request{(body().flags & flag_1) != 0};
+  if ((body().flags & flag_2) != 0) request.seed = static_cast<std::uint64_t>(body().count);
+  if (request.poses_only && request.seed) return fail("a reset of the poses alone keeps the seed");
+  return Request(request);
 }
 
 base::Result<Request> Decoder::set_pose() const {
@@ -231,6 +263,8 @@ base::Result<Request> Decoder::screenshot() const {
   }
   request.with_scans = (body().flags & RTMSIM_VIEW_SCANS) != 0;
   request.with_collisions = (body().flags & RTMSIM_VIEW_COLLISIONS) != 0;
+  request.as_pixels = (body().flags & RTMSIM_VIEW_PIXELS) != 0;
+  if (request.as_pixels && !request.path.empty()) return fail("pixels are no file; expected no path, got " + base::in_quotes(request.path));
   request.span = values()[7];
   if (request.span < 0) return fail("field of view or width must not be negative");
   if ((body().flags & RTMSIM_VIEW_TOP) != 0) {
@@ -294,7 +328,7 @@ base::Result<Request> Decoder::decode() {
     case RTMSIM_REQUEST_STEP:
       return step();
     case RTMSIM_REQUEST_RESET:
-      return Request(ResetRequest{(body().flags & flag_1) != 0});
+      return reset();
     case RTMSIM_REQUEST_GET_POSE:
       return named(GetPoseRequest{}, &GetPoseRequest::name);
     case RTMSIM_REQUEST_SET_POSE:
@@ -343,6 +377,8 @@ base::Result<Request> Decoder::decode() {
     case RTMSIM_REQUEST_POSE_LOG:
       if (body().count < 0) return fail("the first byte must not be negative, got " + std::to_string(body().count));
       return Request(PoseLogRequest{body().count});
+    case RTMSIM_REQUEST_SHOW:
+      return Request(ShowRequest{});
     default:
       return fail("unknown kind");
   }

@@ -23,6 +23,7 @@ struct StepRequest {
 };
 struct ResetRequest {
   bool poses_only = false;
+  std::optional<std::uint64_t> seed{};  // of all sensor noise from then on; nothing: as before. Not with poses_only
 };
 struct GetPoseRequest {
   std::string name;
@@ -67,6 +68,7 @@ struct ScreenshotRequest {
   enum class View { whole, top, follow, from, camera } view = View::whole;
   bool with_scans = false;       // fans of range finders, trails and names over the picture
   bool with_collisions = false;  // the shapes that collide instead of those that are seen
+  bool as_pixels = false;        // the text of the reply is rows of red, green and blue bytes instead of a PNG; not with a path
   std::string follow;            // model; iface for `camera`
   Pose pose = identity_pose;     // camera for `from`, centre for `top`
   double span = 0;               // hfov [rad], or metres across for `top`; 0 = a good one
@@ -107,15 +109,19 @@ struct FaultsRequest {
   std::string iface;  // empty = all
 };
 struct ModelsRequest {};
+// Sensors that somebody is subscribed to publish what is there now, as after a reset or after a model was moved. Refused while time goes
+// on.
+struct ShowRequest {};
 // See shm/pose_log.h.
 struct PoseLogRequest {
   std::int64_t from = 0;  // [bytes]; the simulator deletes what is before it
 };
 
-using Request = std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
-                             SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest,
-                             StatsRequest, ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest,
-                             ExportRequest, PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest, PoseLogRequest>;
+using Request =
+    std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
+                 SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest, StatsRequest,
+                 ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest, ExportRequest,
+                 PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest, PoseLogRequest, ShowRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,

@@ -157,7 +157,7 @@ typedef struct {
 
 typedef struct {
   int64_t step_ns; /* length of a physics step */
-  uint64_t seed;
+  uint64_t seed;   /* [atomic] the one constant that changes: with RTMSIM_REQUEST_RESET */
   uint32_t lockstep;
   uint32_t wait_for; /* participants that must join before time starts */
   char world[128];   /* name in the file */
@@ -472,7 +472,8 @@ enum {
   RTMSIM_REQUEST_PAUSE = 1,
   RTMSIM_REQUEST_RUN = 2,
   RTMSIM_REQUEST_STEP = 3,     /* count = steps (1..1e9); pauses; answered when they are done; flags 1 = at the real-time factor */
-  RTMSIM_REQUEST_RESET = 4,    /* world and time as at the start; keeps paused or running; flags 1: poses only, time goes on */
+  RTMSIM_REQUEST_RESET = 4,    /* world and time as at the start; keeps paused or running; flags 1: poses only, time goes on; flags bit 1:
+                                  count = new seed of all noise */
   RTMSIM_REQUEST_GET_POSE = 5, /* name = model or model::link; reply values 0..6 = pose x y z qw qx qy qz in the world */
   RTMSIM_REQUEST_SET_POSE =
       6, /* name = model; values 0..6 = pose; velocities become 0. flags 1: values 0 1 2 = x y yaw, height and tilt kept */
@@ -487,7 +488,8 @@ enum {
                                      nothing outside of the model path is opened. Reply message = name given */
   RTMSIM_REQUEST_DELETE = 13,     /* name = model */
   RTMSIM_REQUEST_SCREENSHOT = 14, /* text = absolute path of the PNG, or empty: the PNG is the text of the reply (a shared server writes no
-                                     files); width, height; flags RTMSIM_VIEW_*; name = model to follow; values 0..6 = pose of the
+                                     files; RTMSIM_VIEW_PIXELS: width x height x 3 bytes, red, green, blue, rows from the top
+                                     down); width, height; flags RTMSIM_VIEW_*; name = model to follow; values 0..6 = pose of the
                                      camera, 7 = hfov or metres across for top views */
   RTMSIM_REQUEST_STATS = 15,      /* reply text: JSON; reply values 0 = reached real-time factor; hash = state hash, computed now */
   RTMSIM_REQUEST_RESET_ODOMETRY = 16,   /* name = position iface; values 0..2 = new x y a (position3d: 0..6 = pose with flags 1) */
@@ -505,6 +507,8 @@ enum {
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
   RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
+  RTMSIM_REQUEST_SHOW = 28,       /* while time stands still: sensors with subscribers publish the present moment, as after a reset or
+                                     SET_POSE. Changes nothing that comes later */
   RTMSIM_REQUEST_POSE_LOG = 27    /* the first one starts the pose log (shm/pose_log.h). count = first byte wanted; earlier ones are
                                      deleted. Reply count = end of the log [bytes]; text = bytes of it, at most 8 MiB */
 };
@@ -516,7 +520,8 @@ enum {
   RTMSIM_VIEW_FROM = 4,
   RTMSIM_VIEW_SCANS = 8,
   RTMSIM_VIEW_CAMERA = 16,
-  RTMSIM_VIEW_COLLISIONS = 32
+  RTMSIM_VIEW_COLLISIONS = 32,
+  RTMSIM_VIEW_PIXELS = 64
 };
 
 enum {

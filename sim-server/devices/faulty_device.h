@@ -38,6 +38,8 @@ class FaultyDevice final : public Device {
   void publish(const Moment& moment) override;
   bool owes_sample() override { return device_->owes_sample(); }
   void show(const Moment& moment) override;
+  // Of faults that are added from now on.
+  void set_seed(std::uint64_t seed) { seed_ = seed; }
   void reset() override;
   void add_to(StateHash& hash) const override { device_->add_to(hash); }
   bool set_odometry(const Eigen::Isometry3d& pose) override { return device_->set_odometry(pose); }

@@ -37,6 +37,8 @@ class Noise {
   double apply(double value, double dt);
   // Ranges that are finite get noise and are quantised to multiples of `step` (0: not).
   void apply(std::span<float> ranges, float step);
+  // The same as if it were made with this stream.
+  Noise with(RandomStream stream) const { return {def_, stream}; }
   bool is_none() const { return def_.kind == NoiseDef::Kind::none; }
   const RandomStream& stream() const { return stream_; }
 

@@ -25,6 +25,7 @@ class Camera {
   // `seed`: of its noise.
   Camera(const CameraDef& def, Output output, std::uint64_t seed);
 
+  void set_seed(std::uint64_t seed) { seed_ = seed; }
   const CameraDef& def() const { return def_; }
   Output output() const { return output_; }
   std::size_t color_bytes() const;  // of a picture in its format

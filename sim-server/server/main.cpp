@@ -1,5 +1,8 @@
 // sim-server: loads a world and runs it. See --help.
+#include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -28,7 +31,7 @@ namespace {
 struct Options {
   std::string world;
   std::uint32_t server_id = 0;
-  bool is_paused = false, is_lockstep = false, check = false, is_json = false, print_hash = false;
+  bool is_paused = false, is_lockstep = false, ends_with_input = false, check = false, is_json = false, print_hash = false;
   double rtf = 1;
   std::uint32_t wait_for = 0;
   double participant_timeout = 0, duration = -1;
@@ -56,14 +59,15 @@ int fail(const std::string& message) {
   return 1;
 }
 
-// SIGINT, SIGTERM and SIGHUP, received by a thread of their own instead of a handler. They stop the loop after its step; before there is
+// SIGINT, SIGTERM and SIGHUP, and with follow_input() the end of standard input, received by a thread of their own instead of a handler.
+// They stop the loop after its step; before there is
 // one, and when the step takes long or a second signal comes, they end the process at once.
 class Signals {
  public:
   // Before any other thread is started this must exist.
   Signals() {
     sigemptyset(&set_);
-    for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set_, signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGUSR2, SIGIO}) sigaddset(&set_, signal);
     struct sigaction hang_up {};
     sigaction(SIGHUP, nullptr, &hang_up);
     if (hang_up.sa_handler != SIG_IGN) sigaddset(&set_, SIGHUP);  // ignored: started by nohup
@@ -72,10 +76,20 @@ class Signals {
       while (true) {
         int signal = 0;
         sigwait(&set_, &signal);
+        if (signal == SIGIO && !is_input_closed()) continue;
         if (signal != SIGUSR2 && !is_over_.load(std::memory_order_acquire)) stop(signal);
         if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
       }
     });
+  }
+  // From now on the process ends when standard input, a pipe, has no writer any more. False: it is no pipe.
+  bool follow_input() {
+    struct stat input {};
+    if (fstat(STDIN_FILENO, &input) != 0 || !S_ISFIFO(input.st_mode)) return false;
+    fcntl(STDIN_FILENO, F_SETOWN, getpid());
+    fcntl(STDIN_FILENO, F_SETFL, fcntl(STDIN_FILENO, F_GETFL) | O_ASYNC);
+    kill(getpid(), SIGIO);  // it may have ended before
+    return true;
   }
   void watch(sim::ServerLoop* loop) { *loop_.lock() = loop; }
   void end() {
@@ -100,6 +114,10 @@ class Signals {
     if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
     if (next < 0) std::fprintf(stderr, "sim-server: ended in the middle of a step, which takes more than %ld s\n", patience.tv_sec);
     end_process(signal);
+  }
+  static bool is_input_closed() {
+    pollfd input{STDIN_FILENO, 0, 0};
+    return poll(&input, 1, 0) > 0 && (input.revents & POLLHUP) != 0;
   }
   [[noreturn]] static void end_process(int signal) {
     shm::remove_own();
@@ -221,6 +239,8 @@ int serve(int argc, char** argv) {
       ->envname("RTMSIM_SERVER_ID");
   app.add_flag("-u,--paused", options.is_paused, "start paused");
   app.add_option("--rtf", options.rtf, "real-time factor (default 1); 0: as fast as possible")->check(base::number_between(0.0, 1e6));
+  app.add_flag("--ends-with-input", options.ends_with_input,
+               "exit when standard input, a pipe, is closed: when the program that started this one exits");
   app.add_flag("--lockstep", options.is_lockstep, "run in lock step: time waits for all participants of each tick");
   app.add_option("--wait-for", options.wait_for, "number of participants that must join before time starts (default 0)")
       ->check(base::integer_between(0, static_cast<int>(shm::most_participants)));
@@ -270,6 +290,7 @@ int serve(int argc, char** argv) {
   base::set_log_level(levels[options.verbosity]);
   try {
     Signals signals;
+    if (options.ends_with_input && !signals.follow_input()) return fail("--ends-with-input: expected a pipe as standard input");
     return run(options, signals);
   } catch (const std::bad_alloc&) {
     return fail(options.world + ": not enough memory for this world");

@@ -1,5 +1,6 @@
 #include "server/picture_desk.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace sim {
@@ -62,6 +63,17 @@ shm::Reply PictureDesk::make(const Order& order) {
   return reply;
 }
 
+namespace {
+
+// Red, green and blue, rows from the top down.
+std::string pixels_of(const Image& image) {
+  std::string pixels(image.size_bytes() / 4 * 3, '\0');
+  for (std::size_t from = 0, to = 0; to < pixels.size(); from += 4, to += 3) std::copy_n(&image.rgba[from], 3, &pixels[to]);
+  return pixels;
+}
+
+}  // namespace
+
 base::Result<std::string> PictureDesk::draw(const Picture& picture) {
   if (!renderer_) {
     auto opened = Renderer::open();
@@ -70,6 +82,7 @@ base::Result<std::string> PictureDesk::draw(const Picture& picture) {
   }
   const auto image = draw_picture(*renderer_, picture.plan);
   if (!image) return image.error();
+  if (picture.as_pixels) return pixels_of(*image);
   if (!picture.file.empty()) {
     const auto written = write_png(*image, picture.file);
     return written ? base::Result<std::string>("") : written.error();

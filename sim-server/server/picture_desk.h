@@ -30,6 +30,7 @@ class PictureDesk {
   struct Picture {
     PicturePlan plan;
     std::filesystem::path file;  // empty: the PNG becomes the text of the reply
+    bool as_pixels = false;      // red, green and blue bytes become the text instead
   };
   struct Order {
     shm::RequestTicket ticket;

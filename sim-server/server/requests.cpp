@@ -98,8 +98,7 @@ struct ServerLoop::Handler {
   }
   shm::Reply operator()(const shm::ResetRequest& request) {
     loop.end_steps("another client has reset the world");
-    loop.reset(request.poses_only);
-    return {};
+    return loop.reset(request);
   }
   shm::Reply operator()(const shm::GetPoseRequest& request) {
     const auto link = physics.find_link(request.name);
@@ -204,7 +203,7 @@ struct ServerLoop::Handler {
       return no_model(physics, request.follow);
     auto plan = plan_picture(simulation, request);
     if (!plan) return failed(plan.error());
-    order(PictureDesk::Picture{std::move(*plan), request.path}, {});
+    order(PictureDesk::Picture{std::move(*plan), request.path, request.as_pixels}, {});
     return {};
   }
   shm::Reply operator()(const shm::ExportRequest& request) {
@@ -213,6 +212,11 @@ struct ServerLoop::Handler {
     reply.count = static_cast<std::int64_t>(plan.world.poses->size());
     reply.values[0] = static_cast<double>(plan.version);
     order(std::move(plan), std::move(reply));
+    return {};
+  }
+  shm::Reply operator()(const shm::ShowRequest&) {
+    if (!loop.mode_.stands_still()) return refused(shm::RequestStatus::failed, "time goes on; pause the simulation first");
+    simulation.show_present();
     return {};
   }
   shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }

@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "reader/asset_reader.h"
+#include "shm/words.h"
 
 namespace sim {
 namespace {
@@ -305,12 +306,21 @@ void ServerLoop::end_steps(const std::string& why, shm::Reply reply) {
   publish_clock();
 }
 
-void ServerLoop::reset(bool poses_only) {
-  if (poses_only) {
+shm::Reply ServerLoop::reset(const shm::ResetRequest& request) {
+  shm::Reply reply;
+  if (request.poses_only) {
     simulation_.reset_poses();
   } else {
+    if (request.seed) {
+      simulation_.set_seed(*request.seed);
+      shm::store(iface_.segment().as<shm::SimulationInfo>(shm::AreaIndex::info).seed, *request.seed);
+    }
     std::vector<std::string> notes;
-    if (const auto done = simulation_.reset(notes); !done) base::log(base::Level::error, "sim-server", "reset: {}", done.error().message);
+    if (const auto done = simulation_.reset(notes); !done) {
+      base::log(base::Level::error, "sim-server", "reset: {}", done.error().message);
+      reply.status = shm::RequestStatus::failed;
+      reply.message = done.error().message;
+    }
     for (const auto& note : notes) base::log(base::Level::warn, "sim-server", "{}", note);
     iface_.set_resets(simulation_.resets());
     barrier_->rewind(simulation_.time(), simulation_.resets());
@@ -323,6 +333,7 @@ void ServerLoop::reset(bool poses_only) {
   }
   start_pace();
   publish_clock();
+  return reply;
 }
 
 LoopState ServerLoop::state() const {

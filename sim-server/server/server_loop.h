@@ -71,7 +71,7 @@ class ServerLoop {
   void tend();
   void step();
   void publish_clock();
-  void reset(bool poses_only);
+  shm::Reply reset(const shm::ResetRequest& request);
   void finish_step_request();
   // Models that have been read come into the world, in the order in which they were asked for.
   void spawn_loaded(When when);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "devices/faulty_device.h"
 
@@ -165,11 +166,28 @@ bool Simulation::sense(PartTimes& times, const std::function<bool()>& before_wri
 }
 
 void Simulation::answer_new_subscribers() {
-  const Moment moment{time_, world_->physics.step};
   due_.clear();
   for (auto& device : devices_) {
     if (device->owes_sample()) due_.push_back(device.get());
   }
+  show_due();
+}
+
+void Simulation::show_present() {
+  // By name: a camera has several ifaces, and shows all of them.
+  std::set<std::string_view> wanted;
+  for (auto& device : devices_) {
+    if (device->iface().is_subscribed()) wanted.insert(device->iface().name());
+  }
+  due_.clear();
+  for (auto& device : devices_) {
+    if (wanted.contains(device->iface().name())) due_.push_back(device.get());
+  }
+  show_due();
+}
+
+void Simulation::show_due() {
+  const Moment moment{time_, world_->physics.step};
   if (std::any_of(due_.begin(), due_.end(), [](const Device* device) { return device->uses_rays(); })) rays_->update();
   for (auto* device : due_) device->show(moment);
 }
@@ -187,6 +205,14 @@ void Simulation::follow_trails() {
     for (std::size_t i = 0; i < trail.points.size() / 2; ++i) trail.points[i] = trail.points[2 * i];
     trail.points.resize(trail.points.size() / 2);
     trail.spacing *= 2;
+  }
+}
+
+void Simulation::set_seed(std::uint64_t seed) {
+  options_.seed = seed;
+  device_world_->seed = seed;
+  for (auto& device : devices_) {
+    if (auto* faulty = dynamic_cast<FaultyDevice*>(device.get())) faulty->set_seed(seed);
   }
 }
 

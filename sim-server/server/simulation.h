@@ -52,7 +52,11 @@ class Simulation {
   bool sense(PartTimes& times, const std::function<bool()>& before_writing = {});
   // While time stands still: sensors that were switched on meanwhile show the present moment; the run goes on as without them.
   void answer_new_subscribers();
+  // The same for all that have subscribers.
+  void show_present();
 
+  // Of all noise, from the reset on that follows at once.
+  void set_seed(std::uint64_t seed);
   // As at the start, to the bit. The ifaces stay.
   base::Result<void> reset(std::vector<std::string>& notes);
   void reset_poses();
@@ -98,6 +102,7 @@ class Simulation {
   // Those of a model one after the other, those of different models on several threads when that is worth it.
   void for_followers(const std::function<void(Device&)>& work);
   void follow_trails();
+  void show_due();
 
   struct Wrench {
     LinkId link;

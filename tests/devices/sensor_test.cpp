@@ -111,6 +111,33 @@ TEST(Device, after_a_reset_it_says_the_same_again) {
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(values_of(ifaces[i]), first[i]) << names[i].text();
 }
 
+TEST(Device, after_a_reset_with_another_seed_it_says_what_it_says_in_a_simulator_that_started_with_that_seed) {
+  const auto said = [](SimulationFixture& f) {
+    f.simulation->pictures().set_synchronous(true);
+    std::vector<std::vector<std::byte>> values;
+    std::vector<shm::Iface> ifaces;
+    for (const auto& name : names_of(*f.simulation)) ifaces.push_back(f.open(name.type, name.iface));
+    f.run(0.2);
+    for (auto& iface : ifaces) values.push_back(values_of(iface));
+    return std::pair(values, f.simulation->hash());
+  };
+  auto f = std::make_unique<SimulationFixture>(every_device());
+  const auto names = names_of(*f->simulation);
+  const auto before = said(*f);
+  std::vector<std::string> notes;
+  f->simulation->set_seed(77);
+  ASSERT_TRUE(f->simulation->reset(notes));
+  const auto reseeded = said(*f);
+  f.reset();
+  f = std::make_unique<SimulationFixture>(every_device(), 77);
+  const auto expected = said(*f);
+  EXPECT_EQ(reseeded.second, expected.second);
+  ASSERT_EQ(reseeded.first.size(), names.size());
+  ASSERT_EQ(expected.first.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(reseeded.first[i], expected.first[i]) << names[i].text();
+  EXPECT_NE(before.first, expected.first);
+}
+
 TEST(PartTimes, know_every_scan_of_a_laser_that_is_never_due_in_the_steps_that_stand_for_others) {
   SimulationFixture f(world_of_text(R"(<physics type="ode"><max_step_size>0.001</max_step_size></physics>
     <model name="m"><static>true</static><link name="l"><sensor name="laser" type="ray"><update_rate>10</update_rate>

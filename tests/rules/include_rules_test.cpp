@@ -70,6 +70,7 @@ const std::vector<Layer> layers = {
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "base"}},
+    {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
 };
 
 // Whose header this is: a part of the project, a library, or "" for one of neither.
@@ -105,6 +106,7 @@ std::string owner(const std::string& header) {
       {"simctl/", "simctl"},
       {"studio/", "studio"},
       {"page/", "page"},
+      {"python/", "python"},
       {"omniORB4/", "omniORB"},
       {"omnithread", "omniORB"},
       {"COS/", "omniORB"},
@@ -134,6 +136,7 @@ std::string owner(const std::string& header) {
       {"libdeflate", "deflate"},
       {"sqlite3", "SQLite"},
       {"boost/", "Boost"},
+      {"pybind11/", "pybind11"},
   };
   for (const auto& [prefix, name] : prefixes) {
     if (header.starts_with(prefix)) return name;
@@ -181,7 +184,7 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients"}) {
+  for (const char* top : {"base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

@@ -71,7 +71,7 @@ def compiles(root, name):
     beside = own or [one for one in commands if (source / name).parent in [file.parent for file in sources_of(one)] and (name.split("/")[0] != "tests" or "/sim-server" in one["command"])]
     assert beside, f"{name}: nothing beside it is compiled"
     command = beside[0]["command"]
-    for folder in ("base", "shm", "sim-server", "tests", "tools", "gateways", "clients", "iface-components", "rtm-core"):
+    for folder in ("base", "shm", "sim-server", "tests", "tools", "gateways", "clients", "iface-components", "rtm-core", "python"):
         command = command.replace(str(source / folder), str(root / folder))
     words = shlex.split(command)
     words = [f"-I{root}" if word == f"-I{source}" else word for word in words if "ccache" not in word]

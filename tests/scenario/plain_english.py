@@ -10,7 +10,7 @@ import sys
 
 source = pathlib.Path(sys.argv[1])
 allow_file = source / "tests/scenario/plain_english.allow"
-folders = ("base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients")
+folders = ("base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python")
 
 # Comments are matched first, so that a quote in one begins no string; a raw string counts as one; neighbours are joined.
 token = re.compile(r"//[^\n]*|/\*.*?\*/|'(?:[^'\\\n]|\\.)'|R\"([^(\s]{0,16})\((.*?)\)\1\"|((?:\"(?:[^\"\\\n]|\\.)*\"\s*)+)|\w+", re.S)

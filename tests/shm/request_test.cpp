@@ -22,6 +22,8 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_EQ(there_and_back(StepRequest{17}).steps, 17);
   EXPECT_TRUE(there_and_back(StepRequest{.steps = 17, .ends_at_death = true}).ends_at_death);
   EXPECT_TRUE(there_and_back(ResetRequest{true}).poses_only);
+  EXPECT_FALSE(there_and_back(ResetRequest{}).seed);
+  EXPECT_EQ(there_and_back(ResetRequest{false, UINT64_MAX}).seed, UINT64_MAX);
   const auto pose = there_and_back(SetPoseRequest{"robot", {1, 2, 3, 2, 0, 0, 0}, false});
   EXPECT_EQ(pose.model, "robot");
   EXPECT_EQ(pose.pose.z, 3);
@@ -45,12 +47,16 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   const auto shot_again = there_and_back(shot);
   EXPECT_EQ(shot_again.view, ScreenshotRequest::View::follow);
   EXPECT_TRUE(shot_again.with_scans);
+  shot.path.clear();
+  shot.as_pixels = true;
+  EXPECT_TRUE(there_and_back(shot).as_pixels);
   EXPECT_EQ(there_and_back(ResetOdometryRequest{"base", 1, 2, 3, false, identity_pose}).a, 3);
   EXPECT_FALSE(there_and_back(SetMotorsRequest{"base", false}).are_enabled);
   EXPECT_EQ(there_and_back(SetRtfRequest{2.5}).rtf, 2.5);
   EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
   there_and_back(PosesRequest{});
   there_and_back(ModelsRequest{});
+  there_and_back(ShowRequest{});
   EXPECT_EQ(there_and_back(PoseLogRequest{72}).from, 72);
   const auto fault = there_and_back(FaultRequest{"robot::laser", "bias", -1.5, 2});
   EXPECT_EQ(fault.iface, "robot::laser");
@@ -82,6 +88,10 @@ TEST(Requests, nonsense_is_refused_with_a_message) {
   shot.path = "/x.png";
   shot.width = 100000;
   EXPECT_EQ(message(shot), "request screenshot: size must be 1x1 to 8192x8192, got 100000x600");
+  shot.width = 800;
+  shot.as_pixels = true;
+  EXPECT_EQ(message(shot), "request screenshot: pixels are no file; expected no path, got \"/x.png\"");
+  EXPECT_EQ(message(ResetRequest{true, 5}), "request reset: a reset of the poses alone keeps the seed");
   EXPECT_EQ(message(FaultRequest{"", "off", std::nullopt, 0}), "request fault: needs a name");
   EXPECT_EQ(message(FaultRequest{"laser", "odd", std::nullopt, 0}),
             "fault \"odd\": is none; expected one of off, stuck, bias, noise, missing, latency, dropout, weak, halted");

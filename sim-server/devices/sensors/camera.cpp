@@ -52,6 +52,8 @@ class CameraWorker {
     changed_.notify_all();
   }
   // Only when idle.
+  void set_seed(std::uint64_t seed) { camera_.set_seed(seed); }
+  // Only when idle.
   void start(Job job) {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
     {
@@ -208,6 +210,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   }
   void reset() override {
     worker_.wait();
+    worker_.set_seed(seed_of(world_.seed, channels_.front().writer->name()));
     schedule_.restart();
     if (last_picture_) last_picture_ = std::chrono::nanoseconds(0);
   }

@@ -13,7 +13,9 @@ Sensor::Sensor(Setup setup)
       schedule_(setup.rate),
       writer_(std::move(setup.writer)),
       noise_(std::move(setup.noise)),
-      fresh_noise_(noise_) {}
+      fresh_noise_(noise_),
+      streams_(std::move(setup.streams)),
+      seed_(world_.seed) {}
 
 void Sensor::publish(const Moment& moment) {
   schedule_.done(moment.time);
@@ -40,6 +42,10 @@ shm::CommandChange Sensor::poll_command(const Moment& moment, shm::Command& comm
 
 void Sensor::reset() {
   schedule_.restart();
+  if (seed_ != world_.seed) {
+    seed_ = world_.seed;
+    for (std::size_t i = 0; i < streams_.size(); ++i) fresh_noise_[i] = fresh_noise_[i].with(RandomStream(seed_, streams_[i]));
+  }
   noise_ = fresh_noise_;
   writer_->drop_command();  // of the run before
   command_end_.reset();
@@ -79,6 +85,7 @@ base::Result<Sensor::Setup> set_up(DeviceWorld& world, ModelId model, double rat
   for (const NoiseDef& def : noise.noises) {
     const std::string stream = noise.is_shared ? spec.name : spec.name + letter++;
     setup.noise.emplace_back(def, RandomStream(world.seed, stream));
+    setup.streams.push_back(stream);
   }
   return setup;
 }

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "devices/device.h"
@@ -38,7 +39,8 @@ class Sensor : public Device {
     ModelId model;
     double rate;  // [Hz]; 0: every step
     std::unique_ptr<shm::IfaceWriter> writer;
-    std::vector<Noise> noise;  // its channels; none for what is exact
+    std::vector<Noise> noise;            // its channels; none for what is exact
+    std::vector<std::string> streams{};  // of random numbers, by channel
   };
 
  protected:
@@ -81,6 +83,8 @@ class Sensor : public Device {
   std::unique_ptr<shm::IfaceWriter> writer_;
   mutable std::vector<Noise> noise_;
   std::vector<Noise> fresh_noise_;
+  std::vector<std::string> streams_;                     // by channel
+  std::uint64_t seed_;                                   // of fresh_noise_
   std::optional<std::chrono::nanoseconds> command_end_;  // of a command with a duration
 };
 

@@ -1,0 +1,8 @@
+# The Python module rtmsim. Each file is a run of pytest, so its cases share the imports.
+foreach(file python/world_test.py python/process_test.py python/run_test.py python/env_test.py python/plugin_test.py python/page_test.py)
+  string(REGEX REPLACE "^python/|_test.py$" "" name ${file})
+  add_test(NAME python.${name}
+    COMMAND ${Python_EXECUTABLE} -B -m pytest -q -p no:cacheprovider ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  set_tests_properties(python.${name} PROPERTIES LABELS "sim;process" TIMEOUT 600
+    ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;RTMSIM_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};RTMSIM_LIB_DIR=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}")
+endforeach()
