@@ -71,12 +71,15 @@ Json model_tree(const Physics& physics, ModelId id) {
                       {"velocity", state.velocity}});
   }
   for (const auto& plugin : model.plugins) plugins.push_back({{"name", plugin.name}, {"filename", plugin.filename}});
+  Json grippers = Json::array();
+  for (const auto& one : model.grippers) grippers.push_back({{"name", one.name}, {"palm", one.palm}, {"fingers", one.fingers}});
   return {{"name", model.name},
           {"static", physics.is_static(id)},
           {"pose", numbers(physics.model_pose(id))},
           {"links", links},
           {"joints", joints},
-          {"plugins", plugins}};
+          {"plugins", plugins},
+          {"grippers", grippers}};
 }
 
 }  // namespace

@@ -14,6 +14,12 @@ namespace {
 static_assert(static_cast<int>(JointMode::disabled) == RTMSIM_JOINT_DISABLED && static_cast<int>(JointMode::brake) == RTMSIM_JOINT_BRAKE);
 static_assert(static_cast<int>(JointStatus::stalled) == RTMSIM_JOINT_STALLED);
 
+// The end of a place in a file says more than its beginning.
+std::string shortened(const std::string& text, std::size_t most) {
+  constexpr std::string_view cut = "...";
+  return text.size() <= most ? text : std::string(cut) + text.substr(text.size() - most + cut.size());
+}
+
 std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<ListedJoint>& joints, const JointDynamics& dynamics) {
   std::vector<shm::Joint> all;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -23,7 +29,7 @@ std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<Listed
     shm::Joint joint{};
     shm::set_text(joint.name, def.name);
     shm::set_text(joint.link, def.child);
-    shm::set_text(joint.gains_from, joints[i].gains_from);
+    shm::set_text(joint.gains_from, shortened(joints[i].gains_from, sizeof joint.gains_from - 1));
     joint.id = static_cast<std::uint32_t>(i);
     joint.kind = setup.slides ? RTMSIM_JOINT_SLIDES : RTMSIM_JOINT_TURNS;
     joint.parent = static_cast<std::uint32_t>(body.parent + 1);
