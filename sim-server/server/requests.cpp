@@ -218,6 +218,7 @@ struct ServerLoop::Handler {
   shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }
   shm::Reply operator()(const shm::PoseLogRequest& request) {
     if (!loop.memory_log_) loop.memory_log_.emplace();
+    if (!request.joints.empty()) loop.memory_log_->watch_joints(base::split_list(request.joints, '\n'));
     auto piece = loop.memory_log_->bytes().take(request.from);
     if (!piece) return failed(piece.error());
     shm::Reply reply;
