@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "devices/joints/joint_groups.h"
+#include "devices/joints/joint_list.h"
 #include "shm/iface_json.h"
 #include "world/iface_names.h"
 
@@ -38,6 +40,17 @@ std::string full_name(const Physics& physics, LinkId link, std::uint32_t collisi
   if (!physics.exists(link.model)) return "?";
   const ModelDef& model = physics.def(link.model);
   return model.name + "::" + model.links[link.link].name + "::" + model.links[link.link].collisions[collision].name;
+}
+
+// Of a joints iface.
+Json groups_of(const ModelDef& model) {
+  Json groups = Json::array();
+  for (const JointGroup& group : joint_groups(model, commandable_joints(model))) {
+    groups.push_back({{"kind", group.kind}, {"joints", group.joints}});
+    if (!group.name.empty()) groups.back()["name"] = group.name;
+    if (group.field_of_view > 0) groups.back()["field_of_view"] = group.field_of_view;
+  }
+  return groups;
 }
 
 Json model_tree(const Physics& physics, ModelId id) {
@@ -104,6 +117,7 @@ std::string list_text(Simulation& simulation) {
                       {"name", iface.name()},
                       {"model", physics.def(device->model()).name},
                       {"subscribed", iface.is_subscribed()}});
+    if (iface.type() == shm::IfaceType::joints) ifaces.back()["groups"] = groups_of(physics.def(device->model()));
   }
   return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}});
 }
