@@ -230,7 +230,7 @@ std::string faults_text(const Simulation& simulation, const std::string& iface) 
   const auto seconds = [](std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; };
   Json faults = Json::array();
   for (const FaultOrder& fault : simulation.faults()) {
-    if (!iface.empty() && fault.iface != iface) continue;
+    if (!iface.empty() && fault.iface != iface && !fault.iface.starts_with(iface + "::")) continue;
     const auto& row = shm::row_of(fault.kind);
     const bool has_end = fault.until != std::chrono::nanoseconds::max();
     faults.push_back({{"iface", fault.iface},

@@ -158,7 +158,7 @@ constexpr std::array fault_keys = {
     Key{"at", Form::number, {}, true, "Simulated time [s]"},
     Key{"for", Form::positive, {}, false, "Duration [simulated s]; default: to the end"},
     Key{"sensor", Form::text, {}, false, "iface of a sensor; with is"},
-    Key{"actuator", Form::text, {}, false, "iface of a drive; with is"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive or joints, or IFACE::JOINT; with is"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system; with is"},
     Key{"component", Form::text, {}, false, "Component of the system; with is"},
     Key{"naming", Form::words, "gone", false, "The name server does not respond"},
@@ -184,7 +184,7 @@ constexpr std::array hunt_keys = {
 };
 constexpr std::array hunt_fault_keys = {
     Key{"sensor", Form::text, {}, false, "iface of a sensor"},
-    Key{"actuator", Form::text, {}, false, "iface of a drive"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive or joints, or IFACE::JOINT"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system"},
     Key{"component", Form::text, {}, false, "Component of the system"},
     Key{"naming", Form::words, "gone", false, "The name server does not respond"},
