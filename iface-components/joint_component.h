@@ -4,14 +4,16 @@
 #pragma once
 
 #include <base/guarded.h>
+#include <shm/joint_part.h>
 
 #include <functional>
 #include <vector>
 
 #include "iface_component.h"
-#include "joint_part.h"
 
 namespace iface {
+
+using shm::JointPart;
 
 class JointComponent : public IfaceComponent {
  public:

@@ -1,5 +1,5 @@
-// The table of faults that can be injected into a sensor or drive, one row each. Requests, options, completion and their implementation use
-// this table. Constants; any thread.
+// The table of faults that can be injected into a sensor, drive or joint, one row each. Requests, options, completion and their
+// implementation use this table. Constants; any thread.
 #pragma once
 
 #include <array>
@@ -25,13 +25,14 @@ struct FaultRow {
 inline constexpr std::array fault_rows = {
     FaultRow{"off", FaultKind::off, false, {}, 0, 0, "no samples"},
     FaultRow{"stuck", FaultKind::stuck, false, {}, 0, 0, "the same sample again and again"},
-    FaultRow{"bias", FaultKind::bias, false, 0.5, -1e6, 1e6, "added to ranges, or to every number that is measured"},
+    FaultRow{"bias", FaultKind::bias, false, 0.5, -1e6, 1e6, "added to ranges, positions of joints, or every number that is measured"},
     FaultRow{"noise", FaultKind::noise, false, 0.1, 0, 1e6, "standard deviation of what is added"},
     FaultRow{"missing", FaultKind::missing, false, 0.2, 0, 1, "fraction of the beams, always the same ones"},
     FaultRow{"latency", FaultKind::latency, false, 5, 1, 1000, "samples that it comes late"},
     FaultRow{"dropout", FaultKind::dropout, false, 0.5, 0, 1, "fraction of the samples"},
-    FaultRow{"weak", FaultKind::weak, true, 0.5, 0, 1, "fraction of the speed asked for that a drive reaches"},
-    FaultRow{"halted", FaultKind::halted, true, {}, 0, 0, "a drive goes on as it was told last"},
+    FaultRow{"weak", FaultKind::weak, true, 0.5, 0, 1,
+             "fraction of the speed asked for that a drive reaches, or of the highest effort that a joint has left"},
+    FaultRow{"halted", FaultKind::halted, true, {}, 0, 0, "a drive or joint goes on as it was told last"},
 };
 
 constexpr const FaultRow* find_fault(std::string_view name) {

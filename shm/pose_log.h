@@ -9,6 +9,9 @@
 //   pose     of `id` at `time`: seven doubles, x y z [m], qw qx qy qz
 //   contact  `id` and `other` begin to touch at `time`
 //   still    no model moves at `time`
+//   joint    the position [rad or m] of joint `other` of the model `id` at `time`, a double, after the pose of the model; only of joints
+//            that a request has named
+//   name     the joint of number `other` of the model `id` is called ...; sent before its first position, as with models
 //
 // Times are those that `sim-server --record` writes: seconds, rounded to milliseconds.
 #pragma once
@@ -17,6 +20,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/result.h"
 #include "shm/layout.h"
@@ -30,6 +34,7 @@ class PoseLogWriter {
   void pose(double time, std::uint32_t id, std::string_view name, const Pose& pose);
   void contact(double time, std::uint32_t id, std::string_view name, std::uint32_t other, std::string_view other_name);
   void still(double time);
+  void joint(double time, std::uint32_t id, std::string_view name, std::uint32_t joint, std::string_view joint_name, double position);
   // Of everything that was ever written [bytes].
   std::int64_t end() const { return begin_ + static_cast<std::int64_t>(bytes_.size()); }
   // The bytes from there on, at most pose_log_piece; those before are forgotten. An Error when they are already, or are still to come.
@@ -40,6 +45,7 @@ class PoseLogWriter {
   std::string bytes_;
   std::int64_t begin_ = 0;  // of bytes_
   std::map<std::uint32_t, std::string> names_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> joint_names_;  // by model and joint
 };
 
 class PoseLogSink {
@@ -48,6 +54,7 @@ class PoseLogSink {
   virtual void pose(double time, const std::string& model, const Pose& pose) = 0;
   virtual void contact(double time, const std::string& model, const std::string& other) = 0;
   virtual void still(double time) = 0;
+  virtual void joint(double /*time*/, const std::string& /*model*/, const std::string& /*joint*/, double /*position*/) {}
 };
 
 class PoseLogReader {
@@ -56,8 +63,11 @@ class PoseLogReader {
   base::Result<void> read(std::string_view piece, PoseLogSink& sink);
 
  private:
+  struct Entry;
+  bool take(const Entry& entry, PoseLogSink& sink);
   std::string rest_;
   std::map<std::uint32_t, std::string> names_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> joint_names_;
 };
 
 }  // namespace shm

@@ -142,8 +142,11 @@ struct Encoder {
   }
   void operator()(const FaultsRequest& r) { name(r.iface); }
   void operator()(const ModelsRequest&) {}
-  void operator()(const PoseLogRequest& r) { raw.body.count = r.from; }
   void operator()(const ShowRequest&) {}
+  void operator()(const PoseLogRequest& r) {
+    raw.body.count = r.from;
+    raw.text = r.joints;
+  }
 };
 
 class Decoder {
@@ -376,7 +379,7 @@ base::Result<Request> Decoder::decode() {
       return Request(ModelsRequest{});
     case RTMSIM_REQUEST_POSE_LOG:
       if (body().count < 0) return fail("the first byte must not be negative, got " + std::to_string(body().count));
-      return Request(PoseLogRequest{body().count});
+      return Request(PoseLogRequest{body().count, raw_.text});
     case RTMSIM_REQUEST_SHOW:
       return Request(ShowRequest{});
     default:

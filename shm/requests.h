@@ -115,6 +115,7 @@ struct ShowRequest {};
 // See shm/pose_log.h.
 struct PoseLogRequest {
   std::int64_t from = 0;  // [bytes]; the simulator deletes what is before it
+  std::string joints{};   // MODEL::JOINT, a line each: from now on the log has their positions, too; empty: as before
 };
 
 using Request =

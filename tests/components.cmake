@@ -6,7 +6,7 @@ rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DI
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)
-foreach(case simctl act_array dead_commander gripper ptz robot_hardware)
+foreach(case simctl gains act_array dead_commander gripper ptz robot_hardware)
   add_test(NAME arms.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(arms.${case} PROPERTIES LABELS integration TIMEOUT 300)

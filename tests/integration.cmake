@@ -24,7 +24,7 @@ foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_p
   set_tests_properties(integration.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case kinds unknown_names not_a_number crash sudden_ends hang missing_module incomplete interrupted foreign_simulator odds_and_ends progress hung_naming slow_start)
+foreach(case kinds joints_and_grips unknown_names not_a_number crash sudden_ends hang missing_module incomplete interrupted foreign_simulator odds_and_ends progress hung_naming slow_start)
   add_test(NAME run.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/runs.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(run.${case} PROPERTIES LABELS integration TIMEOUT 300)

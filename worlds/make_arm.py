@@ -91,7 +91,8 @@ def made_arm():
         names.append(f"{side}_finger")
     joints = "".join(f"<joint_name>{name}</joint_name>" for name in names)
     plugin = 'filename="gz-sim-joint-trajectory-controller-system" name="gz::sim::systems::JointTrajectoryController"'
-    return text + f"    <plugin {plugin}>{joints}</plugin>\n  </model>\n"
+    gripper = f"<palm_link>{before}</palm_link><gripper_link>left_pad</gripper_link><gripper_link>right_pad</gripper_link>"
+    return text + f'    <gripper name="gripper">{gripper}</gripper>\n' + f"    <plugin {plugin}>{joints}</plugin>\n  </model>\n"
 
 
 def made_cube(name, y, colour):

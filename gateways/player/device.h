@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "errands.h"
+#include "joint_group.h"
 #include "outbox.h"
 #include "protocol/message.h"
 #include "protocol/payloads.h"
@@ -52,6 +53,8 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const player::Address& address() const { return address_; }
+  // Before it is attached: the joints that it shows, of devices that show joints.
+  virtual void choose(const JointGroup&) {}
   // Names the iface, by its end where it is long: at most 62 characters.
   std::string driver() const;
 

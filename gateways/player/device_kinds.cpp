@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "camera_device.h"
 #include "drive_devices.h"
+#include "joint_devices.h"
 #include "point_cloud_device.h"
 #include "range_devices.h"
 #include "sensor_devices.h"
@@ -32,6 +33,9 @@ constexpr std::array kinds{
     row<Laser>(laser),
     row<Sonar>(sonar),
     row<Camera>(camera),
+    row<ActArray>(actarray),
+    row<Gripper>(gripper),
+    row<Ptz>(ptz),
     row<Gps>(gps),
     row<Imu>(imu),
     row<Bumper>(bumper),

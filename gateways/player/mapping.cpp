@@ -30,6 +30,14 @@ class Numbering {
     while (!taken_.insert(address).second) ++address.index;
     devices_.push_back({address, iface.type, iface.name, {}});
   }
+  // A device for each group of joints.
+  void add_groups(player::Interface interface, const ListedIface& iface) {
+    for (const JointGroup& group : iface.groups) {
+      if (group.interface != interface) continue;
+      add(interface, iface);
+      devices_.back().group = group;
+    }
+  }
 
  private:
   std::vector<DevicePlan>& devices_;
@@ -38,7 +46,11 @@ class Numbering {
 
 std::string robot_of(const ListedIface& iface) { return iface.model.substr(0, iface.model.find("::")); }
 
-bool is_device(const ListedIface& iface) { return iface.type != shm::IfaceType::simulation && !interfaces_for(iface.type).empty(); }
+// Joints that nothing drives, as those of casters and doors, are no device.
+bool is_device(const ListedIface& iface) {
+  if (iface.type == shm::IfaceType::joints) return !iface.groups.empty();
+  return iface.type != shm::IfaceType::simulation && !interfaces_for(iface.type).empty();
+}
 
 // Several interfaces show what depth cameras see; their points are not shown twice.
 bool has_points(const ListedIface& depth, const std::vector<ListedIface>& ifaces) {
@@ -67,6 +79,10 @@ void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces,
         const std::size_t which = count++;
         if (type == shm::IfaceType::magnetometer && which < imus.size()) continue;
         if (kind.interface == player::Interface::pointcloud3d && type == shm::IfaceType::depth && has_points(iface, ifaces)) continue;
+        if (type == shm::IfaceType::joints) {
+          numbering.add_groups(kind.interface, iface);
+          continue;
+        }
         numbering.add(kind.interface, iface);
         if (type == shm::IfaceType::imu && which < magnetometers.size()) devices.back().magnetometer = magnetometers[which].name;
       }
@@ -126,7 +142,9 @@ ConfiguredDevice device_of(const YAML::Node& key, const YAML::Node& value) {
   ConfiguredDevice device;
   device.address = address_of(key);
   const bool is_pair = device.address.interface == player::Interface::imu && value.IsSequence() && value.size() == 2;
-  device.iface = text_of(is_pair ? value[0] : value, "the name of an iface");
+  const bool has_joints = can_show(device.address.interface, shm::IfaceType::joints) && value.IsSequence() && value.size() > 1;
+  device.iface = text_of(is_pair || has_joints ? value[0] : value, "the name of an iface");
+  for (std::size_t i = 1; has_joints && i < value.size(); ++i) device.joints.push_back(text_of(value[i], "the name of a joint"));
   if (is_pair) device.magnetometer = text_of(value[1], "the name of a magnetometer");
   // "sonar:pioneer::sonar": one colon ends a type, two separate names.
   const auto colon = device.iface.find(':');
@@ -184,13 +202,42 @@ std::vector<ConfiguredPort> configured_ports(const YAML::Node& root) {
 
 }  // namespace
 
+namespace {
+
+// What the simulator calls groups of joints.
+constexpr auto joint_groups = std::to_array<std::pair<std::string_view, player::Interface>>({
+    {"array", player::Interface::actarray},
+    {"gripper", player::Interface::gripper},
+    {"pan_tilt", player::Interface::ptz},
+});
+
+std::vector<JointGroup> groups_of(const nlohmann::json& iface) {
+  std::vector<JointGroup> groups;
+  for (const auto& one : iface.value("groups", nlohmann::json::array())) {
+    const auto kind = std::ranges::find(joint_groups, one.value("kind", ""), &std::pair<std::string_view, player::Interface>::first);
+    if (kind != joint_groups.end() && can_show(kind->second, shm::IfaceType::joints))
+      groups.push_back({kind->second, one.value("joints", std::vector<std::string>()), one.value("field_of_view", 0.0)});
+  }
+  return groups;
+}
+
+// What the file names, else what the simulator has found.
+JointGroup group_of(const ConfiguredDevice& device, const ListedIface& iface) {
+  const auto found = std::ranges::find(iface.groups, device.address.interface, &JointGroup::interface);
+  JointGroup group = found == iface.groups.end() ? JointGroup{.interface = device.address.interface} : *found;
+  if (!device.joints.empty() && device.joints != group.joints) group = {device.address.interface, device.joints, 0};
+  return group;
+}
+
+}  // namespace
+
 base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
   const auto list = nlohmann::json::parse(json, nullptr, false);
   if (!list.is_object() || !list.contains("ifaces")) return base::Error{"the simulator's list of ifaces can't be read"};
   std::vector<ListedIface> ifaces;
   for (const auto& one : list["ifaces"]) {
     const auto type = shm::parse_type(one.value("type", ""));
-    if (type) ifaces.push_back({*type, one.value("name", ""), one.value("model", "")});
+    if (type) ifaces.push_back({*type, one.value("name", ""), one.value("model", ""), groups_of(one)});
   }
   return ifaces;
 }
@@ -292,7 +339,7 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
         return one.name == device.iface && (device.type ? one.type == *device.type : can_show(device.address.interface, one.type));
       });
       if (found != ifaces.end()) {
-        plan.devices.push_back({device.address, found->type, found->name, device.magnetometer});
+        plan.devices.push_back({device.address, found->type, found->name, device.magnetometer, group_of(device, *found)});
         if (!device.magnetometer.empty() && !is_magnetometer(device.magnetometer, ifaces))
           missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no magnetometer " +
                             base::in_quotes(device.magnetometer));

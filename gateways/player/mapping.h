@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "joint_group.h"
 #include "protocol/message.h"
 #include "shm/iface_types.h"
 
@@ -18,6 +19,7 @@ struct DevicePlan {
   shm::IfaceType type = shm::IfaceType::laser;
   std::string iface;
   std::string magnetometer;  // of an imu: the iface whose field it shows as well; empty: none
+  JointGroup group{};        // of a joints iface
 };
 
 inline constexpr std::string_view no_robot = "no robot";
@@ -33,6 +35,7 @@ struct ListedIface {
   shm::IfaceType type;
   std::string name;
   std::string model;
+  std::vector<JointGroup> groups{};  // of a joints iface: what its joints are, without joints that nothing drives
 };
 // From the reply to a ListRequest. Ifaces of types that are not known are left out.
 base::Result<std::vector<ListedIface>> parse_list(std::string_view json);
@@ -42,7 +45,8 @@ struct ConfiguredDevice {
   player::Address address;
   std::optional<shm::IfaceType> type;  // nothing: the first that the interface can show
   std::string iface;
-  std::string magnetometer;  // as in DevicePlan
+  std::string magnetometer;         // as in DevicePlan
+  std::vector<std::string> joints;  // empty: those that the simulator lists for the interface, else all
 };
 struct ConfiguredPort {
   std::uint16_t port = 0;

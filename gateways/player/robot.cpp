@@ -14,6 +14,7 @@ void Robot::arrange(const PortPlan& plan, const FindSource& find_source) {
     const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) { return one && one->address() == wanted.address; });
     auto device = known != before.end() ? std::move(*known) : make_device(wanted.address, port_, services_);
     if (!device) continue;
+    device->choose(wanted.group);
     if (auto source = find_source(wanted.type, wanted.iface)) {
       auto magnetometer = wanted.magnetometer.empty() ? nullptr : find_source(shm::IfaceType::magnetometer, wanted.magnetometer);
       device->attach(std::move(source), std::move(magnetometer));

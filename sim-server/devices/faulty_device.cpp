@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/drives/position2d.h"
+#include "devices/joints/joints_device.h"
 #include "shm/iface_types.h"
 
 namespace sim {
@@ -25,19 +26,32 @@ FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, std::uint64_t seed)
     : device_(std::move(device)),
       seed_(seed),
       drive_(dynamic_cast<Position2d*>(device_.get())),
+      joints_(dynamic_cast<JointsDevice*>(device_.get())),
       sensor_(dynamic_cast<Sensor*>(device_.get())),
       period_(period_of(iface())) {}
 
+// What stands behind the name of the iface.
+base::Result<std::optional<std::size_t>> FaultyDevice::joint_of(const FaultOrder& order) {
+  const std::string& name = iface().name();
+  if (joints_ == nullptr || order.iface.size() <= name.size() + 2) return std::optional<std::size_t>();
+  const auto joint = joints_->find(std::string_view(order.iface).substr(name.size() + 2));
+  if (joint) return std::optional(*joint);
+  return base::Error{"fault " + std::string(shm::row_of(order.kind).name) + " of " + name + ": " + joint.error().message};
+}
+
 base::Result<void> FaultyDevice::add(const FaultOrder& order) {
   const auto& row = shm::row_of(order.kind);
+  const auto joint = joint_of(order);
+  if (!joint) return joint.error();
   if (row.is_of_drive) {
-    if (drive_ == nullptr) return base::Error{"fault " + std::string(row.name) + " of " + order.iface + ": it is no position2d"};
-    entries_.push_back({order, std::nullopt});
+    if (drive_ == nullptr && joints_ == nullptr)
+      return base::Error{"fault " + std::string(row.name) + " of " + order.iface + ": it is no position2d and has no joints"};
+    entries_.push_back({order, std::nullopt, *joint});
     return {};
   }
-  auto fault = SensorFault::make(order, iface(), seed_);
+  auto fault = SensorFault::make(order, iface(), seed_, *joint);
   if (!fault) return fault.error();
-  entries_.push_back({order, std::move(*fault)});
+  entries_.push_back({order, std::move(*fault), *joint});
   return {};
 }
 
@@ -47,7 +61,8 @@ base::Result<void> FaultyDevice::replace(const FaultOrder& order, std::chrono::n
   const auto first_new = entries_.begin() + static_cast<std::ptrdiff_t>(older);
   entries_.erase(std::remove_if(entries_.begin(), first_new,
                                 [&](const Entry& entry) {
-                                  return entry.order.until <= now || (entry.order.kind == order.kind && entry.order.is_at(now));
+                                  return entry.order.until <= now ||
+                                         (entry.order.kind == order.kind && entry.order.iface == order.iface && entry.order.is_at(now));
                                 }),
                  first_new);
   return {};
@@ -63,17 +78,22 @@ std::vector<FaultOrder> FaultyDevice::orders() const {
   return orders;
 }
 
-void FaultyDevice::before_step(const Moment& moment) {
-  if (drive_ != nullptr) {
+void FaultyDevice::weaken(const Moment& moment) {
+  for (std::size_t i = 0; i < (joints_ != nullptr ? joints_->size() : 1); ++i) {
     double strength = 1;
     bool is_halted = false;
-    for (const auto& [order, fault] : entries_) {
-      if (fault || !order.is_at(moment.time)) continue;
+    for (const auto& [order, fault, joint] : entries_) {
+      if (fault || !order.is_at(moment.time) || joint.value_or(i) != i) continue;
       if (order.kind == shm::FaultKind::weak) strength *= order.amount;
       is_halted = is_halted || order.kind == shm::FaultKind::halted;
     }
-    drive_->set_fault(strength, is_halted);
+    if (drive_ != nullptr) drive_->set_fault(strength, is_halted);
+    if (joints_ != nullptr) joints_->set_fault(i, strength, is_halted);
   }
+}
+
+void FaultyDevice::before_step(const Moment& moment) {
+  if (drive_ != nullptr || joints_ != nullptr) weaken(moment);
   device_->before_step(moment);
 }
 
@@ -81,13 +101,13 @@ void FaultyDevice::before_step(const Moment& moment) {
 bool FaultyDevice::wants_sample(const Moment& moment) {
   if (moment.time < silent_until_ || !device_->wants_sample(moment)) return false;
   bool is_left_out = false;
-  for (auto& [order, fault] : entries_) is_left_out = (fault && order.is_at(moment.time) && fault->leaves_out()) || is_left_out;
+  for (auto& [order, fault, joint] : entries_) is_left_out = (fault && order.is_at(moment.time) && fault->leaves_out()) || is_left_out;
   if (is_left_out) silent_until_ = moment.time + period_;
   return !is_left_out;
 }
 
 void FaultyDevice::publish(const Moment& moment) {
-  for (auto& [order, fault] : entries_) {
+  for (auto& [order, fault, joint] : entries_) {
     if (fault && order.is_at(moment.time)) fault->apply(iface());
   }
   device_->publish(moment);
@@ -99,7 +119,7 @@ void FaultyDevice::show(const Moment& moment) {
   const auto is_off = [&](const Entry& entry) { return entry.order.kind == shm::FaultKind::off && entry.order.is_at(moment.time); };
   if (std::ranges::any_of(entries_, is_off)) return;
   sensor_->show_changed(moment, [&](shm::IfaceWriter& writer) {
-    for (const auto& [order, fault] : entries_) {
+    for (const auto& [order, fault, joint] : entries_) {
       if (fault && order.is_at(moment.time)) SensorFault(*fault).apply(writer);
     }
   });

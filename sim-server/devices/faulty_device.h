@@ -12,6 +12,7 @@
 
 namespace sim {
 
+class JointsDevice;
 class Position2d;
 class Sensor;
 
@@ -21,7 +22,7 @@ class FaultyDevice final : public Device {
 
   // Fails when the device cannot have such a fault.
   base::Result<void> add(const FaultOrder& order);
-  // The same in place of one of its kind that is on now. Those that have ended are forgotten.
+  // The same in place of one of its kind, of the same iface or joint, that is on now. Those that have ended are forgotten.
   base::Result<void> replace(const FaultOrder& order, std::chrono::nanoseconds now);
   // Ends those that `which` is true of; how many there were.
   std::size_t end(const std::function<bool(const FaultOrder&)>& which);
@@ -49,12 +50,16 @@ class FaultyDevice final : public Device {
   struct Entry {
     FaultOrder order;
     std::optional<SensorFault> fault;  // nothing: of a drive
+    std::optional<std::size_t> joint;  // of a joints iface, this one alone
   };
+  base::Result<std::optional<std::size_t>> joint_of(const FaultOrder& order);
+  void weaken(const Moment& moment);
   std::unique_ptr<Device> device_;
   std::uint64_t seed_;
   std::vector<Entry> entries_;
-  Position2d* drive_;  // the device, when it is one
-  Sensor* sensor_;     // the same
+  Position2d* drive_;     // the device, when it is one
+  JointsDevice* joints_;  // the same
+  Sensor* sensor_;        // the same
   std::chrono::nanoseconds period_{0}, silent_until_{0};
 };
 

@@ -39,7 +39,7 @@ double JointServo::clamped(double position) const {
 
 double JointServo::most_effort() const {
   const bool is_limited = mode_ == JointMode::velocity && order_.effort > 0;
-  return is_limited ? std::min(setup_.effort, order_.effort) : setup_.effort;
+  return is_limited ? std::min(motor_effort(), order_.effort) : motor_effort();
 }
 
 bool JointServo::take(const JointOrder& order, const JointState& now) {
@@ -155,7 +155,7 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
       row.keeps_awake = reference_velocity_ != 0 || std::abs(reference_ - now.position) > hardly_any;
       break;
     case JointMode::effort:
-      row.push = std::clamp(order_.value + order_.effort + gravity, -setup_.effort, setup_.effort);
+      row.push = std::clamp(order_.value + order_.effort + gravity, -motor_effort(), motor_effort());
       row.keeps_awake = row.push != 0;
       break;
     case JointMode::brake:
@@ -178,7 +178,7 @@ void JointServo::integrate(const JointState& now, double dt) {
   const double error = reference_ - now.position;
   const bool is_saturated = std::abs(effort_) >= 0.99 * most_effort() && error * effort_ > 0;
   if (setup_.gains.i == 0 || reference_velocity_ != 0 || std::abs(error) <= hardly_any || is_saturated) return;
-  const double low = std::max(setup_.gains.i_low, -setup_.effort), high = std::min(setup_.gains.i_high, setup_.effort);
+  const double low = std::max(setup_.gains.i_low, -motor_effort()), high = std::min(setup_.gains.i_high, motor_effort());
   integral_ = std::clamp(integral_ + setup_.gains.i * error * dt, std::min(low, high), std::max(low, high));
 }
 
@@ -223,6 +223,7 @@ void JointServo::reset() { *this = JointServo(setup_); }
 void JointServo::add_to(StateHash& hash) const {
   hash.add_all(static_cast<std::uint64_t>(mode_), order_.value, order_.velocity, order_.effort, reference_, reference_velocity_,
                since_order_, integral_, stalled_for_, still_for_, effort_, std::uint64_t{is_latched_}, std::uint64_t{is_far_});
+  if (strength_ != 1) hash.add(strength_);
 }
 
 }  // namespace sim

@@ -50,6 +50,9 @@ class JointServo {
   bool is_active() const { return mode_ != JointMode::none; }
   bool wants_gravity() const;
 
+  // The part of its highest effort that the motor has left, 0 to 1. Brakes keep theirs. 1 after a reset.
+  void set_strength(double strength) { strength_ = strength; }
+
   // The motor of the next step; `gravity`: the effort that holds the joint against gravity. A row that is no number disables the joint.
   JointRow row(const JointState& now, double gravity, double dt);
   // After the step.
@@ -68,6 +71,7 @@ class JointServo {
   JointRow brake(const JointState& now, double dt);
   void integrate(const JointState& now, double dt);
   double clamped(double position) const;
+  double motor_effort() const { return strength_ * setup_.effort; }
   double most_effort() const;  // now
 
   Setup setup_;
@@ -80,6 +84,7 @@ class JointServo {
   bool is_far_ = false;                            // the target has jumped: on the way with a trapezoid of speed
   double stalled_for_ = 0, still_for_ = 0;         // [s]
   double effort_ = 0;
+  double strength_ = 1;
   JointStatus status_ = JointStatus::idle;
   JointRow row_;
 };

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "devices/joints/joint_groups.h"
+#include "devices/joints/joint_list.h"
 #include "shm/iface_json.h"
 #include "world/iface_names.h"
 
@@ -40,6 +42,17 @@ std::string full_name(const Physics& physics, LinkId link, std::uint32_t collisi
   return model.name + "::" + model.links[link.link].name + "::" + model.links[link.link].collisions[collision].name;
 }
 
+// Of a joints iface.
+Json groups_of(const ModelDef& model) {
+  Json groups = Json::array();
+  for (const JointGroup& group : joint_groups(model, commandable_joints(model))) {
+    groups.push_back({{"kind", group.kind}, {"joints", group.joints}});
+    if (!group.name.empty()) groups.back()["name"] = group.name;
+    if (group.field_of_view > 0) groups.back()["field_of_view"] = group.field_of_view;
+  }
+  return groups;
+}
+
 Json model_tree(const Physics& physics, ModelId id) {
   const ModelDef& model = physics.def(id);
   Json links = Json::array(), joints = Json::array(), plugins = Json::array();
@@ -71,12 +84,15 @@ Json model_tree(const Physics& physics, ModelId id) {
                       {"velocity", state.velocity}});
   }
   for (const auto& plugin : model.plugins) plugins.push_back({{"name", plugin.name}, {"filename", plugin.filename}});
+  Json grippers = Json::array();
+  for (const auto& one : model.grippers) grippers.push_back({{"name", one.name}, {"palm", one.palm}, {"fingers", one.fingers}});
   return {{"name", model.name},
           {"static", physics.is_static(id)},
           {"pose", numbers(physics.model_pose(id))},
           {"links", links},
           {"joints", joints},
-          {"plugins", plugins}};
+          {"plugins", plugins},
+          {"grippers", grippers}};
 }
 
 }  // namespace
@@ -101,6 +117,7 @@ std::string list_text(Simulation& simulation) {
                       {"name", iface.name()},
                       {"model", physics.def(device->model()).name},
                       {"subscribed", iface.is_subscribed()}});
+    if (iface.type() == shm::IfaceType::joints) ifaces.back()["groups"] = groups_of(physics.def(device->model()));
   }
   return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}});
 }
@@ -213,7 +230,7 @@ std::string faults_text(const Simulation& simulation, const std::string& iface) 
   const auto seconds = [](std::chrono::nanoseconds time) { return static_cast<double>(time.count()) / 1e9; };
   Json faults = Json::array();
   for (const FaultOrder& fault : simulation.faults()) {
-    if (!iface.empty() && fault.iface != iface) continue;
+    if (!iface.empty() && fault.iface != iface && !fault.iface.starts_with(iface + "::")) continue;
     const auto& row = shm::row_of(fault.kind);
     const bool has_end = fault.until != std::chrono::nanoseconds::max();
     faults.push_back({{"iface", fault.iface},

@@ -24,6 +24,7 @@
 #include "server/server_loop.h"
 #include "shm/segment.h"
 #include "shm/specs.h"
+#include "world/joint_gains.h"
 #include "world/world_loader.h"
 
 namespace {
@@ -37,7 +38,7 @@ struct Options {
   double participant_timeout = 0, duration = -1;
   std::optional<double> hash_period{};  // [s]
   std::uint64_t seed = 1;
-  std::vector<std::string> resource_paths, faults, spawned;
+  std::vector<std::string> resource_paths, faults, gains, spawned;
   std::string record, hash_log, shm_mode = "0600", shm_group;
   std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
@@ -130,6 +131,21 @@ class Signals {
   std::thread thread_;
 };
 
+// Those of the files that the user has named, in the order of the names.
+base::Result<void> add_named_gains(const std::vector<std::string>& files, sim::WorldDef& world) {
+  for (const auto& file : files) {
+    std::vector<std::string> left_out;
+    auto gains = sim::read_gains(file, left_out);
+    if (!gains) return gains.error();
+    for (const auto& line : left_out) print_line(line);
+    for (auto& one : *gains) one.is_named = true;
+    std::size_t count = 0;
+    for (auto& model : world.models) count += sim::add_gains(*gains, model);
+    if (count == 0) return base::Error{"gains " + base::in_quotes(file) + ": they are of no joint of the world"};
+  }
+  return {};
+}
+
 int run(const Options& options, Signals& signals) {
   using namespace sim;
   const ModelPath model_path = ModelPath::from_environment(options.resource_paths, installed_worlds());
@@ -141,6 +157,7 @@ int run(const Options& options, Signals& signals) {
     const int wanted = finding.severity == Finding::Severity::dropped ? 0 : finding.severity == Finding::Severity::warning ? 1 : 2;
     if (options.check || options.verbosity >= wanted) print_line(finding.text());
   }
+  if (const auto added = add_named_gains(options.gains, loaded->world); !added) return fail(added.error().message);
   auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
 
   auto access = shm::parse_access(options.shm_mode, options.shm_group);
@@ -253,6 +270,11 @@ int serve(int argc, char** argv) {
   });
   app.add_option("--resource-path", options.resource_paths,
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--gains", options.gains,
+                 "take the gains of joint controllers from a YAML file of ros_control or ros2_control, before those of the world; "
+                 "repeatable")
       ->expected(1)
       ->take_all();
   app.add_option("--fault", options.faults,

@@ -222,6 +222,7 @@ struct ServerLoop::Handler {
   shm::Reply operator()(const shm::PosesRequest&) { return poses_reply(simulation); }
   shm::Reply operator()(const shm::PoseLogRequest& request) {
     if (!loop.memory_log_) loop.memory_log_.emplace();
+    if (!request.joints.empty()) loop.memory_log_->watch_joints(base::split_list(request.joints, '\n'));
     auto piece = loop.memory_log_->bytes().take(request.from);
     if (!piece) return failed(piece.error());
     shm::Reply reply;
@@ -258,7 +259,7 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::FaultRequest& request) {
-    if (simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
+    if (!simulation.can_have_faults(request.iface)) return no_iface(simulation, request.iface);
     const shm::FaultRow& row = *shm::find_fault(request.kind);
     FaultOrder fault{request.iface, row.kind, request.amount.value_or(row.amount.value_or(0)), simulation.time()};
     if (request.duration > 0) fault.until = fault.from + std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e9) * 1e9));
@@ -266,14 +267,14 @@ struct ServerLoop::Handler {
     return added ? shm::Reply{} : failed(added.error());
   }
   shm::Reply operator()(const shm::EndFaultsRequest& request) {
-    if (!request.iface.empty() && simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
+    if (!request.iface.empty() && !simulation.can_have_faults(request.iface)) return no_iface(simulation, request.iface);
     const shm::FaultRow* row = shm::find_fault(request.kind);
     shm::Reply reply;
     reply.count = static_cast<std::int64_t>(simulation.end_faults(request.iface, row ? std::optional(row->kind) : std::nullopt));
     return reply;
   }
   shm::Reply operator()(const shm::FaultsRequest& request) {
-    if (!request.iface.empty() && simulation.device(request.iface) == nullptr) return no_iface(simulation, request.iface);
+    if (!request.iface.empty() && !simulation.can_have_faults(request.iface)) return no_iface(simulation, request.iface);
     shm::Reply reply;
     reply.text = faults_text(simulation, request.iface);
     return reply;

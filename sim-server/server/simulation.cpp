@@ -12,9 +12,16 @@ namespace {
 
 constexpr std::size_t followers_of_share = 16;
 
+// The iface itself, or a joint of it: arm::joints::elbow is of arm::joints.
+bool is_of(std::string_view name, std::string_view iface_name) {
+  return name == iface_name || (name.starts_with(iface_name) && name.substr(iface_name.size()).starts_with("::"));
+}
+
 // The truth stands beside what robots have, under the same names.
 bool is_named(Device& device, std::string_view iface_name) {
-  return device.iface().name() == iface_name && device.iface().type() != shm::IfaceType::truth;
+  const auto type = device.iface().type();
+  return is_of(iface_name, device.iface().name()) && type != shm::IfaceType::truth &&
+         (device.iface().name() == iface_name || type == shm::IfaceType::joints);
 }
 
 base::Error no_iface(const FaultOrder& fault) {
@@ -60,7 +67,7 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (auto made = s->make_devices_of(id, dropped); !made) return made.error();
   }
   for (const FaultOrder& fault : options.faults) {
-    if (!s->device(fault.iface)) return no_iface(fault);
+    if (!s->can_have_faults(fault.iface)) return no_iface(fault);
   }
   s->sort_devices();
   return s;
@@ -266,6 +273,10 @@ base::Result<void> Simulation::restore_faults() {
   return {};
 }
 
+bool Simulation::can_have_faults(std::string_view name) const {
+  return std::ranges::any_of(devices_, [&](const auto& device) { return is_named(*device, name); });
+}
+
 base::Result<void> Simulation::add_fault(const FaultOrder& fault) {
   const auto place = std::ranges::find_if(devices_, [&](const auto& device) { return is_named(*device, fault.iface); });
   if (place == devices_.end()) return no_iface(fault);
@@ -279,7 +290,10 @@ std::size_t Simulation::end_faults(std::string_view iface_name, std::optional<sh
   for (const auto& device : devices_) {
     auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
     if (faulty == nullptr || !(iface_name.empty() || is_named(*device, iface_name))) continue;
-    count += faulty->end([&](const FaultOrder& order) { return (!kind || order.kind == *kind) && order.until > time_; });
+    count += faulty->end([&](const FaultOrder& order) {
+      const bool is_meant = iface_name.empty() || is_of(order.iface, iface_name);
+      return is_meant && (!kind || order.kind == *kind) && order.until > time_;
+    });
   }
   return count;
 }

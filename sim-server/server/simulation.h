@@ -69,10 +69,12 @@ class Simulation {
   base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
                                 std::chrono::nanoseconds duration);
 
-  // From now on until it ends, by itself or by end_faults(). One of the same kind that is on gives way. The error: there is no such iface,
-  // or what it belongs to cannot have the fault.
+  // Whether a fault can be of this: an iface, or a joint of one (arm::joints::elbow) whatever it is called.
+  bool can_have_faults(std::string_view name) const;
+  // From now on until it ends, by itself or by end_faults(). One of the same kind and name that is on gives way. The error: there is no
+  // such iface, or what it belongs to cannot have the fault.
   base::Result<void> add_fault(const FaultOrder& fault);
-  // Those of an iface, and of a kind; without, all. Also what is still to come. How many there were.
+  // Those of an iface and its joints, or of a joint, and of a kind; without, all. Also what is still to come. How many there were.
   std::size_t end_faults(std::string_view iface_name, std::optional<shm::FaultKind> kind);
   // Those that have not ended, by device.
   std::vector<FaultOrder> faults() const;

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "world/checks.h"
+#include "world/gripper_builder.h"
 #include "world/iface_names.h"
 #include "world/joint_builder.h"
 #include "world/plugin_kind.h"
@@ -228,8 +229,7 @@ class ModelBuilder {
       model_.plugins.push_back(build_plugin(plugin, scope, context_));
       if (is_imu_without_sensor(model_.plugins.back())) add_imu(plugin, model_.plugins.back());
     }
-    for (pugi::xml_node gripper : node.children("gripper"))
-      context_.complaints.warn(gripper, "grippers are not simulated; " + describe_in_context(gripper) + " is ignored");
+    for (pugi::xml_node gripper : node.children("gripper")) add_gripper(gripper, scope, model_, context_.complaints);
   }
 
   // Wheels without <inertial>: those of a small robot would keep it from turning with the specification's 1 kg m^2.

@@ -238,6 +238,26 @@ struct JointDef {
 };
 std::string_view to_text(JointDef::Kind kind);
 
+// A <gripper>: which links hold something, and how long they must touch it before it is fixed to the palm, where that is asked for. All
+// links exist.
+struct GripperDef {
+  std::string name;                  // in nested models with their scope: "arm::hand"
+  std::string palm;                  // that what is held is fixed to; the first finger where the file names none
+  std::vector<std::string> fingers;  // never empty; may have the palm among them
+  int attach_checks = 20;            // in a row with contacts
+  int detach_checks = 40;            // in a row without
+  int contacts = 2;                  // fewest of a check that counts
+};
+
+// Gains of a controller from a file beside the model.
+struct GainsDef {
+  std::string joint;
+  double p = 0, i = 0, d = 0;                   // effort for each unit of position, its integral, velocity
+  double i_low = -infinite, i_high = infinite;  // of the integral's effort
+  bool is_named = false;                        // the user has named the file: before all others
+  std::string source;                           // "file:line"
+};
+
 // A top-level model with all its nested ones folded in: their links, joints, sensors and plugins carry a scope.
 struct ModelDef {
   std::string name;                                        // unique in the world
@@ -250,6 +270,8 @@ struct ModelDef {
   std::vector<LinkDef> links;
   std::vector<JointDef> joints;
   std::vector<PluginDef> plugins;
+  std::vector<GripperDef> grippers;
+  std::vector<GainsDef> gains;
   std::string source;  // "file:line" where the model comes from
 
   const LinkDef* link(std::string_view link_name) const;     // null when absent

@@ -12,6 +12,7 @@
 #include "world/frame_references.h"
 #include "world/frame_skeleton.h"
 #include "world/iface_names.h"
+#include "world/joint_gains.h"
 #include "world/materials.h"
 #include "world/model_builder.h"
 #include "world/model_files.h"
@@ -389,6 +390,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   BuildContext context{complaints_, materials_};
   result.world = build_world(world, whole_ ? *whole_ : ResolvedWorld{}, context);
   build_instances(result.world);
+  for (ModelDef& model : result.world.models) add_plugin_gains(model_path_, model, complaints_);
   if (is_model) lift_onto_floor(result.world.models);
   result.world.model_path = model_path_;
   tell_of_unseen_models(result.world, complaints_);
@@ -438,6 +440,7 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   resolve_models();
   WorldDef world;
   build_instances(world);
+  for (ModelDef& built : world.models) add_plugin_gains(model_path_, built, complaints_);
   result.dropped = complaints_.dropped();
   result.findings = complaints_.take();
   result.found = files_.found();

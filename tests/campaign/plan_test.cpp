@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "campaign/plan/grammar.h"
+#include "campaign/run/measures.h"
 #include "support/paths.h"
 
 namespace campaign {
@@ -55,6 +56,25 @@ TEST_F(Plans, hold_what_is_written_in_them) {
   EXPECT_EQ(plan->faults[0].text(), "{at: 2, for: 1, sensor: \"robot::laser\", is: bias, amount: 0.25}");
   ASSERT_EQ(plan->events.size(), 1U);
   EXPECT_EQ(plan->events[0].numbers, (std::vector<std::string>{"1", "0", "0"}));
+}
+
+TEST_F(Plans, measure_joints_and_grips) {
+  const auto plan =
+      read(start_ +
+           "measure:\n  - joint: {model: arm, name: elbow, take: max}\n  - joint: {model: arm, name: waist, take: last, as: end}\n"
+           "  - holds: {gripper: 'arm::hand', model: box}\n  - holds: {gripper: 'arm::hand', model: can}\n");
+  ASSERT_TRUE(plan) << plan.error().message;
+  const auto watched = watched_values(plan->measures);
+  ASSERT_EQ(watched.size(), 4U);
+  EXPECT_EQ(watched[0].joint_name(), "arm::elbow");
+  editor::Seen seen;
+  seen.record.joints["arm::elbow"] = {{0, 0.5}, {0.1, 2}, {0.2, 1}};
+  seen.grips = {{"arm::hand holds box", ""}, {"arm::hand holds can", "only left touches can"}};
+  const auto numbers = take_measures(plan->measures, seen, {}, 0);
+  EXPECT_EQ(numbers, (std::map<std::string, double>{{"arm::elbow max", 2}, {"arm::hand holds box", 1}, {"arm::hand holds can", 0}}))
+      << "a joint without a record has no number";
+  EXPECT_NE(error(start_ + "measure: [{joint: {model: arm, name: elbow, take: count}}]").find("count"), std::string::npos);
+  EXPECT_NE(error(start_ + "measure: [{holds: {gripper: hand}}]").find("model"), std::string::npos);
 }
 
 // As a hunt writes them into another plan.

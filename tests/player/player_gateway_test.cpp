@@ -351,5 +351,36 @@ TEST(List, that_cannot_be_read_is_an_error) {
   EXPECT_EQ((*list)[0].name, "a::l");
 }
 
+TEST(List, groups_of_joints_are_devices_and_joints_without_a_group_are_none) {
+  const auto list = parse_list(R"({"ifaces": [
+    {"type": "joints", "name": "arm::joints", "model": "arm", "groups": [{"kind": "array", "joints": ["a", "b"]}, {"kind": "gripper", "joints": ["f"]},
+      {"kind": "gripper", "joints": ["g"]}, {"kind": "tail", "joints": ["t"]}]},
+    {"type": "joints", "name": "eye::joints", "model": "eye", "groups": [{"kind": "pan_tilt", "joints": ["p", "t"], "field_of_view": 1.25}]},
+    {"type": "joints", "name": "door::joints", "model": "door", "groups": []}]})");
+  ASSERT_TRUE(list);
+  const auto plans = plan_by_world(*list, 7000);
+  ASSERT_EQ(plans.size(), 2U) << "a door is no robot";
+  EXPECT_EQ(shown(plans[0]), "7000 arm: actarray:0=arm::joints gripper:0=arm::joints gripper:1=arm::joints simulation:0=world");
+  EXPECT_EQ(plans[0].devices[0].group.joints, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(plans[0].devices[2].group.joints, std::vector<std::string>{"g"});
+  EXPECT_EQ(shown(plans[1]), "7001 eye: ptz:0=eye::joints simulation:0=world");
+  EXPECT_EQ(plans[1].devices[0].group.field_of_view, 1.25);
+}
+
+TEST_F(MappingFile, joints_are_those_that_are_named_or_listed_or_all) {
+  std::vector<ListedIface> ifaces{{shm::IfaceType::joints, "arm::joints", "arm"}};
+  ifaces[0].groups = {{player::Interface::ptz, {"p", "t"}, 1.5}};
+  const auto ports =
+      read("ports:\n- port: 7000\n  devices:\n    actarray:0: [arm::joints, a, b]\n    ptz:0: arm::joints\n    actarray:1: arm::joints\n");
+  ASSERT_TRUE(ports) << ports.error().message;
+  std::vector<std::string> missing;
+  const auto devices = plan_by_config(*ports, ifaces, missing)[0].devices;
+  ASSERT_EQ(devices.size(), 4U);
+  EXPECT_EQ(devices[0].group.joints, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(devices[1].group.joints, (std::vector<std::string>{"p", "t"}));
+  EXPECT_EQ(devices[1].group.field_of_view, 1.5);
+  EXPECT_TRUE(devices[2].group.joints.empty()) << "all";
+}
+
 }  // namespace
 }  // namespace gateway

@@ -41,7 +41,7 @@ const std::vector<Layer> layers = {
     {"shm", {"shm", "base"}, {"JSON"}},
     {"sim-server/reader", {"reader", "base"}},
     {"sim-server/asset-reader", {"asset-reader", "reader", "render", "world", "base"}, {"Assimp", "PNG", "JPEG", "Eigen", "spdlog"}},
-    {"sim-server/world", {"world", "reader", "base"}, {"SDFormat", "pugixml", "Eigen", "spdlog"}},
+    {"sim-server/world", {"world", "reader", "base"}, {"SDFormat", "pugixml", "YAML", "Eigen", "spdlog"}},
     {"sim-server/physics", {"physics", "world", "base"}, {"ODE", "Eigen", "spdlog"}},
     {"sim-server/rays", {"rays", "world", "base"}, {"Embree", "Eigen", "spdlog"}},
     {"sim-server/render", {"render", "world", "reader", "base"}, {"OpenGL", "PNG", "Eigen", "spdlog"}},

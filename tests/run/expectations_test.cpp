@@ -42,6 +42,8 @@ class ExpectationsTest : public testing::Test {
     seen.record.contacts = {{0.1, "robot", "ground_plane"}, {1.5, "box", "robot"}};
     for (const double number : {-1, 0, 2}) seen.values["A0:out data"].take(number);
     seen.states["A0"] = "Active";
+    seen.parts = {{"arm", {"elbow", "waist"}, {{"arm::hand", "arm", {"left", "right", "palm"}}}}, {"robot", {}, {}}};
+    seen.record.joints["arm::elbow"] = {{0, 0.5}, {0.1, 1}, {0.2, 1.5}};
     return seen;
   }();
 
@@ -81,6 +83,49 @@ TEST_F(ExpectationsTest, values_states_and_commands_are_judged_by_what_was_seen)
   EXPECT_EQ(problem("- command: 'true'"), "it ended with exit code 3: no such thing");
   seen_.commands["true"] = {std::nullopt, "it did not end within 60 s"};
   EXPECT_EQ(problem("- command: 'true'"), "it did not end within 60 s");
+}
+
+TEST_F(ExpectationsTest, joints_come_between_their_limits_in_time_or_never_leave_them) {
+  EXPECT_EQ(problem("- joint: {model: arm, name: elbow, min: 0.9, max: 1.1, within: 1}"), "");
+  EXPECT_EQ(problem("- joint: {model: arm, name: elbow, min: 1.4, within: 0.2}"), "");
+  EXPECT_EQ(problem("- joint: {model: arm, name: elbow, min: 1.4, within: 0.15}"),
+            "it came no nearer than 1 at 0.1 s, expected at least 1.4 within 0.15 s");
+  EXPECT_EQ(problem("- joint: {model: arm, name: elbow, min: 0.5, max: 1.5}"), "");
+  EXPECT_EQ(problem("- joint: {model: arm, name: elbow, max: 1.4}"), "it was at 1.5 at 0.2 s, expected at most 1.4");
+  EXPECT_EQ(problem("- joint: {model: arm, name: wrist, min: 0}"), "model \"arm\" has no joint \"wrist\"; joints: elbow, waist");
+  EXPECT_EQ(problem("- joint: {model: arm, name: waist, min: 0}"), "it has no position: model \"arm\" does not move");
+  EXPECT_EQ(problem("- joint: {model: robot, name: elbow, min: 0}"), "model \"robot\" has no joint \"elbow\"; joints: none");
+  EXPECT_NE(refusal("- joint: {model: arm, name: elbow}").find("joint needs min or max"), std::string::npos);
+  EXPECT_NE(refusal("- joint: {model: arm, min: 1}").find("name"), std::string::npos);
+  const auto failed = judge(*read_expectations(file("- joint: {model: arm, name: elbow, max: 1}")), seen_);
+  EXPECT_EQ(failure_text(failed.at(0)),
+            "joint arm::elbow: it was at 1.5 at 0.2 s, expected at most 1 (joint: {model: arm, name: elbow, max: 1})");
+}
+
+TEST_F(ExpectationsTest, a_gripper_holds_what_two_of_its_links_touch) {
+  const Gripper hand{"arm::hand", "arm", {"left", "right", "palm"}};
+  const ModelContact left{"box::l::c", "arm::left::c"}, right{"arm::right::c", "box::l::c"}, ground{"box::l::c", "ground_plane::l::c"};
+  EXPECT_EQ(grip_problem(hand, "box", {left, right}), "");
+  EXPECT_EQ(grip_problem(hand, "box", {left, left, ground}), "only left touches box");
+  EXPECT_EQ(grip_problem(hand, "box", {ground}), "no link of it touches box; it has left, right, palm");
+  EXPECT_EQ(grip_problem({"arm::sucker", "arm", {"left"}}, "box", {left}), "");
+  EXPECT_EQ(problem("- holds: {gripper: 'arm::hand', model: box}"), "it was not looked at");
+  seen_.grips["arm::hand holds box"] = "only left touches box";
+  EXPECT_EQ(problem("- holds: {gripper: 'arm::hand', model: box}"), "only left touches box");
+  seen_.grips["arm::hand holds box"] = "";
+  EXPECT_EQ(problem("- holds: {gripper: 'arm::hand', model: box}"), "");
+  EXPECT_NE(refusal("- holds: {gripper: 'arm::hand'}").find("model"), std::string::npos);
+}
+
+TEST_F(ExpectationsTest, a_gripper_is_named_with_its_model_or_without_where_there_is_one) {
+  const std::vector<ModelParts> parts = {{"a", {}, {{"a::hand", "a"}}}, {"b", {}, {{"b::hand", "b"}, {"b::foot", "b"}}}, {"c", {}, {}}};
+  for (const auto& [name, found] : std::map<std::string, std::string>{{"a::hand", "a::hand"}, {"a", "a::hand"}, {"foot", "b::foot"}}) {
+    const auto gripper = find_gripper(parts, name);
+    ASSERT_TRUE(gripper) << gripper.error().message;
+    EXPECT_EQ(gripper->name, found);
+  }
+  EXPECT_EQ(find_gripper(parts, "hand").error().message, "gripper \"hand\" may be a::hand or b::hand");
+  EXPECT_EQ(find_gripper(parts, "c").error().message, "the world has no gripper \"c\"; grippers: a::hand, b::hand, b::foot");
 }
 
 TEST_F(ExpectationsTest, what_is_no_number_is_within_no_bounds) {

@@ -41,6 +41,12 @@ class FakeSimulator final : public Simulator {
     for (const auto& [name, pose] : poses) names.push_back(name);
     return names;
   }
+  base::Result<std::vector<ModelParts>> parts() override {
+    if (broken) return *broken;
+    std::vector<ModelParts> all;
+    for (const auto& [name, pose] : poses) all.push_back({name, {}, {}});
+    return all;
+  }
   base::Result<shm::Pose> pose(const std::string& name) override {
     if (broken) return *broken;
     const auto found = poses.find(name);
@@ -88,6 +94,9 @@ class FakeSimulator final : public Simulator {
     if (broken) return *broken;
     for (const auto& [model, list] : events.poses) {
       for (const auto& pose : list) record.add_pose(model, pose);
+    }
+    for (const auto& [joint, list] : events.joints) {
+      for (const auto& one : list) record.add_joint(joint, one);
     }
     for (const auto& contact : events.contacts) record.add_contact(contact);
     events = {};

@@ -73,6 +73,24 @@ def simctl():
     assert all(joint["mode"] == "brake" for joint in joints().values())
 
 
+# Gains of a file that is named come before derived ones, and simctl says where they stand; a file of no joint of the world ends the start.
+def gains():
+    def file(name, text):
+        with open(f"{rig.work}/{name}", "w") as out:
+            out.write(text)
+        return f"{rig.work}/{name}"
+
+    named = file("named.yaml", "arm_controller:\n  type: effort_controllers/JointTrajectoryController\n  gains:\n    elbow: {p: 900, i: 10, d: 30}\n")
+    rig.server("--gains", named, world=f"{rig.source}/worlds/arm.sdf")
+    now = joints()
+    assert (now["elbow"]["gains"]["p"], now["elbow"]["gains"]["d"]) == (900, 30) and now["elbow"]["gains"]["from"].endswith("named.yaml:4"), now["elbow"]
+    assert "derived" in now["waist"]["gains"]["from"] and "named.yaml:4" in rig.simctl("joints", "arm")
+    for path, line in ((file("other.yaml", "gazebo_ros_control/pid_gains: {nose: {p: 1}}\n"), "they are of no joint of the world"), (file("bad.yaml", "a: [\n"), "is no YAML: line"),
+                       (f"{rig.work}/none.yaml", "no such file")):
+        done = subprocess.run([f"{rig.bin_dir}/sim-server", f"{rig.source}/worlds/arm.sdf", "--check", "-v", "0", "--gains", path], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 1 and line in done.stderr and done.stderr.count("sim-server: gains ") == 1, (path, done.stderr)
+
+
 def act_array():
     up()
     call("geometry")
@@ -169,7 +187,7 @@ def robot_hardware():
     await_("a servo that switched off", lambda: "joint waist: servo error" in log() and joints()["waist"]["mode"] == "brake")
 
 
-cases = {f.__name__: f for f in (simctl, act_array, dead_commander, gripper, ptz, robot_hardware)}
+cases = {f.__name__: f for f in (simctl, gains, act_array, dead_commander, gripper, ptz, robot_hardware)}
 with rig:
     cases[case]()
 print("ok")

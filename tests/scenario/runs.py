@@ -118,6 +118,42 @@ def kinds():
         assert len(err.splitlines()) == 7 and verdicts["runs for 5 s"] == "" and verdicts["no component ends in an error"] == "", (err, verdicts)
 
 
+# A joint that swings, and a box that falls onto two fingers.
+def joints_and_grips():
+    plate = "<collision name='c'><geometry><box><size>0.2 0.2 0.1</size></box></geometry></collision>"
+    hand = ("<model name='hand'><pose>3 0 0 0 0 0</pose>" + "".join(f"<link name='{name}'><pose>{x} 0 0.5 0 0 0</pose>{plate}</link><joint name='{name}_foot' type='fixed'><parent>world</parent><child>{name}</child></joint>"
+            for name, x in (("left", -0.15), ("right", 0.15), ("far", 5)))
+            + "<gripper name='grip'><gripper_link>left</gripper_link><gripper_link>hand::right</gripper_link><palm_link>left</palm_link></gripper>"
+            "<gripper name='other'><gripper_link>left</gripper_link><gripper_link>far</gripper_link></gripper></model>")
+    box = "<model name='box'><pose>3 0 0.8 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>0.4 0.1 0.1</size></box></geometry></collision></link></model>"
+    swing = ("<model name='swing'><link name='post'/><link name='rod'><pose>0 0 2 0 0 0</pose><inertial><pose>0 0 -0.5 0 0 0</pose><mass>1</mass></inertial></link>"
+             "<joint name='foot' type='fixed'><parent>world</parent><child>post</child></joint>"
+             "<joint name='hip' type='revolute'><parent>post</parent><child>rod</child><axis><xyz>0 1 0</xyz><initial_position>1</initial_position></axis></joint></model>")
+    with Place() as place:
+        world = place.write("world.sdf", pathlib.Path(empty).read_text().replace("</world>", hand + box + swing + "</world>"))
+        system = place.relays(Relay0={"source": 1})
+        met = place.write("met.yaml", expectations("joint: {model: swing, name: hip, min: -0.2, max: 0.2, within: 2}", "joint: {model: swing, name: hip, min: -1.1, max: 1.1}",
+                                                   "holds: {gripper: hand::grip, model: box}", "holds: {gripper: grip, model: box}"))
+        code, out, err = place.run(system, world, "--duration", "2", "--expect", met)
+        assert code == 0 and out.startswith("passed"), (code, out, err)
+        unmet = place.write("unmet.yaml", expectations("joint: {model: swing, name: hip, min: 2, within: 1}", "joint: {model: swing, name: hip, min: 0.5}", "holds: {gripper: other, model: box}",
+                                                       "holds: {gripper: grip, model: swing}"))
+        code, out, err = place.run(system, world, "--duration", "2", "--expect", unmet)
+        verdicts = place.verdicts()
+        assert code == 1 and len([line for line in err.splitlines() if line.startswith("rtse: ")]) == 4, (code, out, err)
+        near = of(verdicts, "joint: {model: swing, name: hip, min: 2")
+        assert "it came no nearer than " in near and " s, expected at least 2 within 1 s" in near, verdicts
+        assert ", expected at least 0.5" in of(verdicts, "joint: {model: swing, name: hip, min: 0.5"), verdicts
+        assert "only left touches box" in of(verdicts, "holds: {gripper: other"), verdicts
+        assert "no link of it touches swing; it has left, right" in of(verdicts, "holds: {gripper: grip, model: swing"), verdicts
+        for line, why in (("joint: {model: swing, name: hp, min: 0}", 'model "swing" has no joint "hp"; joints: hip'), ("joint: {model: swig, name: hip, min: 0}", 'no model "swig"; it has'),
+                          ("holds: {gripper: hand, model: box}", 'gripper "hand" may be hand::grip or hand::other'), ("holds: {gripper: claw, model: box}", 'no gripper "claw"; grippers: hand::grip, hand::other'),
+                          ("holds: {gripper: grip, model: bx}", 'no model "bx"; it has'), ("holds: {gripper: grip, model: hand}", "gripper hand::grip is of this model itself"),
+                          ("joint: {model: swing, name: hip, min: .nan}", "finite")):
+            code, out, err = place.run(system, world, "--duration", "1000000", "--expect", place.write("e.yaml", expectations(line)))
+            assert code == 2 and out == "" and len(err.splitlines()) == 1 and why in err, (line, code, out, err)
+
+
 # A name that does not exist is found before the run: as a wrong command line, with what there is, and no result.
 def unknown_names():
     with Place() as place:

@@ -57,6 +57,16 @@ def faults():
     assert state() == before
     stop(process)
 
+    # Of joints: all of an iface, or one.
+    process = started("-u", world=f"{source}/worlds/arm.sdf")
+    ok("fault", "arm::joints", "weak")
+    ok("fault", "arm::joints::elbow", "bias", "0.2")
+    assert sorted((one["iface"], one["kind"]) for one in read("fault", "arm::joints")["faults"]) == [("arm::joints", "weak"), ("arm::joints::elbow", "bias")]
+    assert [one["kind"] for one in read("fault", "arm::joints::elbow")["faults"]] == ["bias"]
+    refused("fault", "arm::joints::elbw", "weak", says='there is no joint "elbw", only waist, shoulder, elbow')
+    assert read("fault", "arm::joints::elbow", "--end")["ended"] == 1 and read("fault", "arm::joints", "--end")["ended"] == 1
+    stop(process)
+
     process = started("-u", "--fault", f"bias:0:1:-1:{laser}", "--fault", f"off:5:0::{drive}")
     kinds = [(one["kind"], one["on"], one["until"]) for one in read("fault")["faults"]]
     assert sorted(kinds) == [("bias", True, 1.0), ("off", False, None)], kinds

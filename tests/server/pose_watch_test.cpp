@@ -63,5 +63,34 @@ TEST(PoseWatch, a_client_reads_what_the_file_holds) {
   EXPECT_EQ(written.size(), 12U) << "eleven moments and a contact";
 }
 
+TEST(PoseWatch, a_client_reads_the_joints_that_it_has_named_and_no_others) {
+  auto loaded = load_world_text(R"(<sdf version='1.9'><world name='w'><model name='arm'><link name='base'/>
+    <link name='upper'><pose>0 0 1 0 0 0</pose></link><link name='lower'><pose>0 0 1 0 0 0</pose></link>
+    <joint name='foot' type='fixed'><parent>world</parent><child>base</child></joint>
+    <joint name='shoulder' type='revolute'><parent>base</parent><child>upper</child><axis><xyz>0 0 1</xyz><initial_position>0.5</initial_position></axis></joint>
+    <joint name='elbow' type='revolute'><parent>upper</parent><child>lower</child><axis><xyz>0 0 1</xyz></axis></joint></model></world></sdf>)",
+                                "/", "w", ModelPath{});
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  test::SimulationFixture f(std::move(loaded->world));
+  struct Joints final : shm::PoseLogSink {
+    std::vector<std::string> lines;
+    void pose(double, const std::string&, const shm::Pose&) override {}
+    void contact(double, const std::string&, const std::string&) override {}
+    void still(double) override {}
+    void joint(double time, const std::string& model, const std::string& joint, double position) override {
+      lines.push_back(fmt::format("{:.1f} {}::{} {:.3f}", time, model, joint, position));
+    }
+  } read;
+  MemoryLog log;
+  log.watch_joints({"arm::shoulder", "arm::foot", "nobody::elbow"});
+  PoseWatch watch;
+  for (int step = 0; step <= 200; ++step) {
+    watch.look(f.simulation->time(), f.simulation->physics(), {&log});
+    f.run(0.001);
+  }
+  ASSERT_TRUE(shm::PoseLogReader().read(*log.bytes().take(0), read));
+  EXPECT_EQ(read.lines, (std::vector<std::string>{"0.0 arm::shoulder 0.500", "0.1 arm::shoulder 0.500", "0.2 arm::shoulder 0.500"}));
+}
+
 }  // namespace
 }  // namespace sim

@@ -17,16 +17,22 @@ struct Lines final : PoseLogSink {
     lines.push_back(std::to_string(time) + " " + model + " touches " + other);
   }
   void still(double time) override { lines.push_back(std::to_string(time) + " still"); }
+  void joint(double time, const std::string& model, const std::string& joint, double position) override {
+    lines.push_back(std::to_string(time) + " " + model + "::" + joint + " " + std::to_string(position));
+  }
 };
 
-const std::vector<std::string> expected = {"0.100000 my robot 1.500000 1.000000", "0.105000 my robot touches box", "0.200000 still",
-                                           "0.300000 other 2.500000 1.000000"};
+const std::vector<std::string> expected = {
+    "0.100000 my robot 1.500000 1.000000", "0.105000 my robot touches box", "0.200000 still",
+    "0.300000 other 2.500000 1.000000",    "0.300000 other::hip -0.250000", "0.400000 other::knee 0.125000"};
 
 void write(PoseLogWriter& writer) {
   writer.pose(0.1, 7, "my robot", {1.5, 0, 0, 1, 0, 0, 0});
   writer.contact(0.105, 7, "my robot", 8, "box");
   writer.still(0.2);
   writer.pose(0.3, 7, "other", {2.5, 0, 0, 1, 0, 0, 0});  // the number was given to another model
+  writer.joint(0.3, 7, "other", 3, "hip", -0.25);
+  writer.joint(0.4, 7, "other", 3, "knee", 0.125);  // and so was that of its joint
 }
 
 TEST(PoseLog, is_read_as_it_was_written_however_it_is_cut) {

@@ -58,6 +58,7 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   there_and_back(ModelsRequest{});
   there_and_back(ShowRequest{});
   EXPECT_EQ(there_and_back(PoseLogRequest{72}).from, 72);
+  EXPECT_EQ(there_and_back(PoseLogRequest{0, "arm::elbow\narm::waist"}).joints, "arm::elbow\narm::waist");
   const auto fault = there_and_back(FaultRequest{"robot::laser", "bias", -1.5, 2});
   EXPECT_EQ(fault.iface, "robot::laser");
   EXPECT_EQ(fault.kind, "bias");

@@ -52,6 +52,18 @@ Result<void> check_models(const std::vector<Expectation>& expectations, const st
   return {};
 }
 
+Result<void> check_parts(const std::vector<Expectation>& expectations, const std::vector<ModelParts>& parts) {
+  for (const auto& expectation : expectations) {
+    const auto joint = expectation.kind == Kind::joint ? find_joint(parts, expectation.model, expectation.joint) : Result<void>();
+    if (!joint) return about(expectation, joint.error().message);
+    if (expectation.kind != Kind::holds) continue;
+    const auto gripper = find_gripper(parts, expectation.gripper);
+    if (!gripper) return about(expectation, gripper.error().message);
+    if (gripper->model == expectation.model) return about(expectation, "gripper " + gripper->name + " is of this model itself");
+  }
+  return {};
+}
+
 Result<void> check_value(const Session& session, const Expectation& expectation) {
   const auto port = session.port(expectation.port);
   if (!port) return about(expectation, port.error().message);

@@ -16,6 +16,8 @@ namespace editor {
 base::Result<void> check_components(const std::vector<Expectation>& expectations, const SavedSystem& system);
 // `models`: all of the world, before the first step.
 base::Result<void> check_models(const std::vector<Expectation>& expectations, const std::vector<std::string>& models);
+// Joints and grippers, likewise.
+base::Result<void> check_parts(const std::vector<Expectation>& expectations, const std::vector<ModelParts>& parts);
 // Of an expectation of a value: that the port exists, sends a known data type, and that this has the member as a number. Asks the
 // component. One with an empty member is about all numbers.
 base::Result<void> check_value(const Session& session, const Expectation& expectation);

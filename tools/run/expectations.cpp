@@ -29,6 +29,9 @@ constexpr std::array no_contact_keys = {Key{"model", Form::text, {}, true}, Key{
 constexpr std::array value_keys = {Key{"port", Form::text, {}, true}, Key{"member", Form::text, {}, true}, Key{"min", Form::number},
                                    Key{"max", Form::number}};
 constexpr std::array state_keys = {Key{"component", Form::text, {}, true}, Key{"is", Form::text, {}, true}};
+constexpr std::array joint_keys = {Key{"model", Form::text, {}, true}, Key{"name", Form::text, {}, true}, Key{"min", Form::number},
+                                   Key{"max", Form::number}, Key{"within", Form::positive}};
+constexpr std::array holds_keys = {Key{"gripper", Form::text, {}, true}, Key{"model", Form::text, {}, true}};
 
 // By Kind.
 constexpr std::array expectation_shapes = {Shape{"path_length", path_length_keys},
@@ -37,6 +40,8 @@ constexpr std::array expectation_shapes = {Shape{"path_length", path_length_keys
                                            Shape{"no_contact", no_contact_keys},
                                            Shape{"value", value_keys},
                                            Shape{"state", state_keys},
+                                           Shape{"joint", joint_keys},
+                                           Shape{"holds", holds_keys},
                                            Shape{"command", {}}};
 
 // What a model may touch: a model, or a list of them, which may be empty.
@@ -52,7 +57,7 @@ Expectation read_one(const YAML::Node& name, const YAML::Node& node) {
   const auto row = std::ranges::find(expectation_shapes, name.Scalar(), &Shape::name);
   if (row == expectation_shapes.end())
     fail_at(name, "unknown expectation " + base::in_quotes(name.Scalar()) +
-                      ", expected path_length, reach, stay, no_contact, value, state or command");
+                      ", expected path_length, reach, stay, no_contact, value, state, joint, holds or command");
   Expectation expectation;
   expectation.kind = static_cast<Kind>(row - expectation_shapes.begin());
   expectation.text = name.Scalar() + ": " + flow_text(node);
@@ -68,12 +73,15 @@ Expectation read_one(const YAML::Node& name, const YAML::Node& node) {
   expectation.within = number(node, "within").value_or(0);
   expectation.port = word(node, "port");
   expectation.member = word(node, "member");
-  const bool bounded = expectation.kind == Kind::path_length || expectation.kind == Kind::value;
+  expectation.joint = word(node, "name");
+  expectation.gripper = word(node, "gripper");
+  const auto is_one_of = [&](std::initializer_list<Kind> kinds) { return std::ranges::find(kinds, expectation.kind) != kinds.end(); };
+  const bool bounded = is_one_of({Kind::path_length, Kind::value, Kind::joint});
   if (bounded && !expectation.min && !expectation.max) fail_at(node, name.Scalar() + " needs min or max");
   if (bounded && expectation.min && expectation.max && *expectation.min > *expectation.max)
     fail_at(node["max"], "max must not be less than min");
   if (expectation.kind == Kind::no_contact) expectation.except = to_except(node["except"]);
-  if (expectation.kind != Kind::no_contact && expectation.kind != Kind::path_length) expectation.condition = to_expression(node);
+  if (is_one_of({Kind::reach, Kind::stay, Kind::value, Kind::state})) expectation.condition = to_expression(node);
   if (expectation.kind == Kind::state) expectation.component = expectation.condition.values().begin()->name;
   return expectation;
 }
@@ -147,6 +155,34 @@ std::string value_problem(const Expectation& e, const Seen& seen) {
              : "it ran from " + measured(value.lowest) + " to " + measured(value.highest) + ", expected " + bounds(e);
 }
 
+// Reached in time, or never left.
+std::string joint_problem(const Expectation& e, const Seen& seen) {
+  const auto known = find_joint(seen.parts, e.model, e.joint);
+  if (!known) return known.error().message;
+  const auto record = seen.record.joints.find(e.joint_name());
+  if (record == seen.record.joints.end()) return "it has no position: model " + base::in_quotes(e.model) + " does not move";
+  const auto miss = [&](double position) {
+    return std::max({0.0, e.min.value_or(position) - position, position - e.max.value_or(position)});
+  };
+  const RecordedJoint* nearest = nullptr;
+  for (const auto& joint : record->second) {
+    if (e.within > 0 && joint.time > e.within) break;
+    if (e.within > 0 && miss(joint.position) == 0) return "";
+    if (e.within <= 0 && miss(joint.position) > 0)
+      return "it was at " + measured(joint.position) + " at " + measured(joint.time) + " s, expected " + bounds(e);
+    if (nearest == nullptr || miss(joint.position) < miss(nearest->position)) nearest = &joint;
+  }
+  if (e.within <= 0) return "";
+  if (nearest == nullptr) return "it has no position before " + base::format_number(e.within) + " s";
+  return "it came no nearer than " + measured(nearest->position) + " at " + measured(nearest->time) + " s, expected " + bounds(e) +
+         " within " + base::format_number(e.within) + " s";
+}
+
+std::string holds_problem(const Expectation& e, const Seen& seen) {
+  const auto grip = seen.grips.find(grip_name(e.gripper, e.model));
+  return grip == seen.grips.end() ? "it was not looked at" : grip->second;
+}
+
 std::string command_problem(const Expectation& e, const Seen& seen) {
   const auto found = seen.commands.find(e.command);
   if (found == seen.commands.end()) return "it was not run";
@@ -165,6 +201,10 @@ std::string subject_of(const Expectation& e) {
       return "component " + e.component;
     case Kind::command:
       return "command " + base::in_quotes(e.command);
+    case Kind::joint:
+      return "joint " + e.joint_name();
+    case Kind::holds:
+      return "gripper " + e.gripper;
     default:
       return "model " + e.model;
   }
@@ -193,15 +233,15 @@ std::string problem_of(const Expectation& e, const Seen& seen) {
       if (state == seen.states.end()) return "there is no such component; components: " + names_in(seen.states);
       return e.condition.holds([&](const auto&) { return recorder::state_number(state->second); }).value() ? "" : "it is " + state->second;
     }
+    case Kind::joint:
+      return joint_problem(e, seen);
+    case Kind::holds:
+      return holds_problem(e, seen);
     case Kind::command:
       return command_problem(e, seen);
   }
   return "";
 }
-
-}  // namespace
-
-namespace {
 
 // `place` is what a message begins with, by line and column, 0: of the whole.
 Result<std::vector<Expectation>> to_expectations(const std::function<std::vector<YAML::Node>()>& load,

@@ -6,6 +6,10 @@
 //   - no_contact: {model: pioneer2dx, except: [ground_plane]}                 what it may touch: a name or a list; default: ground_plane
 //   - value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, min: -0.2, max: 0.2}
 //   - state: {component: RTCLaser0, is: Active}
+//   - joint: {model: arm, name: elbow, min: 1.4, max: 1.6, within: 5}         rad or m; reached before `within` [s]. Without it: never
+//                                                                             outside. Seen ten times a simulated second
+//   - holds: {gripper: arm::hand, model: red_box}                             at the end; MODEL, if it has one gripper, or the gripper's
+//   name
 //   - command: "./my-check.sh"                                                exit code 0 within 60 s of real time; it finds RTMSIM_RECORD,
 //                                                                             RTMSIM_SERVER_ID and RTCTREE_NAMESERVERS
 //
@@ -19,12 +23,13 @@
 
 #include "base/result.h"
 #include "run/condition_words.h"
+#include "run/model_parts.h"
 #include "run/pose_record.h"
 
 namespace editor {
 
 struct Expectation {
-  enum class Kind { path_length, reach, stay, no_contact, value, state, command };
+  enum class Kind { path_length, reach, stay, no_contact, value, state, joint, holds, command };
   Kind kind = Kind::command;
   std::string text;  // the whole expectation in one line, its name in reports
   std::string model;
@@ -34,7 +39,11 @@ struct Expectation {
   std::vector<std::string> except;
   std::string port, member;
   std::string component;
+  std::string joint;    // of the model
+  std::string gripper;  // that holds the model
   std::string command;
+  // MODEL::JOINT
+  std::string joint_name() const { return model + "::" + joint; }
 };
 
 // The error names the file, line and column, and what was expected there.
@@ -68,6 +77,8 @@ struct Seen {
   std::map<std::string, SeenValue> values;    // by "port member"
   std::map<std::string, std::string> states;  // by component
   std::map<std::string, SeenCommand> commands;
+  std::vector<ModelParts> parts;             // of the world
+  std::map<std::string, std::string> grips;  // at the end, by gripper and model as in grip_name(); what is wrong, or empty: it is held
 };
 
 struct Verdict {

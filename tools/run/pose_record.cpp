@@ -14,6 +14,10 @@ void PoseRecord::add_pose(const std::string& model, const RecordedPose& pose) {
   if (take(pose.time)) poses[model].push_back(pose);
 }
 
+void PoseRecord::add_joint(const std::string& name, const RecordedJoint& joint) {
+  if (take(joint.time)) joints[name].push_back(joint);
+}
+
 void PoseRecord::add_contact(const RecordedContact& contact) {
   if (!is_over_ && contact.time <= end_) contacts.push_back(contact);
 }

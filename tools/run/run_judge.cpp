@@ -37,7 +37,11 @@ Result<void> RunJudge::check_models(bool may_spawn) const {
   const auto models = simulator_.models();
   if (!models) return models.error();
   const auto known = editor::check_models(expectations_, *models);
-  return known ? known : in_file(known.error());
+  if (!known) return in_file(known.error());
+  const auto parts = simulator_.parts();
+  if (!parts) return parts.error();
+  const auto has_parts = editor::check_parts(expectations_, *parts);
+  return has_parts ? has_parts : in_file(has_parts.error());
 }
 
 Result<void> RunJudge::check_values(const Session& session) const {
@@ -45,7 +49,42 @@ Result<void> RunJudge::check_values(const Session& session) const {
   return known ? known : in_file(known.error());
 }
 
+std::vector<const Expectation*> RunJudge::looked_at() const {
+  std::vector<const Expectation*> all;
+  for (const auto& expectation : expectations_) all.push_back(&expectation);
+  if (!hooks_.script) return all;
+  for (const auto& watched : hooks_.script->watched()) all.push_back(&watched);
+  return all;
+}
+
+void RunJudge::want_joints() {
+  for (const auto* one : looked_at()) {
+    if (one->kind == Expectation::Kind::joint) record_.wanted_joints.insert(one->joint_name());
+  }
+}
+
+// What fingers touch at the end.
+Result<void> RunJudge::look_at_grips() {
+  const auto all = looked_at();
+  const auto needs_parts = [](const Expectation* one) {
+    return one->kind == Expectation::Kind::holds || one->kind == Expectation::Kind::joint;
+  };
+  if (std::ranges::none_of(all, needs_parts)) return {};
+  auto parts = simulator_.parts();
+  if (!parts) return parts.error();
+  seen_.parts = std::move(*parts);
+  for (const auto* one : all) {
+    if (one->kind != Expectation::Kind::holds) continue;
+    auto& problem = seen_.grips[grip_name(one->gripper, one->model)];
+    const auto gripper = find_gripper(seen_.parts, one->gripper);
+    const auto contacts = gripper ? simulator_.contacts(one->model) : gripper.error();
+    problem = contacts ? grip_problem(*gripper, one->model, *contacts) : contacts.error().message;
+  }
+  return {};
+}
+
 Result<void> RunJudge::watch() {
+  want_joints();
   record_.set_end(options_.duration_s + simulator_.step() / 2);
   return simulator_.read_events(record_);
 }
@@ -61,6 +100,7 @@ Result<void> RunJudge::look(const Session& session, const std::vector<std::strin
     if (!drawn) result.verdicts.push_back({"picture " + options_.picture, drawn.error().message});
   }
   if (auto models = simulator_.models()) seen_.models = std::move(*models);
+  if (const auto looked = look_at_grips(); !looked) return looked;
   for (const auto& component : system_.components) {
     const auto view = session.component(component.instance + ".rtc", {.contexts = true});
     seen_.states[component.instance] = view ? state_text(view->state()) : "gone";

@@ -47,6 +47,10 @@ class RunJudge {
   const Seen& seen() const { return seen_; }
 
  private:
+  // All that is to be seen: what is expected, and what a script watches.
+  std::vector<const Expectation*> looked_at() const;
+  void want_joints();
+  Result<void> look_at_grips();
   void check_chances(const std::vector<std::string>& known, RunResult& result) const;
   void check_states(RunResult& result) const;
   Error in_file(const Error& error) const;  // of expectations

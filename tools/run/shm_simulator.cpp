@@ -38,6 +38,9 @@ class RecordSink final : public shm::PoseLogSink {
   }
   void contact(double time, const std::string& model, const std::string& other) override { record_.add_contact({time, model, other}); }
   void still(double time) override { record_.add_still(time); }
+  void joint(double time, const std::string& model, const std::string& joint, double position) override {
+    record_.add_joint(model + "::" + joint, {time, position});
+  }
 
  private:
   PoseRecord& record_;
@@ -112,6 +115,14 @@ Result<std::vector<std::string>> ShmSimulator::models() {
   std::vector<std::string> names;
   for (const auto& model : parsed(reply->text).value("models", nlohmann::json::array())) names.push_back(model.value("name", ""));
   return names;
+}
+
+Result<std::vector<ModelParts>> ShmSimulator::parts() {
+  const auto reply = ask(shm::TreeRequest{});
+  if (!reply) return reply.error();
+  std::vector<ModelParts> all;
+  for (const auto& model : parsed(reply->text).value("models", nlohmann::json::array())) all.push_back(to_parts(model));
+  return all;
 }
 
 Result<shm::Pose> ShmSimulator::pose(const std::string& name) {
@@ -209,8 +220,12 @@ std::optional<LostProcess> ShmSimulator::await_loss(std::chrono::milliseconds ti
 Result<void> ShmSimulator::read_events(PoseRecord& record) {
   RecordSink sink(record);
   for (;;) {
-    const auto reply = ask(shm::PoseLogRequest{log_read_});
+    shm::PoseLogRequest request{.from = log_read_};
+    if (joints_of_log_ != record.wanted_joints)
+      request.joints = base::join({record.wanted_joints.begin(), record.wanted_joints.end()}, "\n");
+    const auto reply = ask(request);
     if (!reply) return reply.error();
+    joints_of_log_ = record.wanted_joints;
     log_read_ += static_cast<std::int64_t>(reply->text.size());
     if (const auto read = log_.read(reply->text, sink); !read) return read;
     if (log_read_ >= reply->count || reply->text.empty()) return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ class ShmSimulator final : public Simulator {
   std::optional<SimulatedMoment> now() override;
   std::vector<LockstepParticipant> participants() override;
   base::Result<std::vector<std::string>> models() override;
+  base::Result<std::vector<ModelParts>> parts() override;
   base::Result<shm::Pose> pose(const std::string& name) override;
   base::Result<std::vector<ModelContact>> contacts(const std::string& model) override;
   base::Result<std::string> spawn(const ModelToSpawn& model) override;
@@ -47,7 +49,8 @@ class ShmSimulator final : public Simulator {
   std::optional<LostProcess> loss_;  // why the last steps ended
   base::Error loss_error_;           // what await_steps() returns then
   shm::PoseLogReader log_;
-  std::int64_t log_read_ = 0;  // [bytes]
+  std::int64_t log_read_ = 0;            // [bytes]
+  std::set<std::string> joints_of_log_;  // that the simulator has been asked for
 };
 
 }  // namespace editor

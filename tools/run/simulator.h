@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "run/model_parts.h"
 #include "run/pose_record.h"
 #include "shm/requests.h"
 
@@ -45,10 +46,6 @@ struct LostProcess {
   std::int64_t tick = 0;             // its number, from 1; 0: it was in none
 };
 
-struct ModelContact {
-  std::string link, other;  // "MODEL::LINK::COLLISION"
-};
-
 struct ModelToSpawn {
   std::string source;        // SDF file, model folder, model://NAME, or SDF text
   std::string name;          // empty: as in the file
@@ -78,6 +75,8 @@ class Simulator {
 
   // Names, of all models of the world.
   virtual base::Result<std::vector<std::string>> models() = 0;
+  // Of all models of the world.
+  virtual base::Result<std::vector<ModelParts>> parts() = 0;
   // Of MODEL or MODEL::LINK, in the world frame.
   virtual base::Result<shm::Pose> pose(const std::string& name) = 0;
   // Of all links of a model, now.
@@ -103,8 +102,8 @@ class Simulator {
   // ended for it within the timeout; else nothing. await_steps() then returns the same Error again.
   virtual std::optional<LostProcess> await_loss(std::chrono::milliseconds timeout) = 0;
 
-  // What happened since the last call: poses of moving models, ten times a simulated second, and contacts that began. The first call
-  // starts the log. Adds to `record`.
+  // What happened since the last call: poses of moving models and positions of the joints that `record` wants, ten times a simulated
+  // second, and contacts that began. The first call starts the log. Adds to `record`.
   virtual base::Result<void> read_events(PoseRecord& record) = 0;
 };
 

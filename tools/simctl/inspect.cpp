@@ -235,6 +235,9 @@ void tree(Control& control, const std::string& model) {
     for (const auto& joint : entry.value("joints", Json::array()))
       std::cout << "  joint " << joint.value("name", "?") << " (" << joint.value("type", "?") << ") " << joint.value("parent", "?") << " - "
                 << joint.value("child", "?") << '\n';
+    for (const auto& gripper : entry.value("grippers", Json::array()))
+      std::cout << "  gripper " << gripper.value("name", "?") << ": palm " << gripper.value("palm", "?") << ", fingers "
+                << base::join(gripper.value("fingers", std::vector<std::string>()), ", ") << '\n';
     for (const auto& plugin : entry.value("plugins", Json::array()))
       std::cout << "  plugin " << plugin.value("name", "?") << " (" << plugin.value("filename", "?") << ")\n";
   }

@@ -217,12 +217,12 @@ std::string meanings_of_faults() {
 
 void add_fault(base::Command& app, Work& work) {
   auto* fault = app.add_subcommand(
-      "fault", "Inject a fault into a sensor or drive, list active faults, or end them: fault [IFACE [KIND [AMOUNT]]] [--end]");
+      "fault", "Inject a fault into a sensor, drive or joint, list active faults, or end them: fault [IFACE [KIND [AMOUNT]]] [--end]");
   auto options = option_value<simctl::FaultOptions>();
   auto amount = option_value<std::string>();
   std::vector<std::string> kinds;
   for (const auto& row : shm::fault_rows) kinds.emplace_back(row.name);
-  fault->add_option("IFACE", options->iface, "Iface of a sensor or drive");
+  fault->add_option("IFACE", options->iface, "Iface of a sensor, drive or joints, or IFACE::JOINT");
   fault->add_option("KIND", options->kind, meanings_of_faults())->check(base::one_of(std::move(kinds)));
   fault->add_option("AMOUNT", *amount, "Strength of the fault (default: the number in brackets)");
   auto* seconds = fault->add_option("--for", options->seconds, "Duration [simulated s] (default: until --end or reset)")

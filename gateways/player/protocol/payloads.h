@@ -20,6 +20,9 @@ struct Pose2d {
 struct Pose3d {
   double x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0;
 };
+struct Point3d {
+  double x = 0, y = 0, z = 0;
+};
 // In the order of the wire: y extent, x extent, z extent.
 struct Size3d {
   double width = 0, length = 0, height = 0;
@@ -164,13 +167,47 @@ std::string encode_ranger_values(const std::vector<double>& values);
 std::string encode_sonar_ranges(const std::vector<float>& ranges);
 std::string encode_poses(const std::vector<Pose3d>& poses);
 
+// ---- actarray ----
+struct Actuator {
+  float position = 0, speed = 0, acceleration = 0, current = 0;
+  std::uint8_t state = 1;  // idle 1, moving 2, braked 4, stalled 8
+};
+std::string encode(const std::vector<Actuator>& actuators, bool is_powered);
+struct ActuatorGeometry {
+  bool turns = true;
+  float length = 0;    // to the next one
+  Pose3d orientation;  // of the next one; its angles count
+  Point3d axis;
+  float min = 0, centre = 0, max = 0, home = 0, speed = 0;
+};
+std::string encode(const std::vector<ActuatorGeometry>& actuators, const Pose3d& base);
+struct JointNumber {
+  std::int32_t joint = 0;
+  float value = 0;
+};
+// A position, speed, current, highest speed or acceleration of one joint.
+std::optional<JointNumber> decode_joint_number(std::string_view payload);
+std::optional<std::int32_t> decode_joint(std::string_view payload);
+std::optional<std::vector<float>> decode_joint_numbers(std::string_view payload);
+
+// ---- gripper ----
+struct GripperState {
+  std::uint8_t state = 1;  // open 1, closed 2, moving 3, error 4
+};
+std::string encode(const GripperState& state);
+std::string encode_gripper_geometry(const Pose3d& pose, const Size3d& outer, const Size3d& inner);
+
+// ---- ptz ----
+struct PtzState {
+  float pan = 0, tilt = 0, zoom = 0, pan_speed = 0, tilt_speed = 0;  // zoom: field of view
+};
+std::string encode(const PtzState& state);
+std::optional<PtzState> decode_ptz_command(std::string_view payload);
+
 // ---- aio ----
 std::string encode_voltages(const std::vector<double>& values);
 
 // ---- pointcloud3d ----
-struct Point3d {
-  double x = 0, y = 0, z = 0;
-};
 std::string encode_points(const std::vector<Point3d>& points);  // all white
 
 // ---- camera ----

@@ -87,14 +87,24 @@ std::optional<FileGains> gains_in(const PluginDef& plugin, std::size_t place) {
   return file;
 }
 
+std::optional<FileGains> gains_beside(const ModelDef& model, std::uint32_t joint, bool is_named) {
+  for (const GainsDef& one : model.gains) {
+    if (one.joint == model.joints[joint].name && one.is_named == is_named)
+      return FileGains{{one.p, one.i, one.d, one.i_low, one.i_high, 0}, infinite, one.source};
+  }
+  return std::nullopt;
+}
+
+// Those of a file that the user has named, of the model's own controllers, of the file that these name.
 std::optional<FileGains> file_gains(const ModelDef& model, std::uint32_t joint) {
+  if (auto found = gains_beside(model, joint, true)) return found;
   for (const PluginDef& plugin : model.plugins) {
     if (kind_of(plugin) != PluginKind::joint_controller) continue;
     const auto place = place_in(model, plugin, joint);
     if (!place) continue;
     if (auto found = gains_in(plugin, *place)) return found;
   }
-  return std::nullopt;
+  return gains_beside(model, joint, false);
 }
 
 // For each of the joints the number of the one that it follows; -1: none.

@@ -14,6 +14,12 @@ namespace {
 static_assert(static_cast<int>(JointMode::disabled) == RTMSIM_JOINT_DISABLED && static_cast<int>(JointMode::brake) == RTMSIM_JOINT_BRAKE);
 static_assert(static_cast<int>(JointStatus::stalled) == RTMSIM_JOINT_STALLED);
 
+// The end of a place in a file says more than its beginning.
+std::string shortened(const std::string& text, std::size_t most) {
+  constexpr std::string_view cut = "...";
+  return text.size() <= most ? text : std::string(cut) + text.substr(text.size() - most + cut.size());
+}
+
 std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<ListedJoint>& joints, const JointDynamics& dynamics) {
   std::vector<shm::Joint> all;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -23,7 +29,7 @@ std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<Listed
     shm::Joint joint{};
     shm::set_text(joint.name, def.name);
     shm::set_text(joint.link, def.child);
-    shm::set_text(joint.gains_from, joints[i].gains_from);
+    shm::set_text(joint.gains_from, shortened(joints[i].gains_from, sizeof joint.gains_from - 1));
     joint.id = static_cast<std::uint32_t>(i);
     joint.kind = setup.slides ? RTMSIM_JOINT_SLIDES : RTMSIM_JOINT_TURNS;
     joint.parent = static_cast<std::uint32_t>(body.parent + 1);
@@ -69,11 +75,15 @@ JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDy
 void JointsDevice::warn(const std::string& line) const { base::log(base::Level::warn, writer().name(), "{}", line); }
 
 void JointsDevice::order(Axis& axis, std::uint64_t owner, const JointOrder& order) {
-  const std::string& name = physics().def(model()).joints[axis.listed.joint].name;
+  if (axis.is_halted) {
+    axis.told = {owner, order};
+    return;
+  }
+  const std::string& name = name_of(axis);
   if (axis.listed.leader >= 0) {
     if (std::exchange(axis.was_within, false))
       warn(fmt::format("joint {}: follows joint {} and takes no commands", name,
-                       physics().def(model()).joints[axes_[static_cast<std::size_t>(axis.listed.leader)].listed.joint].name));
+                       name_of(axes_[static_cast<std::size_t>(axis.listed.leader)])));
     return;
   }
   if (axis.owner != 0 && axis.owner != owner && iface().holds_lease(axis.owner)) {
@@ -122,7 +132,7 @@ void JointsDevice::brake_lost_joints() {
     if (axis.owner == 0 || iface().holds_lease(axis.owner)) continue;
     axis.owner = 0;
     if (axis.servo.mode() == JointMode::brake) continue;
-    axis.servo.take({.mode = JointMode::brake}, state_of(axis));
+    order(axis, 0, {.mode = JointMode::brake});
     ++count;
   }
   if (count > 0) warn(fmt::format("the client that commanded {} of {} joints has exited or detached: they brake", count, axes_.size()));
@@ -158,8 +168,7 @@ void JointsDevice::before_step(const Moment& moment) {
     const bool was_disabled = axis.servo.mode() == JointMode::disabled;
     const JointRow row = axis.servo.row(state_of(axis), axis.servo.wants_gravity() ? gravity_[i] : 0, moment.dt);
     if (!was_disabled && axis.servo.mode() == JointMode::disabled)
-      warn(fmt::format("joint {}: its position or command is no number; it is disabled until a reset",
-                       physics().def(model()).joints[axis.listed.joint].name));
+      warn(fmt::format("joint {}: its position or command is no number; it is disabled until a reset", name_of(axis)));
     world().physics.set_row({model(), axis.listed.joint}, row);
   }
 }
@@ -189,8 +198,28 @@ void JointsDevice::measure(const Moment&) const {
   }
 }
 
+base::Result<std::size_t> JointsDevice::find(std::string_view joint) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    names.push_back(name_of(axes_[i]));
+    if (names.back() == joint) return i;
+  }
+  return base::Error{"there is no joint " + base::in_quotes(joint) + ", only " + base::join(names, ", ")};
+}
+
+void JointsDevice::set_fault(std::size_t joint, double strength, bool is_halted) {
+  Axis& axis = axes_[joint];
+  axis.servo.set_strength(strength);
+  axis.is_halted = is_halted;
+  if (is_halted || !axis.told) return;
+  const Told told = *std::exchange(axis.told, std::nullopt);
+  const bool is_there = told.owner != 0 && iface().holds_lease(told.owner);
+  order(axis, is_there ? told.owner : 0, is_there ? told.order : JointOrder{.mode = JointMode::brake});
+}
+
 void JointsDevice::restart() {
   for (Axis& axis : axes_) {
+    axis.told.reset();
     axis.servo.reset();
     axis.owner = 0;
     axis.was_within = true;
@@ -201,7 +230,12 @@ void JointsDevice::restart() {
 void JointsDevice::add_state_to(StateHash& hash) const {
   if (!is_active_) return;  // worlds whose joints nobody commands keep their hashes
   hash.add(writer().name());
-  for (const Axis& axis : axes_) axis.servo.add_to(hash);
+  for (const Axis& axis : axes_) {
+    axis.servo.add_to(hash);
+    if (!axis.told) continue;
+    const JointOrder& order = axis.told->order;
+    hash.add_all(static_cast<std::uint64_t>(order.mode), order.value, order.velocity, order.effort);
+  }
 }
 
 }  // namespace sim

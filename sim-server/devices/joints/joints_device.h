@@ -3,6 +3,8 @@
 // device.h for the thread rule.
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "devices/joints/joint_list.h"
@@ -22,12 +24,25 @@ class JointsDevice final : public Sensor {
   void before_step(const Moment& moment) override;
   void after_step(const Moment& moment) override;
 
+  std::size_t size() const { return axes_.size(); }
+  // Which joint has this name.
+  base::Result<std::size_t> find(std::string_view joint) const;
+  // From the next step on: the part of its effort that a joint has left, and whether it goes on as it was told last. What it is told
+  // meanwhile counts when that ends.
+  void set_fault(std::size_t joint, double strength, bool is_halted);
+
  private:
+  struct Told {
+    std::uint64_t owner = 0;
+    JointOrder order;
+  };
   struct Axis {
     ListedJoint listed;
     JointServo servo;
     std::uint64_t owner = 0;  // the client that commands it; 0: none
     bool was_within = true;   // of the limits, the last command; said once
+    bool is_halted = false;
+    std::optional<Told> told{};  // while it was halted
   };
   void measure(const Moment& moment) const override;
   void restart() override;
@@ -38,6 +53,7 @@ class JointsDevice final : public Sensor {
   Eigen::Matrix3d base_rotation() const;
   void compute_gravity();
   JointState state_of(const Axis& axis) const { return physics().joint_state({model(), axis.listed.joint}); }
+  const std::string& name_of(const Axis& axis) const { return physics().def(model()).joints[axis.listed.joint].name; }
   void warn(const std::string& line) const;
 
   std::vector<Axis> axes_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -24,15 +24,19 @@ bool is_measured(const shm::Field& field) {
   return field.kind == shm::Field::Kind::f64 && !field.name.starts_with("true") && field.name != "command";
 }
 
-// The whole sample that waits to be published, but for its stamp.
-std::span<std::byte> waiting_sample(shm::IfaceWriter& writer) {
+bool has_joints(const shm::IfaceWriter& writer) { return writer.type() == shm::IfaceType::joints; }
+
+}  // namespace
+
+// The whole sample that waits to be published, but for its stamp; or what one joint measures: position, velocity, effort.
+std::span<std::byte> SensorFault::measured(shm::IfaceWriter& writer) const {
+  if (joint_)
+    return std::as_writable_bytes(writer.followers<shm::JointState>(0).subspan(*joint_, 1)).first(offsetof(shm::JointState, target));
   const auto& row = shm::row_of(writer.type());
   auto* start = reinterpret_cast<std::byte*>(&writer.sample<shm::Stamp>());
   const auto size = row.sample_size + row.sample_tail.arrays * writer.count() * row.sample_tail.size;
   return {start + sizeof(shm::Stamp), size - sizeof(shm::Stamp)};
 }
-
-}  // namespace
 
 base::Result<FaultOrder> parse_fault_order(const std::string& text) {
   const auto parsed = base::parse_fault_text(text, "IFACE");
@@ -42,15 +46,19 @@ base::Result<FaultOrder> parse_fault_order(const std::string& text) {
   return FaultOrder{parsed->last, (*row)->kind, parsed->amount.value_or((*row)->amount.value_or(0)), parsed->from, parsed->until};
 }
 
-base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed) {
+base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed,
+                                            std::optional<std::size_t> joint) {
   const std::string kind(shm::row_of(order.kind).name);
-  const auto fail = [&](const std::string& what) { return base::Error{"fault " + kind + " of " + writer.name() + ": " + what}; };
+  const auto fail = [&](const std::string& what) { return base::Error{"fault " + kind + " of " + order.iface + ": " + what}; };
   const auto& row = shm::row_of(writer.type());
   if (row.sample_size == 0) return fail("its frames cannot be changed");
   if (order.kind == Kind::missing && !has_ranges(writer)) return fail("only lasers and sonars have beams");
   const bool is_changed = order.kind == Kind::bias || order.kind == Kind::noise;
-  if (is_changed && !has_ranges(writer) && std::ranges::none_of(row.sample, is_measured)) return fail("it measures no numbers");
-  return SensorFault(order, RandomStream(seed, "fault " + kind + " " + writer.name()));
+  if (joint && (order.kind == Kind::off || order.kind == Kind::dropout))
+    return fail("joints have one sample together: name " + writer.name());
+  if (is_changed && !has_ranges(writer) && !has_joints(writer) && std::ranges::none_of(row.sample, is_measured))
+    return fail("it measures no numbers");
+  return SensorFault(order, RandomStream(seed, "fault " + kind + " " + order.iface), joint);
 }
 
 bool SensorFault::leaves_out() { return kind_ == Kind::off || (kind_ == Kind::dropout && random_.uniform() < amount_); }
@@ -80,7 +88,7 @@ void SensorFault::reset() {
 
 // Until there is one that is late enough, the first stays.
 void SensorFault::exchange(shm::IfaceWriter& writer) {
-  const auto now = waiting_sample(writer);
+  const auto now = measured(writer);
   const bool is_stuck = kind_ == Kind::stuck;
   if (!is_stuck || kept_.empty()) kept_.emplace_back(now.begin(), now.end());
   std::ranges::copy(kept_.front(), now.begin());
@@ -93,6 +101,11 @@ void SensorFault::disturb(shm::IfaceWriter& writer) {
     for (float& range : writer.ranges()) {
       if (std::isfinite(range)) range = static_cast<float>(std::max(0.0, change(static_cast<double>(range))));
     }
+    return;
+  }
+  if (has_joints(writer)) {
+    const auto joints = writer.followers<shm::JointState>(0);
+    for (auto& joint : joint_ ? joints.subspan(*joint_, 1) : joints) joint.position = change(joint.position);
     return;
   }
   for (const shm::Field& field : shm::row_of(writer.type()).sample) {

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,7 @@ namespace sim {
 
 // What somebody asks for, of a sensor or a drive.
 struct FaultOrder {
-  std::string iface;
+  std::string iface;  // or a joint of one: arm::joints::elbow
   shm::FaultKind kind = shm::FaultKind::off;
   double amount = 0;
   std::chrono::nanoseconds from{}, until = std::chrono::nanoseconds::max();  // simulated
@@ -30,8 +32,9 @@ base::Result<FaultOrder> parse_fault_order(const std::string& text);
 class SensorFault {
  public:
   using Kind = shm::FaultKind;
-  // Fails when a sensor of the type cannot have it.
-  static base::Result<SensorFault> make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed);
+  // Fails when a sensor of the type cannot have it. `joint`: of a joints iface, this one alone.
+  static base::Result<SensorFault> make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed,
+                                        std::optional<std::size_t> joint = std::nullopt);
 
   // Asked once for each sample that is due: whether it is to be left out.
   bool leaves_out();
@@ -40,7 +43,9 @@ class SensorFault {
   void reset();
 
  private:
-  SensorFault(const FaultOrder& order, RandomStream random) : kind_(order.kind), amount_(order.amount), random_(std::move(random)) {}
+  SensorFault(const FaultOrder& order, RandomStream random, std::optional<std::size_t> joint)
+      : kind_(order.kind), amount_(order.amount), random_(std::move(random)), joint_(joint) {}
+  std::span<std::byte> measured(shm::IfaceWriter& writer) const;
   void exchange(shm::IfaceWriter& writer);
   void disturb(shm::IfaceWriter& writer);
   void lose_beams(shm::IfaceWriter& writer);
@@ -48,6 +53,7 @@ class SensorFault {
   Kind kind_;
   double amount_;
   RandomStream random_;
+  std::optional<std::size_t> joint_;
   std::deque<std::vector<std::byte>> kept_;  // stuck: one; latency: those that are late
 };
 

@@ -67,6 +67,8 @@ constexpr std::array measure_keys = {
         "Smallest distance between a model and others [m], seen from above, ten times a second"},
     Key{"contacts", Form::map, "of_model", false, "Number of times that a model started to touch something other than the ground"},
     Key{"value", Form::map, "value", false, "Member of the samples of a port"},
+    Key{"joint", Form::map, "joint", false, "Position of a joint [rad or m], ten times a second"},
+    Key{"holds", Form::map, "holds", false, "1 if a gripper holds a model at the end, else 0"},
     Key{"wall_time", Form::map, "named_only", false, "Duration of the run [wall-clock s]"},
 };
 
@@ -88,6 +90,17 @@ constexpr std::array value_keys = {
     Key{"port", Form::text, {}, true, "INSTANCE:PORT, an OutPort"},
     Key{"member", Form::text, {}, true, "Path in the sample, like data.vx or ranges[0]"},
     Key{"take", Form::words, "min max mean last count", true, "Which number of all samples"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array joint_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"name", Form::text, {}, true, "Joint of the model"},
+    Key{"take", Form::words, "min max mean last", true, "Which number of all positions"},
+    Key{"as", Form::text, {}, false, "Name of the number in the results"},
+};
+constexpr std::array holds_keys = {
+    Key{"gripper", Form::text, {}, true, "MODEL::GRIPPER, or a model with one gripper"},
+    Key{"model", Form::text, {}, true, "Model that it holds"},
     Key{"as", Form::text, {}, false, "Name of the number in the results"},
 };
 constexpr std::array named_only_keys = {Key{"as", Form::text, {}, false, "Name of the number in the results"}};
@@ -145,7 +158,7 @@ constexpr std::array fault_keys = {
     Key{"at", Form::number, {}, true, "Simulated time [s]"},
     Key{"for", Form::positive, {}, false, "Duration [simulated s]; default: to the end"},
     Key{"sensor", Form::text, {}, false, "iface of a sensor; with is"},
-    Key{"actuator", Form::text, {}, false, "iface of a drive; with is"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive or joints, or IFACE::JOINT; with is"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system; with is"},
     Key{"component", Form::text, {}, false, "Component of the system; with is"},
     Key{"naming", Form::words, "gone", false, "The name server does not respond"},
@@ -171,7 +184,7 @@ constexpr std::array hunt_keys = {
 };
 constexpr std::array hunt_fault_keys = {
     Key{"sensor", Form::text, {}, false, "iface of a sensor"},
-    Key{"actuator", Form::text, {}, false, "iface of a drive"},
+    Key{"actuator", Form::text, {}, false, "iface of a drive or joints, or IFACE::JOINT"},
     Key{"connector", Form::text, {}, false, "Id or name of a connection of the system"},
     Key{"component", Form::text, {}, false, "Component of the system"},
     Key{"naming", Form::words, "gone", false, "The name server does not respond"},
@@ -179,12 +192,26 @@ constexpr std::array hunt_fault_keys = {
 };
 
 constexpr std::array shapes = {
-    Shape{plan_shape, plan_keys},       Shape{"vary", vary_keys},         Shape{"scatter", scatter_keys},
-    Shape{"measure", measure_keys},     Shape{"of_model", of_model_keys}, Shape{"time_to", time_to_keys},
-    Shape{"clearance", clearance_keys}, Shape{"value", value_keys},       Shape{"named_only", named_only_keys},
-    Shape{"condition", condition_keys}, Shape{"event", event_keys},       Shape{"spawn", spawn_keys},
-    Shape{"push", push_keys},           Shape{"pose", pose_keys},         Shape{"set", set_keys},
-    Shape{"fault", fault_keys},         Shape{"hunt", hunt_keys},         Shape{"hunt_fault", hunt_fault_keys},
+    Shape{plan_shape, plan_keys},
+    Shape{"vary", vary_keys},
+    Shape{"scatter", scatter_keys},
+    Shape{"measure", measure_keys},
+    Shape{"of_model", of_model_keys},
+    Shape{"time_to", time_to_keys},
+    Shape{"clearance", clearance_keys},
+    Shape{"value", value_keys},
+    Shape{"named_only", named_only_keys},
+    Shape{"condition", condition_keys},
+    Shape{"event", event_keys},
+    Shape{"spawn", spawn_keys},
+    Shape{"push", push_keys},
+    Shape{"pose", pose_keys},
+    Shape{"set", set_keys},
+    Shape{"joint", joint_keys},
+    Shape{"holds", holds_keys},
+    Shape{"fault", fault_keys},
+    Shape{"hunt", hunt_keys},
+    Shape{"hunt_fault", hunt_fault_keys},
 };
 
 Json reference(std::string_view name) { return {{"$ref", "#/$defs/" + std::string(name)}}; }

@@ -85,9 +85,14 @@ Axis to_axis(const YAML::Node& name, const YAML::Node& node) {
 }
 
 void read_measure(const std::string& kind, const YAML::Node& node, Measure& measure) {
-  static const std::map<std::string, Measure::Kind> kinds = {
-      {"path_length", Measure::Kind::path_length}, {"time_to", Measure::Kind::time_to}, {"clearance", Measure::Kind::clearance},
-      {"contacts", Measure::Kind::contacts},       {"value", Measure::Kind::value},     {"wall_time", Measure::Kind::wall_time}};
+  static const std::map<std::string, Measure::Kind> kinds = {{"path_length", Measure::Kind::path_length},
+                                                             {"time_to", Measure::Kind::time_to},
+                                                             {"clearance", Measure::Kind::clearance},
+                                                             {"contacts", Measure::Kind::contacts},
+                                                             {"value", Measure::Kind::value},
+                                                             {"joint", Measure::Kind::joint},
+                                                             {"holds", Measure::Kind::holds},
+                                                             {"wall_time", Measure::Kind::wall_time}};
   static const std::map<std::string, Measure::Take> takes = {{"min", Measure::Take::min},
                                                              {"max", Measure::Take::max},
                                                              {"mean", Measure::Take::mean},
@@ -100,9 +105,13 @@ void read_measure(const std::string& kind, const YAML::Node& node, Measure& meas
   measure.to = words(node["to"]);
   measure.port = word(node, "port");
   measure.member = word(node, "member");
+  measure.joint = word(node, "name");
+  measure.gripper = word(node, "gripper");
   if (measure.kind == Measure::Kind::time_to) measure.reached = editor::to_expression(node);
   if (node["take"]) measure.take = takes.at(node["take"].Scalar());
   if (measure.kind == Measure::Kind::value) measure.name = measure.port + " " + measure.member + " " + word(node, "take");
+  if (measure.kind == Measure::Kind::joint) measure.name = measure.model + "::" + measure.joint + " " + word(node, "take");
+  if (measure.kind == Measure::Kind::holds) measure.name = editor::grip_name(measure.gripper, measure.model);
   measure.name = word(node, "as", measure.name);
 }
 

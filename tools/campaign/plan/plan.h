@@ -38,7 +38,7 @@ struct Scatter {
 };
 
 struct Measure {
-  enum class Kind { path_length, time_to, clearance, contacts, value, wall_time };
+  enum class Kind { path_length, time_to, clearance, contacts, value, joint, holds, wall_time };
   enum class Take { min, max, mean, last, count };
   Kind kind = Kind::wall_time;
   std::string name;  // in the results
@@ -47,6 +47,7 @@ struct Measure {
   recorder::Expression reached;  // of time_to
   std::vector<std::string> to;
   std::string port, member;
+  std::string joint, gripper;
   Take take = Take::last;
 };
 

@@ -65,6 +65,7 @@ StandingModel to_model(const nlohmann::json& json) {
   StandingModel model;
   model.pose = pose_of(json.at("pose"));
   model.is_static = json.at("static").get<bool>();
+  model.parts = editor::to_parts(json);
   for (const auto& link : json.at("links")) {
     model.mass += link.at("mass").get<double>();
     const auto link_pose = model.pose.inverse() * pose_of(link.at("pose"));

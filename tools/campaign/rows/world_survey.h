@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "campaign/rows/footprint.h"
+#include "run/model_parts.h"
 
 namespace campaign {
 
@@ -19,6 +20,7 @@ struct StandingModel {
   Outline outline;  // empty: nothing of it collides, or nothing with an end (a plane, a mesh)
   bool is_static = false;
   double mass = 0;  // [kg]
+  editor::ModelParts parts;
 };
 
 // Absolute names of files, by the folder of the file that names them and the URI in it. Of an include: the SDFormat file.

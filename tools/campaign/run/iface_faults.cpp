@@ -31,7 +31,9 @@ std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
   }
   for (const auto& component : system.components) {
     const auto device = parameter(component, "device_id");
-    const bool is_drive = component.id.find(":RTCPosition2d:") != std::string::npos;
+    const auto is_a = [&](std::string_view type) { return component.id.find(type) != std::string::npos; };
+    const bool is_drive =
+        is_a(":RTCPosition2d:") || is_a(":RTCActArray:") || is_a(":RTCGripper:") || is_a(":RTCPTZ:") || is_a(":RTCRobotHardware:");
     const bool is_camera = component.id.find("Camera:") != std::string::npos;
     if (!device.empty() && is_drive) targets.push_back({Object::actuator, device, {}});
     if (!device.empty() && !is_camera) targets.push_back({Object::sensor, device, {}});

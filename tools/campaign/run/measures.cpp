@@ -60,20 +60,37 @@ std::optional<double> time_to(const Measure& measure, const editor::Seen& seen) 
   return in == poses->second.end() ? std::nullopt : std::optional(in->time);
 }
 
+std::optional<double> number_of(const editor::SeenValue& seen, Measure::Take take) {
+  if (!seen.mean()) return std::nullopt;
+  switch (take) {
+    case Measure::Take::min:
+      return seen.lowest;
+    case Measure::Take::max:
+      return seen.highest;
+    case Measure::Take::mean:
+      return seen.mean();
+    default:
+      return seen.last;
+  }
+}
+
 std::optional<double> value(const Measure& measure, const editor::Seen& seen) {
   const auto found = seen.values.find(measure.port + " " + measure.member);
   if (measure.take == Measure::Take::count) return found == seen.values.end() ? 0.0 : static_cast<double>(found->second.samples);
-  if (found == seen.values.end() || !found->second.mean()) return std::nullopt;
-  switch (measure.take) {
-    case Measure::Take::min:
-      return found->second.lowest;
-    case Measure::Take::max:
-      return found->second.highest;
-    case Measure::Take::mean:
-      return found->second.mean();
-    default:
-      return found->second.last;
-  }
+  return found == seen.values.end() ? std::nullopt : number_of(found->second, measure.take);
+}
+
+std::optional<double> joint(const Measure& measure, const editor::PoseRecord& record) {
+  const auto found = record.joints.find(measure.model + "::" + measure.joint);
+  if (found == record.joints.end() || found->second.empty()) return std::nullopt;
+  editor::SeenValue seen;
+  for (const auto& one : found->second) seen.take(one.position);
+  return number_of(seen, measure.take);
+}
+
+std::optional<double> holds(const Measure& measure, const editor::Seen& seen) {
+  const auto found = seen.grips.find(editor::grip_name(measure.gripper, measure.model));
+  return found == seen.grips.end() ? std::nullopt : std::optional(found->second.empty() ? 1.0 : 0.0);
 }
 
 double contacts(const Measure& measure, const editor::Seen& seen) {
@@ -88,9 +105,14 @@ double contacts(const Measure& measure, const editor::Seen& seen) {
 std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures) {
   std::vector<editor::Expectation> watched;
   for (const auto& measure : measures) {
-    if (measure.kind != Measure::Kind::value) continue;
+    using Kind = editor::Expectation::Kind;
+    const bool is_value = measure.kind == Measure::Kind::value, is_joint = measure.kind == Measure::Kind::joint;
+    if (!is_value && !is_joint && measure.kind != Measure::Kind::holds) continue;
     editor::Expectation expectation;
-    expectation.kind = editor::Expectation::Kind::value;
+    expectation.kind = is_value ? Kind::value : is_joint ? Kind::joint : Kind::holds;
+    expectation.model = measure.model;
+    expectation.joint = measure.joint;
+    expectation.gripper = measure.gripper;
     expectation.text = measure.name;
     expectation.port = measure.port;
     expectation.member = measure.member;
@@ -120,6 +142,12 @@ std::map<std::string, double> take_measures(const std::vector<Measure>& measures
         break;
       case Measure::Kind::value:
         number = value(measure, seen);
+        break;
+      case Measure::Kind::joint:
+        number = joint(measure, seen.record);
+        break;
+      case Measure::Kind::holds:
+        number = holds(measure, seen);
         break;
       case Measure::Kind::wall_time:
         number = wall_s;

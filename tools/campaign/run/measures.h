@@ -12,7 +12,7 @@
 
 namespace campaign {
 
-// What port values the measures need to be seen, as expectations without limits.
+// What port values, joints and grips the measures need to be seen, as expectations without limits.
 std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures);
 
 // By name; what a run does not have (a goal that was not reached) is missing. `models`: of the run's world.

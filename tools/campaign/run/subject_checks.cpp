@@ -174,6 +174,8 @@ class SubjectChecks {
     const bool must_move = measure.kind == Measure::Kind::path_length || measure.kind == Measure::Kind::time_to;
     check_model("measure", measure.model, must_move);
     check_port("measure", measure.port, measure.member);
+    if (measure.kind == Measure::Kind::joint) check_joint("measure", measure.model, measure.joint);
+    if (measure.kind == Measure::Kind::holds) check_gripper("measure", measure.gripper);
   }
 
   void check_expectation(const Expectation& expectation) {
@@ -181,6 +183,25 @@ class SubjectChecks {
     check_model(where, expectation.model, true);
     for (const auto& model : expectation.except) check_model(where, model);
     check_values(where, expectation.condition, true);
+    if (expectation.kind == Expectation::Kind::joint) check_joint(where, expectation.model, expectation.joint);
+    if (expectation.kind == Expectation::Kind::holds) check_gripper(where, expectation.gripper);
+  }
+
+  std::vector<editor::ModelParts> parts() const {
+    std::vector<editor::ModelParts> all;
+    for (const auto& [name, model] : models_) all.push_back(model.parts);
+    return all;
+  }
+
+  void check_joint(const std::string& where, const std::string& model, const std::string& joint) {
+    if (!models_.contains(model)) return;  // it is spawned, or that has been said
+    if (const auto found = editor::find_joint(parts(), model, joint); !found) fail(where, found.error().message);
+  }
+
+  // What is spawned may bring one.
+  void check_gripper(const std::string& where, const std::string& gripper) {
+    if (has_unnamed_ || !spawned_.empty()) return;
+    if (const auto found = editor::find_gripper(parts(), gripper); !found) fail(where, found.error().message);
   }
 
   void check_event(const std::string& where, const Event& event) {

@@ -1,14 +1,14 @@
-// Some joints of a joints iface that one component commands, in an order of its own. Positions are reached by a trapezoid of speed, which
-// this class steps; the simulator's controllers follow it. Units: rad or m, N m or N, s. One thread at a time.
+// Some joints of a joints iface that one component or device commands, in an order of its own. Positions are reached by a trapezoid of
+// speed, which this class steps; the simulator's controllers follow it. Units: rad or m, N m or N, s. One thread at a time.
 #pragma once
-
-#include <shm/client.h>
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace iface {
+#include "shm/client.h"
+
+namespace shm {
 
 // One coordinate on its way to a goal: speed rises and falls evenly, a new goal on the way is taken from there.
 struct JointMotion {
@@ -21,21 +21,21 @@ struct JointMotion {
 class JointPart {
  public:
   // The joints with these names, separated by commas; all of them when there are none. Fails with a line that lists what there is.
-  base::Result<void> choose(const shm::Iface& iface, std::string_view names);
+  base::Result<void> choose(const Iface& iface, std::string_view names);
   void clear() { members_.clear(); }
   std::size_t size() const { return members_.size(); }
-  const shm::Joint& joint(std::size_t i) const { return members_[i].joint; }
+  const Joint& joint(std::size_t i) const { return members_[i].joint; }
   // As of the last read().
-  const shm::JointState& state(std::size_t i) const { return members_[i].state; }
+  const JointState& state(std::size_t i) const { return members_[i].state; }
 
   // [s] of simulated time between the last two samples.
   double dt() const { return dt_; }
 
   // Takes the sample that the iface has, and steps what moves by the time since the one before. After a reset of the world nothing is
   // commanded any more.
-  void read(const shm::Iface& iface);
+  void read(const Iface& iface);
   // Commands what has changed, all in one command. Fails when the simulator does not take it.
-  base::Result<void> send(shm::Iface& iface);
+  base::Result<void> send(Iface& iface);
 
   // Goals outside of the limits fail with a line, and nothing changes.
   base::Result<void> move(std::size_t i, double goal);
@@ -48,12 +48,13 @@ class JointPart {
   base::Result<void> set_speed(std::size_t i, double speed);
   base::Result<void> set_acceleration(std::size_t i, double acceleration);
   bool is_moving(std::size_t i) const;
+  bool is_commanded(std::size_t i) const { return members_[i].mode != RTMSIM_JOINT_NONE; }
   bool is_held(std::size_t i) const { return members_[i].mode == RTMSIM_JOINT_BRAKE; }
 
  private:
   struct Member {
-    shm::Joint joint{};
-    shm::JointState state{};
+    Joint joint{};
+    JointState state{};
     JointMotion motion;
     std::uint32_t mode = RTMSIM_JOINT_NONE;
     double value = 0, velocity = 0, effort = 0;
@@ -70,4 +71,4 @@ class JointPart {
   std::uint32_t resets_ = 0;
 };
 
-}  // namespace iface
+}  // namespace shm

@@ -1,17 +1,17 @@
-#include "joint_part.h"
-
-#include <base/text.h>
+#include "shm/joint_part.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-namespace iface {
+#include "base/text.h"
+
+namespace shm {
 namespace {
 
 constexpr double time_to_full_speed = 0.25;  // [s] while no acceleration is set
 
-std::string name_of(const shm::Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
+std::string name_of(const Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
 
 base::Error outside(const std::string& joint, const std::string& what, double value, double low, double high) {
   return base::Error{"joint " + joint + ": " + what + " must be within " + base::format_number(low) + " and " + base::format_number(high) +
@@ -34,10 +34,10 @@ void JointMotion::advance(double dt) {
   position += velocity * dt;
 }
 
-base::Result<void> JointPart::choose(const shm::Iface& iface, std::string_view names) {
-  const std::span<const shm::Joint> all(reinterpret_cast<const shm::Joint*>(iface.info_followers(0)), iface.count());
+base::Result<void> JointPart::choose(const Iface& iface, std::string_view names) {
+  const std::span<const Joint> all(reinterpret_cast<const Joint*>(iface.info_followers(0)), iface.count());
   std::vector<Member> chosen;
-  const auto add = [&](const shm::Joint& joint) {
+  const auto add = [&](const Joint& joint) {
     Member member;
     member.joint = joint;
     member.motion.speed = joint.max_velocity;
@@ -47,7 +47,7 @@ base::Result<void> JointPart::choose(const shm::Iface& iface, std::string_view n
   const auto words = base::split_list(names);
   if (words.empty()) std::ranges::for_each(all, add);
   for (const std::string& name : words) {
-    const auto found = std::ranges::find_if(all, [&](const shm::Joint& joint) { return name_of(joint) == name; });
+    const auto found = std::ranges::find_if(all, [&](const Joint& joint) { return name_of(joint) == name; });
     if (found == all.end()) {
       std::vector<std::string> known;
       for (const auto& joint : all) known.push_back(name_of(joint));
@@ -61,9 +61,9 @@ base::Result<void> JointPart::choose(const shm::Iface& iface, std::string_view n
   return {};
 }
 
-void JointPart::read(const shm::Iface& iface) {
-  const auto& stamp = iface.sample<shm::JointsSample>().stamp;
-  const auto* states = reinterpret_cast<const shm::JointState*>(iface.sample_followers(0));
+void JointPart::read(const Iface& iface) {
+  const auto& stamp = iface.sample<JointsSample>().stamp;
+  const auto* states = reinterpret_cast<const JointState*>(iface.sample_followers(0));
   const bool is_first = time_ns_ < 0, is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
   const double dt = dt_ = is_first || is_reset ? 0 : static_cast<double>(stamp.sim_time_ns - time_ns_) * 1e-9;
   time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets;
@@ -76,7 +76,7 @@ void JointPart::read(const shm::Iface& iface) {
   }
 }
 
-base::Result<void> JointPart::send(shm::Iface& iface) {
+base::Result<void> JointPart::send(Iface& iface) {
   const auto has_changed = [](const Member& member) { return member.has_changed; };
   if (std::ranges::none_of(members_, has_changed)) return {};
   for (Member& member : members_) {
@@ -88,7 +88,7 @@ base::Result<void> JointPart::send(shm::Iface& iface) {
     at[3] = member.effort;
     member.has_changed = false;
   }
-  return iface.command(shm::CommandKind::joints, values_);
+  return iface.command(CommandKind::joints, values_);
 }
 
 std::string JointPart::text_of(std::size_t i) const { return name_of(members_[i].joint); }
@@ -165,4 +165,4 @@ bool JointPart::is_moving(std::size_t i) const {
          member.state.status == RTMSIM_JOINT_MOVING;
 }
 
-}  // namespace iface
+}  // namespace shm

@@ -1,0 +1,32 @@
+// Gains of joint controllers in the YAML files of ros_control and ros2_control: the places where those have them.
+//
+//   arm_controller: {type: effort_controllers/JointTrajectoryController, gains: {elbow: {p: 4000, i: 1, d: 200, i_clamp: 1}}}
+//   gazebo_ros_control/pid_gains: {elbow: {p: 4000, i: 1, d: 200}}          or gazebo_ros_control: {pid_gains: ...}
+//   elbow_controller: {type: effort_controllers/JointPositionController, joint: elbow, pid: {p: 4000, i: 1, d: 200}}
+//
+// whatever stands around them (namespaces, ros__parameters). Controllers that command positions or velocities have gains of other units,
+// which are left out. Any thread.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "world/complaints.h"
+#include "world/model_path.h"
+#include "world/world_def.h"
+
+namespace sim {
+
+// In the order of the file. What is left out adds a line to `left_out`. Fails when the file cannot be read, or is no YAML.
+base::Result<std::vector<GainsDef>> read_gains(const std::filesystem::path& file, std::vector<std::string>& left_out);
+
+// Those of the model's joints; how many there are. Gains that a joint has already from the same kind of source stay.
+std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model);
+
+// Those of the files that the model's ros_control and ros2_control plugins name in <parameters>. A file that is not there is a line.
+void add_plugin_gains(const ModelPath& model_path, ModelDef& model, Complaints& complaints);
+
+}  // namespace sim
