@@ -10,9 +10,11 @@
 #include <rtm/ext/FiducialSkel.h>
 #include <rtm/ext/GPSSkel.h>
 #include <rtm/ext/GripperSkel.h>
+#include <rtm/ext/HRPDataTypesSkel.h>
 #include <rtm/ext/HeadingControlSkel.h>
 #include <rtm/ext/IMUSkel.h>
 #include <rtm/ext/INSSkel.h>
+#include <rtm/ext/LimbSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_CommonSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_DataTypesSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_MiddleSkel.h>
@@ -27,6 +29,7 @@
 #include <rtm/ext/PoseControlSkel.h>
 #include <rtm/ext/RFIDSkel.h>
 #include <rtm/ext/RangerSkel.h>
+#include <rtm/ext/RobotHardwareServiceSkel.h>
 #include <rtm/ext/VelocityControlSkel.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ComponentObserverSkel.h>
@@ -493,6 +496,8 @@ const Interface interfaces[] = {
      "IDL:JARA_ARM/ManipulatorCommonInterface_Common:1.0"},
     {JARA_ARM::ManipulatorCommonInterface_Middle::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Middle,
      "IDL:JARA_ARM/ManipulatorCommonInterface_Middle:1.0"},
+    {RTC::Limb::_PD_repoId, RTC::_tc_Limb, "IDL:RTC/Limb:1.0"},
+    {OpenHRP::RobotHardwareService::_PD_repoId, OpenHRP::_tc_RobotHardwareService, "IDL:OpenHRP/RobotHardwareService:1.0"},
 };
 
 TEST(WireTypes, every_type_has_the_id_members_and_order_of_the_contract) {
