@@ -29,9 +29,13 @@ nlohmann::ordered_json to_json(const RunResult& result) {
                               {"runs", result.runs},
                               {"refused", static_cast<int>(result.refusal)},
                               {"expectations", nlohmann::ordered_json::array()}};
-  for (const auto& verdict : result.verdicts)
-    json["expectations"].push_back(
-        {{"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}, {"failure", verdict.failure}});
+  for (const auto& verdict : result.verdicts) {
+    nlohmann::ordered_json entry{
+        {"expectation", verdict.expectation}, {"problem", verdict.problem}, {"details", verdict.details}, {"failure", verdict.failure}};
+    if (verdict.time) entry["time"] = *verdict.time;
+    if (!verdict.subject.empty()) entry["subject"] = verdict.subject;
+    json["expectations"].push_back(std::move(entry));
+  }
   return json;
 }
 
@@ -49,9 +53,11 @@ RunResult run_result_of(const nlohmann::ordered_json& json) {
   result.refusal = refusal >= 0 && refusal <= 2 ? static_cast<RunResult::Refusal>(refusal) : RunResult::Refusal::none;
   result.simulated_s = json.value("simulated", 0.0);
   result.wall_s = json.value("wall", 0.0);
-  for (const auto& entry : json.value("expectations", nlohmann::ordered_json::array()))
-    result.verdicts.push_back(
-        {entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", ""), entry.value("failure", "")});
+  for (const auto& entry : json.value("expectations", nlohmann::ordered_json::array())) {
+    result.verdicts.push_back({entry.value("expectation", ""), entry.value("problem", ""), entry.value("details", ""),
+                               entry.value("failure", ""), std::nullopt, entry.value("subject", "")});
+    if (entry.contains("time")) result.verdicts.back().time = entry.value("time", 0.0);
+  }
   return result;
 }
 
