@@ -1,13 +1,16 @@
 # Campaigns as users run them, one case per run: campaigns.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import base64
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import signal
 import sqlite3
 import subprocess
 import time
+import zlib
 
 from calls import START, after_mount, bin_dir, case, folder, interrupted_at, lib_dir, plan, rows, rtse, source, states, twice
 
@@ -87,6 +90,33 @@ measure:
         page = (folder / "page.html").read_text()
         assert "data:image/png;base64," in page and f"rtse sweep '{folder}/my plan.yaml' --row 1" in page, number
     assert "--by \"nobody\"" in rtse("results", folder / "plan.db", "--by", "nobody", code=1).stderr
+
+
+# What a page that rtse wrote says about its run.
+def page_of(file):
+    block = re.search(r'id="run-index">([^<]*)<', file.read_text()).group(1)
+    return json.loads(zlib.decompress(base64.b64decode(block)))["hello"]["page"]
+
+
+# Failed rows and finds leave pages that open at the failure and mark what the plan did; passed rows and recordings leave nothing.
+def pages():
+    if not os.access(f"{bin_dir}/rtse-page", os.X_OK):
+        raise SystemExit(77)
+    events = "events: [{at: 0.2, deactivate: LaserObstacleAvoid0}, {at: 0.4, activate: LaserObstacleAvoid0}]\n"
+    rtse("sweep", plan("repeat: 1\n", "good.yaml"), "--page")
+    assert not (folder / "good.runs").exists()
+    p = plan(events + "expect:\n  - path_length: {model: pioneer2dx, max: 0.05}\n")
+    rtse("sweep", p, "--page", code=1)
+    (row,) = folder.glob("plan.runs/*")
+    page = page_of(row / "run.html")
+    assert page["passed"] is False and 0 < page["at"] < 1 and page["select"] == "pioneer2dx", page
+    assert [(mark["kind"], mark["time"]) for mark in page["marks"] if mark["kind"] == "event"] == [("event", 0.2), ("event", 0.4)], page
+    assert page["command"] == f"rtse sweep {p} --row 1" and not (row / "run.mcap").exists(), page
+    rtse("sweep", p, "--row", 1, "--keep", folder / "alone", "--page", "--record", code=1)
+    assert page_of(folder / "alone/run.html")["at"] == page["at"] and (folder / "alone/run.mcap").exists()
+    hunt = plan("expect: [{path_length: {model: pioneer2dx, max: 0.05}}]\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n", "hunt.yaml")
+    find = json.loads(rtse("--json", "hunt", hunt, "--finds", 1, "--cases", 4, "--page", code=1).stdout)["finds"][0]
+    assert page_of(pathlib.Path(find["plan"]).with_suffix(".html"))["command"] == f"rtse sweep {find['plan']} --row 1", find
 
 
 # A killed sweep goes on where it was: nothing that has ended is lost, nothing is done twice.
@@ -510,6 +540,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts, "hunts_restarts": hunts_restarts}[case]()
+    {"sweep": sweep, "reports": reports, "pages": pages, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts, "hunts_restarts": hunts_restarts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

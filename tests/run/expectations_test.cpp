@@ -26,6 +26,7 @@ class ExpectationsTest : public testing::Test {
     EXPECT_TRUE(expectations.ok()) << expectations.error().message;
     return expectations ? judge(*expectations, seen_).at(0).problem : "unread";
   }
+  Verdict verdict(const std::string& yaml) { return judge(read_expectations(file(yaml)).value(), seen_).at(0); }
   std::string refusal(const std::string& yaml) {
     const auto expectations = read_expectations(file(yaml));
     EXPECT_FALSE(expectations.ok()) << yaml;
@@ -137,6 +138,26 @@ TEST_F(ExpectationsTest, what_is_no_number_is_within_no_bounds) {
   EXPECT_EQ(first_is_nan.highest, 6);
   seen_.values["A0:out data.x"].problem = "the samples have no number data.x; they have data";
   EXPECT_EQ(problem("- value: {port: 'A0:out', member: data.x, min: 0}"), "the samples have no number data.x; they have data");
+}
+
+TEST_F(ExpectationsTest, a_failure_has_its_time_and_its_object) {
+  EXPECT_EQ(verdict("- path_length: {model: robot, max: 6.5}").time, 2);
+  EXPECT_EQ(verdict("- stay: {model: robot, region: [-1, -1, 1, 1]}").time, 1);
+  EXPECT_EQ(verdict("- reach: {model: robot, region: [8, 8, 9, 9], within: 1.5}").time, 1.5);
+  EXPECT_EQ(verdict("- no_contact: {model: robot}").time, 1.5);
+  EXPECT_EQ(verdict("- no_contact: {model: robot}").subject, "robot");
+  const std::string value = "value: {port: 'A0:out', member: data, max: 1}";
+  EXPECT_EQ(verdict("- " + value).time, std::nullopt) << "the sample has no stamp";
+  const auto text = read_expectations(file("- " + value)).value().at(0).text;
+  seen_.values["A0:out data"].violated_at[text] = 1.25;
+  EXPECT_EQ(verdict("- " + value).time, 1.25);
+  EXPECT_EQ(verdict("- " + value).subject, "A0");
+}
+
+TEST_F(ExpectationsTest, a_failure_at_the_end_and_a_fulfilled_expectation_have_no_time) {
+  EXPECT_EQ(verdict("- path_length: {model: robot, min: 9}").time, std::nullopt);
+  EXPECT_EQ(verdict("- reach: {model: robot, region: [8, 8, 9, 9]}").time, std::nullopt);
+  EXPECT_EQ(verdict("- no_contact: {model: robot, except: [ground_plane, box]}").time, std::nullopt);
 }
 
 TEST_F(ExpectationsTest, members_are_paths) {

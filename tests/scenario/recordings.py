@@ -291,6 +291,11 @@ def replayed():
     changed = rig.try_rtse(*call, "--set", "speed_gain=0.0011", "--junit", rig.path("bad.xml"))
     assert changed.returncode == 1 and "first difference at tick 0 (0 s): data.vx: 0.2 and 0.22" in changed.stderr, changed
     assert 'failures="1"' in open(rig.path("bad.xml")).read()
+    if os.access(f"{rig.bin_dir}/rtse-page", os.X_OK):
+        page = rig.path("bad.html")
+        done = rig.try_rtse(*call, "--set", "speed_gain=0.0011", "--junit", rig.path("bad.xml"), "--page", page)
+        assert f"page {page}: " in done.stdout and f"[[ATTACHMENT|{page}]]" in open(rig.path("bad.xml")).read(), done
+        assert 'id="run-index"' in open(page).read()
     near = rig.try_rtse(*call, "--set", "speed_gain=0.0010000001", "--tolerance", "data.vx=1e-3", "--tolerance", "data.va=1e-3")
     assert near.returncode == 0, near
     other = rig.try_rtse(*call, "--module-path", f"{rig.lib_dir}/changed")

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import validator from 'gltf-validator';
 import { hello, Mock, time, world_of } from './mock.mjs';
-import { check, has_world, open, Rig, run, until } from './rig.mjs';
+import { check, compared, has_world, open, Rig, run, until } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const built = process.env.STUDIO_PAGE ?? join(bin, '../share/rtm-sim/studio');
@@ -14,28 +14,6 @@ const [width, height] = [640, 480];
 function quaternion([roll, pitch, yaw]) {
   const [cr, sr, cp, sp, cy, sy] = [roll, pitch, yaw].flatMap((a) => [Math.cos(a / 2), Math.sin(a / 2)]);
   return [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy];
-}
-
-// Mean difference of a component, 0..255, and the share of pixels that differ by more than 32.
-async function compared(page, mine, png) {
-  return page.evaluate(async ([a, b]) => {
-    const pixels = async (url) => {
-      const bitmap = await createImageBitmap(await (await fetch(url)).blob());
-      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-      const draw = canvas.getContext('2d');
-      draw.drawImage(bitmap, 0, 0);
-      return draw.getImageData(0, 0, bitmap.width, bitmap.height);
-    };
-    const [one, two] = [await pixels(a), await pixels(b)];
-    if (one.width !== two.width || one.height !== two.height) throw new Error(`sizes ${one.width}x${one.height} and ${two.width}x${two.height}`);
-    let sum = 0, far = 0;
-    for (let i = 0; i < one.data.length; i += 4) {
-      const d = [0, 1, 2].map((c) => Math.abs(one.data[i + c] - two.data[i + c]));
-      sum += d[0] + d[1] + d[2];
-      far += Math.max(...d) > 32 ? 1 : 0;
-    }
-    return { mean: sum / (one.width * one.height * 3), far: far / (one.width * one.height) };
-  }, [mine, `data:image/png;base64,${png.toString('base64')}`]);
 }
 
 const views = [
@@ -64,7 +42,7 @@ const opened = ['the farm is opened with the view of simctl screenshot, within 2
     world.draw(true);
     return world.canvas.toDataURL('image/png');
   }, [width, height]);
-  const found = await compared(page, mine, readFileSync(shot));
+  const found = await compared(page, mine, `data:image/png;base64,${readFileSync(shot).toString('base64')}`);
   console.log(`      mean difference ${found.mean.toFixed(2)}, ${(100 * found.far).toFixed(2)} % of the pixels differ by more than 32`);
   await page.context().close();
   mock.stop();
@@ -104,7 +82,7 @@ const flows = views.map(([world, name, pose, fov, most]) => [`${name} looks like
     world.draw(true);
     return world.canvas.toDataURL('image/png');
   }, [place.position, place.rotation, fov, width, height]);
-  const found = await compared(page, mine, readFileSync(shot));
+  const found = await compared(page, mine, `data:image/png;base64,${readFileSync(shot).toString('base64')}`);
   if (process.env.STUDIO_PICTURES) {
     const { writeFileSync, copyFileSync } = await import('node:fs');
     writeFileSync(join(process.env.STUDIO_PICTURES, `${name.replaceAll(' ', '_')}-page.png`), Buffer.from(mine.split(',')[1], 'base64'));

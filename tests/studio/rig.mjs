@@ -172,6 +172,28 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
 export const is_ready = (page) => page.waitForFunction(() => window.studio && window.studio.wire.status === 'open' && window.studio.store.hello);
 export const has_world = (page) => page.waitForFunction(() => window.studio && window.studio.world.frames > 0);
 
+// Of two images, URLs: the mean difference of a component, 0..255, and the share of pixels that differ by more than 32.
+export async function compared(page, one_url, other_url) {
+  return page.evaluate(async ([a, b]) => {
+    const pixels = async (url) => {
+      const bitmap = await createImageBitmap(await (await fetch(url)).blob());
+      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+      const draw = canvas.getContext('2d');
+      draw.drawImage(bitmap, 0, 0);
+      return draw.getImageData(0, 0, bitmap.width, bitmap.height);
+    };
+    const [one, two] = [await pixels(a), await pixels(b)];
+    if (one.width !== two.width || one.height !== two.height) throw new Error(`sizes ${one.width}x${one.height} and ${two.width}x${two.height}`);
+    let sum = 0, far = 0;
+    for (let i = 0; i < one.data.length; i += 4) {
+      const d = [0, 1, 2].map((c) => Math.abs(one.data[i + c] - two.data[i + c]));
+      sum += d[0] + d[1] + d[2];
+      far += Math.max(...d) > 32 ? 1 : 0;
+    }
+    return { mean: sum / (one.width * one.height * 3), far: far / (one.width * one.height) };
+  }, [one_url, other_url]);
+}
+
 // Told to end: what was started has ended, too, when this has.
 async function end_early(browser, status) {
   if (is_ending) return;

@@ -1,14 +1,18 @@
 // The page that `rtse run --page` leaves, from a disk and without a network. run_page_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
 import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { flows as recorded_flows, moment, robot, near, scrub } from './recorded_steps.mjs';
-import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+import { inflateSync } from 'node:zlib';
+import { flows as recorded_flows, moment, near, recorded_place, robot, scrub } from './recorded_steps.mjs';
+import { blocks_of, mutated, random } from './page_mutations.mjs';
+import { check, compared, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const worlds = join(source, 'worlds');
 const avoid = join(worlds, 'systems/obstacle_avoidance.xml');
 const course = join(worlds, 'obstacle_course.sdf');
+const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 
 // Every request but that of the file itself is a fault.
 async function open_file(browser, file, hash = '', options = {}) {
@@ -29,6 +33,19 @@ async function set_up(browser) {
   await is_ready(page);
   await has_world(page);
   return { browser, rig, file, html, page };
+}
+
+const fails = (promise) => promise.then(() => false, () => true);
+const selection = (page) => page.evaluate(() => { const { selection, system } = window.studio.store; return system.components.find((c) => c.path === selection?.id)?.instance ?? selection?.id; });
+
+// A run that fails leaves a page, which is opened.
+async function failed_page({ rig, browser }, name, expectations, ...options) {
+  const html = join(rig.work, `${name}.html`), file = join(rig.work, `${name}.yaml`);
+  writeFileSync(file, expectations);
+  check(await fails(rig.call('rtse', 'run', avoid, '-w', course, '-d', '4', '--expect', file, '--page', html, '--module-path', lib, ...options)), 'the run fails');
+  const page = await open_file(browser, html);
+  await has_world(page);
+  return page;
 }
 
 const summary = (page) => page.locator('.run-summary').textContent();
@@ -56,16 +73,32 @@ const flows = [
     await has_world(page);
     await page.context().close();
   }],
-  ['a failed run opens at its end with the reason on top', async ({ rig, browser }) => {
-    const html = join(rig.work, 'failed.html');
-    const expectations = join(rig.work, 'expect.yaml');
-    writeFileSync(expectations, '- path_length: {model: pioneer2dx, min: 100}\n');
-    const failed = await rig.call('rtse', 'run', avoid, '-w', course, '-d', '3', '--expect', expectations, '--page', html, '--module-path', lib).then(() => false, () => true);
-    check(failed && existsSync(html), 'the run fails and leaves its page');
-    const page = await open_file(browser, html);
-    await has_world(page);
+  ['a failure of the whole run opens at its end with the reason on top', async (shared) => {
+    const page = await failed_page(shared, 'failed', '- path_length: {model: pioneer2dx, min: 100}\n');
     check((await summary(page)).includes('failed') && (await summary(page)).includes('path_length'), await summary(page));
-    await until('its end', async () => Math.abs((await moment(page)) - 3) < 0.05);
+    await until('its end', async () => Math.abs((await moment(page)) - 4) < 0.05);
+    await until('the model', async () => (await selection(page)) === 'pioneer2dx');
+    await page.context().close();
+  }],
+  ['a failed run opens at the time of the first violation with its object', async (shared) => {
+    const page = await failed_page(shared, 'violated', '- stay: {model: pioneer2dx, region: [-4.2, -4.2, 9, 9]}\n- value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, max: 0.1}\n');
+    const marks = await page.evaluate(() => window.studio.store.hello.page.marks.map(({ time, kind, subject }) => [time, kind, subject]));
+    same(marks.map(([, kind]) => kind), ['failure', 'failure'], 'marks');
+    check(marks.every(([time]) => time < 4), `times ${JSON.stringify(marks)}`);
+    same(marks.map(([, , subject]) => subject).sort(), ['LaserObstacleAvoid0', 'pioneer2dx'], 'objects');
+    await until('the first', async () => Math.abs((await moment(page)) - marks[0][0]) < 1e-6);
+    await until('its object', async () => (await selection(page)) === marks[0][2]);
+    await page.locator('.run-summary .why button').last().click();
+    await until('the second', async () => Math.abs((await moment(page)) - marks[1][0]) < 1e-6 && (await selection(page)) === marks[1][2]);
+    await page.locator('.mark-lane i').first().click();
+    await until('the first again', async () => Math.abs((await moment(page)) - marks[0][0]) < 1e-6);
+    same(page.problems, [], 'problems');
+    await page.context().close();
+  }],
+  ['a component in error opens the page at its transition', async (shared) => {
+    const page = await failed_page(shared, 'error', '- state: {component: LaserObstacleAvoid0, is: Active}\n', '--property', 'LaserObstacleAvoid0:fault.on_execute=error:2:0:0:1');
+    await until('the transition', async () => Math.abs((await moment(page)) - 2) < 0.15);
+    await until('the component', async () => (await selection(page)) === 'LaserObstacleAvoid0');
     await page.context().close();
   }],
   ['an exported recording has a page without a verdict', async ({ rig, browser, file }) => {
@@ -89,6 +122,140 @@ const flows = [
       await until(`a message about ${id}`, async () => /damaged|data of this page|cannot|compressed|JSON/i.test(await page.locator('body').innerText()));
       await page.context().close();
     }
+  }],
+  ['mutated data leave a message or a run, never a blank page', async ({ rig, browser, html }) => {
+    const broken = join(rig.work, 'mutated.html');
+    const text = readFileSync(html, 'utf8'), blocks = blocks_of(text), ids = [...blocks.keys()], pick = random(Number(process.env.STUDIO_SEED ?? 1));
+    const json = new Map(ids.filter((id) => !/world|collisions/.test(id)).map((id) => [id, JSON.parse(inflateSync(Buffer.from(blocks.get(id), 'base64')).toString())]));
+    const page = await open_file(browser, html);
+    for (let i = 0; i < Number(process.env.STUDIO_MUTATIONS ?? 25); ++i) {
+      const id = pick.of(ids), at = text.indexOf(`id="run-${id}">`) + `id="run-${id}">`.length;
+      writeFileSync(broken, text.slice(0, at) + mutated(blocks.get(id), json.get(id), pick) + text.slice(at + blocks.get(id).length));
+      await page.goto(pathToFileURL(broken).href);
+      await until(`page ${i}, block ${id}`, () => page.evaluate(() => window.studio?.world.frames > 0 || /damaged|cannot be|data of this page|page has no/.test(document.body.innerText)));
+    }
+    await page.context().close();
+  }],
+  ['axe finds nothing serious, light and dark', async ({ browser, html }) => {
+    for (const scheme of ['light', 'dark']) {
+      const page = await open_file(browser, html, '', { scheme, bypassCSP: true });
+      await has_world(page);
+      await page.addScriptTag({ path: axe });
+      const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+      same(violations.filter(({ impact }) => impact === 'serious' || impact === 'critical').map(({ id, nodes }) => [id, nodes[0].html]), [], scheme);
+      await page.context().close();
+    }
+  }],
+  ['two runs are compared: ghosts, dashed lines and the first difference', async ({ rig, browser, file }) => {
+    const other = join(rig.work, 'other.mcap'), html = join(rig.work, 'compared.html');
+    await rig.call('rtse', 'run', avoid, '-w', course, '-d', '14', '--seed', '8', '--record', other, '--module-path', lib);
+    await rig.call('rtse', 'page', file, other, '-o', html);
+    const said = await rig.call('rtse', 'recording', 'compare', file, other).catch((error) => error.stdout);
+    const page = await open_file(browser, html);
+    await has_world(page);
+    const text = await summary(page);
+    check(text.includes('compared') && text.includes('other.mcap') && text.includes('first difference'), text);
+    const [, time] = /at time ([0-9.]+) s/.exec(said);
+    await until('the first difference', async () => Math.abs((await moment(page)) - Number(time)) < 1e-6);
+    same(await page.locator('.mark-lane .difference').count(), 1, 'marks');
+    const ghost = () => page.evaluate(() => window.studio.world.ghosts.world?.models.get('pioneer2dx').canonical.position.toArray());
+    for (const at of [11, 4]) {
+      await scrub(page, at);
+      const wanted = await recorded_place(rig, other, at);
+      await until(`the ghost at ${at} s`, async () => near(await ghost(), wanted));
+    }
+    await scrub(page, 13.5);
+    const late = await recorded_place(rig, other, 13.5);
+    await until('the ghost behind the end of the first', async () => near(await ghost(), late));
+    await page.evaluate(() => window.studio.bottom.plots.add('/LaserObstacleAvoid0/velocity', 'data.vx'));
+    await until('the line of the other', () => page.evaluate(() => window.studio.bottom.plots.plots.at(-1).lines[0].other?.[0].at(-1) > 13.5));
+    same(page.problems, [], 'problems');
+    await page.context().close();
+  }],
+  ['equal recordings are compared without a difference', async ({ rig, browser, file }) => {
+    const html = join(rig.work, 'equal.html');
+    await rig.call('rtse', 'page', file, file, '-o', html);
+    const page = await open_file(browser, html);
+    await has_world(page);
+    check((await summary(page)).includes('equal: '), await summary(page));
+    same(await page.locator('.mark-lane i').count(), 0, 'marks');
+    await page.context().close();
+  }],
+  ['a farm with a camera, a leader with its follower, and a hundred robots have pages', async ({ rig, browser }) => {
+    const hundred = join(rig.work, 'hundred.xml');
+    writeFileSync(hundred, readFileSync(avoid, 'utf8').replaceAll('pioneer2dx', 'pioneer_0'));
+    const systems = join(worlds, 'systems');
+    for (const [name, system, world, robots] of [['farm', join(systems, 'farm.xml'), 'farm.sdf', 1], ['lead', join(systems, 'leader_follower.xml'), 'leader_follower.sdf', 2], ['hundred', hundred, 'hundred.sdf', 100]]) {
+      const html = join(rig.work, `${name}.html`);
+      await rig.call('rtse', 'run', system, '-w', join(worlds, world), '-d', '2', '--page', html, '--module-path', lib);
+      const page = await open_file(browser, html);
+      await has_world(page);
+      await scrub(page, 1.5);
+      const moving = await page.evaluate(() => window.studio.store.world.models.filter((m) => !m.static).length);
+      check(moving >= robots, `${name}: ${moving} models`);
+      if (name === 'farm') {
+        await page.evaluate(() => window.studio.bottom.show_image(`camera:${window.studio.store.world.ifaces.find((i) => i.type === 'camera').name}`));
+        await until('an image', () => page.evaluate(() => document.querySelector('.images img')?.naturalWidth > 0));
+      }
+      same(page.problems, [], name);
+      console.log(`      ${name}: ${(statSync(html).size / 1e6).toFixed(2)} MB`);
+      await page.context().close();
+    }
+  }],
+  ['the world is drawn as rtm-studio draws the recording', async ({ rig, browser, html, file }) => {
+    const studio = rig.start('rtm-studio', [file, '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
+    const url = await until('rtm-studio', () => /http:\/\/\S+/.exec(studio.log())?.[0]);
+    const drawn = async (page) => {
+      await has_world(page);
+      await scrub(page, 7);
+      await until('the fan', () => page.evaluate(() => [...window.studio.world.ranges.fans.values()][0]?.parts[1].geometry.getAttribute('position')?.count > 0));
+      return page.evaluate(() => {
+        const { world } = window.studio;
+        world.element.style.cssText = 'position:fixed;left:0;top:0;width:640px;height:480px;z-index:9';
+        world.resize();
+        world.whole();
+        world.trails.forget(); // they are of what each page has been through
+        world.draw(true);
+        return world.canvas.toDataURL('image/png');
+      });
+    };
+    const other = await open(browser, url), wanted = await drawn(other);
+    await other.context().close();
+    const page = await open_file(browser, html), mine = await drawn(page);
+    await page.context().close();
+    const tool = await open(browser, 'about:blank');
+    const { mean, far } = await compared(tool, mine, wanted);
+    await tool.context().close();
+    await rig.end(studio);
+    console.log(`      mean difference ${mean.toFixed(3)}, ${(100 * far).toFixed(2)} % of the pixels differ by more than 32`);
+    check(mean <= 2 && far < 0.01, `mean difference ${mean}`);
+  }],
+  ['scrubbing ends at the time of the hand, and shows times on the way', async ({ browser, html }) => {
+    const page = await open_file(browser, html);
+    await has_world(page);
+    const { shown, seconds, first } = await page.evaluate(async () => {
+      const { playback, store } = window.studio, times = new Set(), began = performance.now();
+      for (let i = 1; i <= 150; ++i) {
+        playback.seek((11.9 * ((i * 37) % 150)) / 150);
+        await new Promise((resolve) => setTimeout(resolve));
+        times.add(store.time.sim_time);
+      }
+      const seconds = (performance.now() - began) / 1000;
+      return { shown: times.size, seconds, first: performance.getEntriesByName('first-picture')[0].startTime };
+    });
+    console.log(`      first picture after ${first.toFixed(0)} ms, ${(shown / seconds).toFixed(0)} times a second`);
+    await until('the last', async () => Math.abs((await moment(page)) - 0) < 1e-6);
+    check(shown > 10, `${shown} times`);
+    await page.context().close();
+  }],
+  ['a run that is killed leaves the page before it', async ({ rig }) => {
+    const html = join(rig.work, 'kept.html');
+    writeFileSync(html, 'the page before');
+    const run = rig.start('rtse', ['run', avoid, '-w', course, '-d', '3000', '--page', html, '--module-path', lib]);
+    await until('its recording', () => readdirSync(rig.work).some((name) => name.startsWith('kept.html.') && name.endsWith('.mcap')));
+    run.kill('SIGKILL');
+    await run.ended;
+    same(readFileSync(html, 'utf8'), 'the page before', 'page');
   }],
   ['narrow and dark', async ({ browser, html }) => {
     const page = await open_file(browser, html, '', { width: 360, height: 700, scheme: 'dark' });

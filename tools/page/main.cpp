@@ -22,14 +22,15 @@ struct Settings {
 void add_options(base::Command& app, Settings& settings) {
   app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required()->check(base::existing_file());
   app.add_option("-o,--output", settings.page.file, "HTML file to write")->required();
+  app.add_option("--other", settings.page.other, "Recording to compare with (MCAP); its models are shown as ghosts")
+      ->check(base::existing_file());
   app.add_option("--page-camera-rate", settings.page.camera_rate, "Images of each camera per simulated second; 0: none")
       ->check(base::number_between(0, 1000.0))
       ->capture_default_str();
   app.add_option("--page-limit", settings.limit_mib, "Maximum size of the page [MiB]")
       ->check(base::number_between(1.0, largest_page))
       ->capture_default_str();
-  app.add_option("--summary", settings.summary, "JSON file with the result of the run: passed, why, seed, hash, command, at, select")
-      ->check(base::existing_file());
+  app.add_option("--summary", settings.summary, "JSON file with the result of the run (from rtse)")->check(base::existing_file());
   app.add_option("--viewer", settings.page.viewer, "run.html of the built page of rtm-studio")->capture_default_str();
 }
 

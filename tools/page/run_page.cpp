@@ -12,6 +12,7 @@
 
 #include "base/base64.h"
 #include "base/text.h"
+#include "page/failure_marks.h"
 #include "page/page_samples.h"
 #include "studio/playhead.h"
 #include "studio/recorded_details.h"
@@ -25,7 +26,10 @@ using base::Result;
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-constexpr nanoseconds part_length = 10s;
+// Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
+constexpr std::size_t part_size = 3U << 20U;
+constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
+constexpr int growth = 4;                          // of the length from one part to the next, at most
 constexpr std::string_view marker = "<!--run-->";  // in the viewer: the place of the data
 constexpr int compression_level = 9;
 constexpr std::size_t most_changes = 1000;  // of the parameters of one component
@@ -92,8 +96,13 @@ class PageFile {
 
 class RunPage {
  public:
-  RunPage(const PageOptions& options, std::shared_ptr<const studio::RecordingFacts> facts)
-      : options_(options), facts_(std::move(facts)), file_(options.file, options.limit) {}
+  using Facts = std::shared_ptr<const studio::RecordingFacts>;
+  // `other`: of the second recording; null: there is none.
+  RunPage(const PageOptions& options, Facts facts, Facts other)
+      : options_(options), facts_(std::move(facts)), other_(std::move(other)), file_(options.file, options.limit) {
+    to_ = facts_->to;
+    if (other_) to_ = std::max(to_, facts_->zero + (other_->to - other_->zero));
+  }
 
   Result<PageReport> write() {
     const auto viewer = file_text(options_.viewer);
@@ -136,40 +145,79 @@ class RunPage {
   Result<void> put_parts() {
     const auto samples = PageSamples::open(facts_, options_.camera_rate);
     if (!samples) return samples.error();
-    for (auto from = facts_->from; from <= facts_->to; from += part_length) {
-      const auto to = std::min(from + part_length, facts_->to + 1ns);
+    if (const auto opened = open_other(); !opened) return opened;
+    auto length = shortest_part;
+    for (auto from = facts_->from; from <= to_;) {
+      const auto to = std::min(from + length, to_ + 1ns);
       auto part = (*samples)->part_until(to);
       if (!part) return part.error();
-      if (const auto posed = add_poses(*part, from, to); !posed) return posed.error();
-      const auto id = std::to_string(parts_.size());
-      if (!file_.put_data(id, studio::to_text(*part))) {
-        part->erase("images");
-        if (!file_.put_data(id, studio::to_text(*part))) {
-          left_out_.push_back("everything after " + std::to_string(facts_->seconds(from)) + " s: the page has reached its limit");
-          until_ = from;
-          break;
-        }
-        are_images_left_out_ = true;
+      if (const auto posed = add_poses(*part, *facts_, *playhead_, from, to); !posed) return posed.error();
+      if (const auto added = add_other(*part, from, to); !added) return added.error();
+      const auto size = put_part(*part);
+      if (!size) {
+        left_out_.push_back("everything after " + std::to_string(facts_->seconds(from)) + " s: the page has reached its limit");
+        until_ = from;
+        break;
       }
       parts_.push_back(Json::array({facts_->seconds(from), facts_->seconds(to)}));
+      length = std::clamp(length * static_cast<std::int64_t>(part_size) / static_cast<std::int64_t>(*size),
+                          std::max(shortest_part, length / growth), std::min(longest_part, length * growth));
+      from = to;
     }
     if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
     for (auto& line : (*samples)->left_out()) left_out_.push_back(std::move(line));
     return {};
   }
 
+  // The size of its text; nothing: the page has reached its limit.
+  std::optional<std::size_t> put_part(Json& part) {
+    const auto id = std::to_string(parts_.size());
+    const auto text = studio::to_text(part);
+    if (file_.put_data(id, text)) return text.size();
+    part.erase("images");
+    if (!file_.put_data(id, studio::to_text(part))) return std::nullopt;
+    are_images_left_out_ = true;
+    return text.size();
+  }
+
+  Result<void> open_other() {
+    if (!other_) return {};
+    auto samples = PageSamples::open(other_, 0);
+    if (!samples) return samples.error();
+    other_samples_ = std::move(*samples);
+    auto playhead = studio::Playhead::open(other_);
+    if (!playhead) return playhead.error();
+    other_playhead_ = std::move(*playhead);
+    if (scene_) other_playhead_->set_scene(scene_);
+    return {};
+  }
+
+  // "other": the poses and samples of the second recording, whose frames name the links of the first one's world.
+  Result<void> add_other(Json& part, nanoseconds from, nanoseconds to) {
+    if (!other_) return {};
+    const auto there = [&](nanoseconds time) { return other_->zero + (time - facts_->zero); };
+    auto other = other_samples_->part_until(there(to));
+    if (!other) return other.error();
+    if (const auto posed = add_poses(*other, *other_, *other_playhead_, there(from), there(to)); !posed) return posed.error();
+    other->erase("images");
+    other->erase("late");  // models that the first world does not have from its beginning have no ghosts
+    part["other"] = std::move(*other);
+    return {};
+  }
+
   // "poses" and "late": the frames and events that a viewer is sent, [s, base64] and [s, event]; the first of a part is whole.
-  Result<void> add_poses(Json& part, nanoseconds from, nanoseconds to) {
+  static Result<void> add_poses(Json& part, const studio::RecordingFacts& facts, studio::Playhead& playhead, nanoseconds from,
+                                nanoseconds to) {
     part["poses"] = part["late"] = Json::array();
     const auto step = nanoseconds(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
     for (auto time = from; time < to; time += step) {
-      const auto news = playhead_->look(time, time == from);
+      const auto news = playhead.look(time, time == from);
       if (!news) return news.error();
       for (const auto& [key, frame] : *news) {
         if (frame.is_binary)
-          part["poses"].push_back(Json::array({facts_->seconds(time), base::to_base64(*frame.octets)}));
+          part["poses"].push_back(Json::array({facts.seconds(time), base::to_base64(*frame.octets)}));
         else
-          part["late"].push_back(Json::array({facts_->seconds(time), Json::parse(*frame.octets)}));
+          part["late"].push_back(Json::array({facts.seconds(time), Json::parse(*frame.octets)}));
       }
     }
     return {};
@@ -210,8 +258,10 @@ class RunPage {
 
   void put_index() {
     Json hello = studio::recorded_hello(*facts_);
-    if (until_) hello["recording"]["to"] = facts_->seconds(*until_);
+    hello["recording"]["to"] = facts_->seconds(until_.value_or(to_));
     Json summary = options_.summary;
+    mark_failures(summary, *facts_, scene_ ? scene_->models : Json::array());
+    if (other_) summary["other"] = std::filesystem::path(other_->file).filename().string();
     summary["left_out"] = left_out_;
     hello["page"] = std::move(summary);
     const Json index{{"hello", std::move(hello)},
@@ -223,8 +273,11 @@ class RunPage {
   }
 
   const PageOptions& options_;
-  const std::shared_ptr<const studio::RecordingFacts> facts_;
+  const Facts facts_, other_;
+  nanoseconds to_{0};  // the end of the longer recording, in times of the first
   PageFile file_;
+  std::unique_ptr<PageSamples> other_samples_;
+  std::unique_ptr<studio::Playhead> other_playhead_;
   std::unique_ptr<studio::Playhead> playhead_;
   std::shared_ptr<const studio::RecordedScene> scene_;
   std::string scene_problem_;
@@ -237,10 +290,16 @@ class RunPage {
 }  // namespace
 
 Result<PageReport> write_run_page(const PageOptions& options) {
-  auto facts = studio::RecordingFacts::read(options.recording);
-  if (!facts) return facts.error();
+  const auto read = [](const std::string& file) -> Result<RunPage::Facts> {
+    if (file.empty()) return RunPage::Facts();
+    auto facts = studio::RecordingFacts::read(file);
+    if (!facts) return facts.error();
+    return RunPage::Facts(std::make_shared<const studio::RecordingFacts>(std::move(*facts)));
+  };
+  const auto facts = read(options.recording), other = read(options.other);
+  if (!facts || !other) return (facts ? other : facts).error();
   try {
-    return RunPage(options, std::make_shared<const studio::RecordingFacts>(std::move(*facts))).write();
+    return RunPage(options, *facts, *other).write();
   } catch (const Json::exception& e) {
     return Error{base::in_quotes(options.recording) +
                  ": a sample has not the members that its channel has in recordings of rtse: " + e.what()};

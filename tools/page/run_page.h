@@ -1,6 +1,6 @@
 // Writes a recording as one HTML file that shows the run in a browser without a server and without a network: the page of rtm-studio, with
 // the data of the run in it (docs/run-page.md). The file is complete or it is not there, and an older one of its name stays until then.
-// Memory: one part of the recording at a time. One thread at a time.
+// Memory: one part of the recording at a time, of a few MiB. One thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,12 @@ namespace page {
 
 struct PageOptions {
   std::string recording;                          // MCAP
+  std::string other;                              // a second recording, shown as ghosts; empty: none
   std::string file;                               // the page
   std::string viewer;                             // run.html of the built page of rtm-studio
   double camera_rate = 1;                         // images of each camera per simulated second; 0: none
   std::uint64_t limit = 64ULL << 20U;             // of the page [bytes]
-  studio::Json summary = studio::Json::object();  // of the run: passed, why, seed, hash, command, at, select; all optional
+  studio::Json summary = studio::Json::object();  // of the run, see failure_marks.h; all optional
 };
 
 struct PageReport {

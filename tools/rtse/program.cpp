@@ -50,7 +50,7 @@ int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) 
   app.group_subcommands("Look", {"ls", "tree", "cat", "print", "watch", "wait", "check", "diff"})
       ->group_subcommands("Connect and change", {"con", "dis", "conf", "act", "deact", "reset", "inject", "ec", "mgr", "exit", "del"})
       ->group_subcommands("Save and run systems", {"save", "load", "start", "stop", "teardown", "run", "join", "leave", "demo"})
-      ->group_subcommands("Record", {"record", "play", "replay", "goto", "recording"})
+      ->group_subcommands("Record", {"record", "play", "replay", "goto", "recording", "page"})
       ->group_subcommands("Campaign", {"sweep", "hunt", "results"})
       ->group_subcommands("Write components", {"new"});
   const TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);

@@ -32,6 +32,7 @@ constexpr std::array verbs = {
     Verb{"results", "rtse-campaign", "Show the results of a campaign: tables, rates, pages"},
     Verb{"replay", "rtse-recorder", "Send recorded inputs to one component and compare its outputs"},
     Verb{"goto", "rtse-recorder", "Repeat a recorded run and stop at a given time"},
+    Verb{"page", "rtse-recorder", "Write a recording, or two to compare, as one HTML page"},
     Verb{"recording", "rtse-recorder", "Inspect recordings: info, ls, cat, export, compare, repair"},
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "run/verdict_time.h"
 #include "system/value_codec.h"
 
 namespace editor {
@@ -18,21 +19,14 @@ std::string list(const std::vector<std::string>& names) { return names.empty() ?
 
 bool is_among(const std::vector<std::string>& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); }
 
-// "/host/A0.rtc:out", "A0:out" -> "A0".
-std::string component_of(const std::string& port) {
-  const auto path = port.substr(0, port.rfind(':'));
-  const auto name = path.substr(path.rfind('/') + 1);
-  return name.ends_with(".rtc") ? name.substr(0, name.size() - 4) : name;
-}
-
 }  // namespace
 
 Result<void> check_components(const std::vector<Expectation>& expectations, const SavedSystem& system) {
   std::vector<std::string> names;
   for (const auto& component : system.components) names.push_back(component.instance);
   for (const auto& expectation : expectations) {
-    const auto name = expectation.kind == Kind::state ? expectation.component : component_of(expectation.port);
     if (expectation.kind != Kind::state && expectation.kind != Kind::value) continue;
+    const auto name = failed_object(expectation);
     if (!is_among(names, name))
       return about(expectation, "the system has no component " + base::in_quotes(name) + "; it has " + list(names));
   }

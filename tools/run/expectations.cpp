@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "run/flow_text.h"
+#include "run/verdict_time.h"
 #include "run/yaml_shape.h"
 
 namespace editor {
@@ -318,7 +319,11 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const S
     const auto command = seen.commands.find(expectation.command);
     if (!verdict.problem.empty() && expectation.kind == Expectation::Kind::command && command != seen.commands.end())
       verdict.details = command->second.output;
-    if (!verdict.problem.empty()) verdict.failure = subject_of(expectation) + ": " + verdict.problem + " (" + expectation.text + ")";
+    if (!verdict.problem.empty()) {
+      verdict.failure = subject_of(expectation) + ": " + verdict.problem + " (" + expectation.text + ")";
+      verdict.time = failure_time(expectation, seen);
+      verdict.subject = failed_object(expectation);
+    }
     verdicts.push_back(std::move(verdict));
   }
   return verdicts;

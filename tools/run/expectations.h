@@ -58,6 +58,8 @@ struct SeenValue {
   double sum = 0, last = 0;  // of the numbers
   std::string problem;       // why other samples did not count
   bool is_over = false;      // the component that sent the last one was killed
+  // By text of the expectation: the stamp [s] of the first sample that violated it.
+  std::map<std::string, double> violated_at = {};
   void take(double number);
   // Of the numbers that were no NaN; nothing when there were none.
   std::optional<double> mean() const;
@@ -83,9 +85,11 @@ struct Seen {
 
 struct Verdict {
   std::string expectation;
-  std::string problem;       // empty: fulfilled
-  std::string details = {};  // what a command that failed had said: its last lines
-  std::string failure = {};  // the problem as a sentence of its own, which begins with what failed; empty: EXPECTATION: PROBLEM
+  std::string problem;              // empty: fulfilled
+  std::string details = {};         // what a command that failed had said: its last lines
+  std::string failure = {};         // the problem as a sentence of its own, which begins with what failed; empty: EXPECTATION: PROBLEM
+  std::optional<double> time = {};  // of the failure [simulated s]; nothing: not known, or the end of the run
+  std::string subject = {};         // the model or component that failed; empty: not known
 };
 // The line to print of one that is not fulfilled.
 std::string failure_text(const Verdict& verdict);

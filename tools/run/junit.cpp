@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <pugixml.hpp>
 
 #include "base/text.h"
@@ -22,6 +24,17 @@ void add_text(pugi::xml_node parent, const char* name, const std::string& text) 
   if (!text.empty()) parent.append_child(name).text().set(printable(text).c_str());
 }
 
+std::string attachment_line(const std::string& file) {
+  if (file.empty()) return "";
+  std::error_code ignored;
+  auto path = std::filesystem::absolute(file, ignored).lexically_normal();
+  if (const char* project = std::getenv("CI_PROJECT_DIR")) {
+    const auto relative = path.lexically_relative(std::filesystem::path(project).lexically_normal());
+    if (!relative.empty() && *relative.begin() != "..") path = relative;
+  }
+  return "[[ATTACHMENT|" + path.string() + "]]";
+}
+
 }  // namespace
 
 base::Result<void> write_junit_suite(const std::string& file, const std::string& name, const std::vector<JunitCase>& cases) {
@@ -40,7 +53,8 @@ base::Result<void> write_junit_suite(const std::string& file, const std::string&
       set_text(problem, "message", one.problem);
       if (!one.details.empty()) problem.text().set(printable(one.details).c_str());
     }
-    add_text(test, "system-out", one.output);
+    const bool has_both = !one.output.empty() && !one.attachment.empty();
+    add_text(test, "system-out", one.output + (has_both ? "\n" : "") + attachment_line(one.attachment));
     add_text(test, "system-err", one.errors);
   }
   suite.append_attribute("tests") = static_cast<unsigned long long>(cases.size());

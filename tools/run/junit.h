@@ -14,9 +14,11 @@ struct JunitCase {
   double wall_s = 0;
   std::string problem{}, details{};  // of one that did not pass
   std::string output{}, errors{};    // of its programs
+  std::string attachment{};          // a file that GitLab and Jenkins show beside the case; empty: none
 };
 
-// A file that cannot be written is an Error.
+// Attachments are named in "system-out": relative to CI_PROJECT_DIR where GitLab sets it, else absolute, as Jenkins expects it. A file that
+// cannot be written is an Error.
 base::Result<void> write_junit_suite(const std::string& file, const std::string& name, const std::vector<JunitCase>& cases);
 
 }  // namespace editor

@@ -1,6 +1,7 @@
 #include "run/port_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -36,6 +37,19 @@ void take_all(const Json& json, SeenValue& seen) {
   for (const auto& value : json) take_all(value, seen);
 }
 
+std::string key_of(const Expectation& expectation) { return expectation.port + " " + expectation.member; }
+
+bool is_within(const Expectation& limit, double number) {
+  return !(limit.min && !(number >= *limit.min)) && !(limit.max && !(number <= *limit.max));  // NaN is not within
+}
+
+// [s]; not a number for a sample without a stamp.
+double stamp_of(const Json& sample) {
+  const auto stamp = sample.is_object() ? sample.find("tm") : sample.end();
+  if (!sample.is_object() || stamp == sample.end() || !stamp->is_object()) return NAN;
+  return stamp->value("sec", 0.0) + stamp->value("nsec", 0.0) * 1e-9;
+}
+
 const Json* find(const Json& sample, const std::vector<std::string>& path) {
   const Json* at = &sample;
   for (const auto& step : path) {
@@ -56,6 +70,7 @@ const Json* find(const Json& sample, const std::vector<std::string>& path) {
 Result<void> PortValues::listen(CORBA::ORB_ptr orb, const Session& session, const std::vector<Expectation>& expectations) {
   for (const auto& expectation : expectations) {
     if (expectation.kind != Expectation::Kind::value) continue;
+    if (expectation.min || expectation.max) seen_.lock()->limits[key_of(expectation)].push_back(&expectation);
     const bool is_known = std::ranges::any_of(listening_, [&](const Listening& one) {
       return one.expectation->port == expectation.port && one.expectation->member == expectation.member;
     });
@@ -87,8 +102,7 @@ void PortValues::forget(const std::set<std::string>& instances) {
   for (const auto& one : listening_) {
     if (!instances.contains(one.instance)) continue;
     auto all = seen_.lock();
-    if (const auto found = all->find(one.expectation->port + " " + one.expectation->member); found != all->end())
-      found->second.is_over = true;
+    if (const auto found = all->values.find(key_of(*one.expectation)); found != all->values.end()) found->second.is_over = true;
   }
 }
 
@@ -104,13 +118,13 @@ Result<void> PortValues::listen_again(CORBA::ORB_ptr orb, const Session& session
 
 std::optional<SeenValue> PortValues::so_far(const std::string& port, const std::string& member) const {
   const auto all = seen_.lock();
-  const auto found = all->find(port + " " + member);
-  return found == all->end() || found->second.is_over ? std::nullopt : std::optional(found->second);
+  const auto found = all->values.find(port + " " + member);
+  return found == all->values.end() || found->second.is_over ? std::nullopt : std::optional(found->second);
 }
 
 std::map<std::string, SeenValue> PortValues::end() {
   listening_.clear();
-  return seen_.snapshot();
+  return seen_.lock()->values;
 }
 
 void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
@@ -118,7 +132,7 @@ void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, 
   const auto sample = decode(type, payload, little);
   if (sample && path.empty()) {
     auto all = seen_.lock();
-    return take_all(*sample, (*all)[expectation.port + " "]);
+    return take_all(*sample, all->values[key_of(expectation)]);
   }
   const Json* member = sample ? find(*sample, path) : nullptr;
   std::string problem;
@@ -133,11 +147,14 @@ void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, 
     problem = "the samples have no number " + expectation.member + "; they have " + numbers_of(*sample);
   }
   auto all = seen_.lock();
-  auto& seen = (*all)[expectation.port + " " + expectation.member];
-  if (problem.empty()) {
-    seen.take(number);
-  } else {
+  auto& seen = all->values[key_of(expectation)];
+  if (!problem.empty()) {
     seen.problem = problem;
+    return;
+  }
+  seen.take(number);
+  for (const auto* limit : all->limits[key_of(expectation)]) {
+    if (!is_within(*limit, number)) seen.violated_at.try_emplace(limit->text, stamp_of(*sample));
   }
 }
 

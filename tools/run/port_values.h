@@ -40,7 +40,11 @@ class PortValues {
   void take(CORBA::TypeCode_ptr type, const Expectation& expectation, const std::vector<std::string>& path,
             std::span<const unsigned char> payload, bool little);
 
-  base::Guarded<std::map<std::string, SeenValue>, base::Rank::samples> seen_;
+  struct Collected {
+    std::map<std::string, SeenValue> values;                        // by "port member"
+    std::map<std::string, std::vector<const Expectation*>> limits;  // on them
+  };
+  base::Guarded<Collected, base::Rank::samples> seen_;
   std::vector<Listening> listening_;
 };
 

@@ -307,6 +307,7 @@ void Player::expect(const ReadAhead::Sample& sample, std::chrono::nanoseconds no
 void Player::complain(Output& output, std::uint64_t tick, std::chrono::nanoseconds time, const std::string& what) {
   ++output.result.different;
   if (!output.result.first.empty()) return;
+  output.result.first_s = std::chrono::duration<double>(time).count();
   output.result.first =
       "tick " + std::to_string(tick) + " (" + base::format_number(std::chrono::duration<double>(time).count()) + " s): " + what;
 }

@@ -43,6 +43,7 @@ struct ReplayedOutput {
   std::uint64_t recorded = 0;   // that it should have sent
   std::uint64_t different = 0;  // of those, wrong or missing
   std::string first;            // "tick 12 (1.200 s): data.vx: 0.5 and 0.4"
+  double first_s = 0;           // its time, of the recording
 };
 
 struct ReplayResult {

@@ -144,17 +144,20 @@ std::string RunJudge::why_error(const std::string& component) const {
 
 // A component that has ended in an error, or has gone, is no success, whether somebody has asked for its state or not.
 void RunJudge::check_states(RunResult& result) const {
-  std::string problem;
+  std::string problem, first;
   for (const auto& [component, state] : seen_.states) {
     const bool is_judged = std::ranges::any_of(expectations_, [&](const Expectation& expectation) {
       return expectation.kind == Expectation::Kind::state && expectation.component == component;
     });
     if (hooks_.script && hooks_.script->excuses(component)) continue;
-    if (!is_judged && (state == "Error" || state == "gone"))
-      problem += (problem.empty() ? "" : ", ") + component + " is " + state + why_error(component);
+    if (is_judged || (state != "Error" && state != "gone")) continue;
+    if (first.empty()) first = component;
+    problem += (problem.empty() ? "" : ", ") + component + " is " + state + why_error(component);
   }
-  result.verdicts.push_back(
-      {.expectation = "no component ends in an error", .problem = problem, .failure = problem.empty() ? "" : "component " + problem});
+  result.verdicts.push_back({.expectation = "no component ends in an error",
+                             .problem = problem,
+                             .failure = problem.empty() ? "" : "component " + problem,
+                             .subject = first});
 }
 
 Result<void> RunJudge::run_commands(const std::string& naming) {

@@ -48,6 +48,14 @@ struct RunHooks {
   std::function<Result<void>(RunningSystem&)> driver{};
 };
 
+// What happened in a run at a time, for the time line of its page.
+struct RunMark {
+  double time = 0;   // [simulated s]
+  std::string kind;  // "event", "fault", "restored"
+  std::string text;
+  std::string subject = {};  // the model or component; empty: none
+};
+
 struct RunResult {
   std::uint64_t seed = 0;
   // Nothing was run, because what was asked for does not fit: the system or its options, or the file of expectations.
@@ -57,6 +65,8 @@ struct RunResult {
   std::string logs;                // last lines of all processes, when there was a problem
   std::vector<std::string> notes;  // what is not as the world's file says
   std::vector<Verdict> verdicts;
+  std::vector<RunMark> marks;  // what a script did; not in JSON
+  std::string page;            // HTML of the run, if it could be written; empty: none was wanted
   std::string state_hash;
   std::string run_hash;    // of the hash log
   int runs = 1;            // 2 with --twice

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "campaign/results/disk_room.h"
 #include "campaign/run/iface_faults.h"
+#include "campaign/run/sweep.h"
 #include "run/warm_program.h"
 #include "system/remote.h"
 
@@ -74,7 +75,8 @@ class Hunt {
     return is_fresh ? maker_.fresh(random_) : maker_.changed(corpus_[random_.below(corpus_.size())], random_);
   }
 
-  Outcome run(const HuntCase& tried, const std::string& name) const {
+  // `find`: the plan of a find; the run leaves a page beside it, if it fails and pages are wanted.
+  Outcome run(const HuntCase& tried, const std::string& name, const std::string& find = "") const {
     RowRunOptions options;
     options.folder = options_.folder + "/" + name;
     options.deeds = deeds_of(campaign_, tried);
@@ -82,6 +84,10 @@ class Hunt {
     options.checks_invariants = true;
     options.draws = false;
     options.warm = &warm_;
+    if (options_.writes_pages && !find.empty()) {
+      options.page = fs::path(find).replace_extension(".html").string();
+      options.command = again(find, 1);
+    }
     auto outcome = run_row(orb_, campaign_, tried.row, options, reporter_);
     std::error_code ignored;
     fs::remove_all(options.folder, ignored);
@@ -210,7 +216,7 @@ class Hunt {
     find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
     find.problem = broken_.problem;
     find.state_hash = broken_.state_hash;
-    const auto first = run(find.tried, "again"), second = run(find.tried, "again");
+    const auto first = run(find.tried, "again"), second = run(find.tried, "again", find.file);
     if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !editor::is_interrupted()) {
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.run.problem;
       return false;

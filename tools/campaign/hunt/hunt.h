@@ -20,7 +20,8 @@ struct HuntOptions {
   std::size_t most_cases = 0;  // 0: as many as the budget allows
   std::size_t most_finds = 0;  // 0: any number
   int jobs = 1;
-  std::string folder;  // for finds
+  std::string folder;         // for finds
+  bool writes_pages = false;  // find-N.html beside find-N.yaml
   std::chrono::milliseconds call_limit{1000};
 };
 

@@ -202,7 +202,7 @@ Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
     const auto is_now = is_true(scene, *event.when, now_s);
     if (!is_now) return is_now.error();
     if (!*is_now) continue;
-    happened_.insert(i);
+    happened_[i] = now_s;
     if (const auto done = happen(scene, event); !done) return done.error();
   }
   for (auto [conditions, moments] : {std::pair(&deeds_.never, &broken_), std::pair(&deeds_.eventually, &fulfilled_)}) {
@@ -273,6 +273,7 @@ std::vector<editor::Verdict> DeedsRunner::verdicts() const {
     verdicts.push_back(
         {"never: " + deeds_.never[i].text,
          broken == broken_.end() ? "" : "it was so at " + base::format_number(std::round(broken->second * 1e6) / 1e6) + " s"});
+    if (broken != broken_.end()) verdicts.back().time = broken->second;
   }
   for (std::size_t i = 0; i < deeds_.eventually.size(); ++i) {
     const auto& condition = deeds_.eventually[i];
@@ -283,8 +284,24 @@ std::vector<editor::Verdict> DeedsRunner::verdicts() const {
     if (done != fulfilled_.end() && done->second > limit + step_s_ / 2)
       problem = "became true at t = " + base::format_number(std::round(done->second * 1e6) / 1e6) + " s, too late";
     verdicts.push_back({"eventually: " + condition.text, problem});
+    if (!problem.empty()) verdicts.back().time = limit;
   }
   return verdicts;
+}
+
+std::vector<editor::RunMark> DeedsRunner::marks() const {
+  std::vector<editor::RunMark> marks;
+  for (const auto& fault : deeds_.faults) {
+    marks.push_back({fault.at_s, "fault", fault.text(), fault.target});
+    if (fault.for_s) marks.push_back({fault.at_s + *fault.for_s, "restored", fault.text(), fault.target});
+  }
+  for (std::size_t i = 0; i < deeds_.events.size(); ++i) {
+    const auto& event = deeds_.events[i];
+    const auto on_condition = happened_.find(i);
+    if (on_condition != happened_.end()) marks.push_back({on_condition->second, "event", event.text});
+    if (event.at_s) marks.push_back({*event.at_s, "event", event.text});
+  }
+  return marks;
 }
 
 }  // namespace campaign

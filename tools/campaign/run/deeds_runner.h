@@ -39,6 +39,8 @@ class DeedsRunner {
   bool excuses(const std::string& instance) const;
   // Of never and eventually.
   std::vector<editor::Verdict> verdicts() const;
+  // Faults, and events that happened, in no order.
+  std::vector<editor::RunMark> marks() const;
   // What did nothing, and why: each once.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -65,7 +67,7 @@ class DeedsRunner {
   std::int64_t look_every_ = 100;  // steps
   std::vector<Timed> timed_;       // by step
   std::size_t next_ = 0;
-  std::set<std::size_t> happened_;           // events on a condition
+  std::map<std::size_t, double> happened_;   // event on a condition -> when [s]
   std::map<std::size_t, double> broken_;     // never -> when [s]
   std::map<std::size_t, double> fulfilled_;  // eventually -> when [s]
   std::set<std::size_t> killed_;             // faults that killed a host which is not there again

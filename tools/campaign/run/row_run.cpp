@@ -8,11 +8,25 @@
 #include "base/text.h"
 #include "campaign/run/row_script.h"
 #include "campaign/run/value_script.h"
+#include "run/run_page.h"
 #include "run/warm_program.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
 namespace {
+
+std::string recording_of(const RowRunOptions& options) { return options.folder + "/run.mcap"; }
+
+// A page that cannot be written takes nothing from the verdict.
+void write_page(const RowRunOptions& options, editor::RunResult& run) {
+  if (options.page.empty()) return;
+  std::error_code ignored;
+  if (!run.is_passed() && fs::exists(recording_of(options), ignored)) {
+    const auto written = editor::write_run_page({recording_of(options), options.page}, editor::page_summary(run, options.command));
+    if (!written) run.notes.push_back(written.error().message);
+  }
+  if (!options.records) fs::remove(recording_of(options), ignored);
+}
 
 editor::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
   auto run = campaign.plan().run;
@@ -20,7 +34,7 @@ editor::RunOptions options_of(const Campaign& campaign, const Row& row, const Ro
   run.duration_s = options.duration_s.value_or(run.duration_s);
   run.properties = campaign.properties_of(row);
   run.keep = options.folder;
-  if (options.records) run.record = options.folder + "/run.mcap";
+  if (options.records || !options.page.empty()) run.record = recording_of(options);
   return run;
 }
 
@@ -68,6 +82,7 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
   for (const auto& property : script.properties()) run.properties.push_back(property);
   const editor::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
   outcome.run = editor::run_system(orb, run, reporter, hooks);
+  write_page(options, outcome.run);
   outcome.measures = script.measures();
   outcome.features = script.features();
   for (const auto& measure : campaign.plan().measures) {

@@ -23,6 +23,8 @@ struct RowRunOptions {
   bool checks_invariants = false;      // also when the plan does not ask for it
   bool draws = true;                   // a picture of a run that fails, if the plan has pictures
   bool records = false;                // run.mcap in the folder
+  std::string page{};                  // HTML to write if it fails; empty: none
+  std::string command{};               // that repeats it, for its page
   const editor::WarmPrograms* warm = nullptr;
 };
 

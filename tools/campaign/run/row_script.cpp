@@ -48,6 +48,7 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
     }
     measures_ = take_measures(campaign_.plan().measures, seen, placed_models(row_, campaign_.models()), 0);
   }
+  result.marks = deeds_.marks();
   result.notes.insert(result.notes.end(), deeds_.notes().begin(), deeds_.notes().end());
   add_features(seen);
   if (!scene || !options_.draws || result.is_passed()) return;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/interrupt.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "campaign/results/disk_room.h"
 #include "campaign/run/row_locks.h"
@@ -43,6 +44,19 @@ void work(const Campaign& campaign, const SweepOptions& options, const RunRow& r
 
 }  // namespace
 
+std::string again(const std::string& plan, std::size_t row) {
+  return base::shell_line(base::command_words({"rtse", "sweep"}, {plan}, {"--row", std::to_string(row)}));
+}
+
+RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
+                          const editor::WarmPrograms* warm) {
+  return {.folder = folder,
+          .records = options.records,
+          .page = options.writes_pages ? folder + "/run.html" : "",
+          .command = again(campaign.plan().file, row),
+          .warm = warm};
+}
+
 std::string folder_name(std::size_t number, const std::string& key) { return "row-" + std::to_string(number) + "-" + key.substr(0, 8); }
 
 Result<void> make_kept(const SweepOptions& options) {
@@ -71,7 +85,7 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
   const auto& todo = tally.todo();
   const auto warm = todo.size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
   const auto run = [&](const Row& row, const std::string& folder) {
-    return run_row(orb, campaign, row, {.folder = folder, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
+    return run_row(orb, campaign, row, row_options(campaign, options, row.number, folder, warm ? &*warm : nullptr), reporter);
   };
   {
     const RowLocks locks(options.kept);

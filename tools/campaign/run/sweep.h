@@ -9,6 +9,7 @@
 
 #include "campaign/results/store.h"
 #include "campaign/run/campaign.h"
+#include "campaign/run/row_run.h"
 
 namespace campaign {
 
@@ -19,7 +20,8 @@ struct SweepOptions {
   double audit = 0;                         // the fraction of stored rows that is run again
   std::size_t first_row = 1, last_row = 0;  // only these; 0: to the end
   bool records = false;
-  bool fails_fast = false;  // no new row after one that failed
+  bool writes_pages = false;  // run.html beside the other files of a row that fails
+  bool fails_fast = false;    // no new row after one that failed
   std::chrono::milliseconds call_limit{1000};
 };
 
@@ -46,6 +48,11 @@ struct SweepResult {
   bool is_interrupted = false;
 };
 
+// The command that repeats a row of a plan.
+std::string again(const std::string& plan, std::size_t row);
+// Of a row whose files are in `folder`.
+RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
+                          const editor::WarmPrograms* warm);
 // Of the files of a row, in the folder for kept files.
 std::string folder_name(std::size_t number, const std::string& key);
 // The folder for kept files. The error: it cannot be made, or its disk is full.

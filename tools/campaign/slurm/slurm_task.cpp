@@ -103,9 +103,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = fs::path(scratch->path()) / name;
-    auto outcome =
-        run_row(orb, campaign, *row,
-                {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
+    auto outcome = run_row(orb, campaign, *row, row_options(campaign, options, number, folder.string(), warm ? &*warm : nullptr), reporter);
     if (editor::is_interrupted() && !outcome.run.problem.empty()) return;
     const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);

@@ -26,6 +26,7 @@ struct HuntCall {
   int jobs = 1;
   std::size_t cases = 0, finds = 0;
   std::int64_t seed = -1;
+  bool pages = false;
 };
 
 // "90", "90s", "10m", "2h".
@@ -94,6 +95,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   options.most_cases = call.cases;
   options.most_finds = call.finds;
   options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
+  options.writes_pages = call.pages;
   options.call_limit = session.call_timeout();
   const bool shows = isatty(2) != 0 && !console.json();
   const auto result = hunt(
@@ -142,6 +144,7 @@ void add_hunt(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--finds", call->finds, "Stop after N failures found")->check(base::number_between(1, 1e6));
   command->add_option("--seed", call->seed, "Seed of the hunt (default: that of the plan)")->check(base::number_between(0, 1e18));
   command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)");
+  command->add_flag("--page", call->pages, "Write an HTML page for each failure found, beside its plan");
   command->callback(
       [&chosen, call] { chosen.work = [call](const Session& session, Console& console) { hunt_plan(session, console, *call); }; });
 }

@@ -40,7 +40,7 @@ struct SweepCall {
   std::size_t chunk = 10;
   int jobs = 1, tries = 3;
   std::size_t row = 0;
-  bool records = false, fails_fast = false, prints_schema = false;
+  bool records = false, pages = false, fails_fast = false, prints_schema = false;
 };
 
 std::string results_of(const SweepCall& call) {
@@ -77,8 +77,8 @@ void remove_files_of_run(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     const auto name = entry.path().filename().string();
     const bool is_log = name.starts_with("rtcd-") && name.ends_with(".log");
-    constexpr std::array names = {"omninames.err", "omninames.log", "sim-server.log", "recorder.log", "record.txt",
-                                  "system.xml",    "expect.yaml",   "picture.png",    "run.mcap",     "world"};
+    constexpr std::array names = {"omninames.err", "omninames.log", "sim-server.log", "recorder.log", "record.txt", "system.xml",
+                                  "expect.yaml",   "picture.png",   "run.mcap",       "run.html",     "world"};
     if (is_log || std::ranges::find(names, name) != names.end()) fs::remove_all(entry.path(), ignored);
   }
 }
@@ -93,7 +93,13 @@ void run_one(const Session& session, Console& console, const Campaign& campaign,
   if (!console.json()) std::printf("row %zu  %s\n", row->number, base::printable(values_text(*row)).c_str());
   std::fflush(stdout);
   remove_files_of_run(folder);
-  const auto outcome = run_row(session.orb(), campaign, *row, {.folder = folder, .keeps_files = true, .records = call.records}, console);
+  const auto outcome = run_row(session.orb(), campaign, *row,
+                               {.folder = folder,
+                                .keeps_files = true,
+                                .records = call.records,
+                                .page = call.pages ? folder + "/run.html" : "",
+                                .command = again(call.plan, call.row)},
+                               console);
   nlohmann::ordered_json json{{"row", row->number},
                               {"seed", row->seed},
                               {"key", campaign.key(*row)},
@@ -144,7 +150,7 @@ void tell(Console& console, const SweepResult& result, const SweepCall& call) {
   for (std::size_t i = 0; i < result.failed.size() && i < enough; ++i) {
     const auto number = std::to_string(result.failed[i].number);
     console.warn("row " + number + ": " + result.failed[i].problem);
-    console.warn("  again: " + base::shell_line(base::command_words({"rtse", "sweep"}, {call.plan}, {"--row", number})));
+    console.warn("  again: " + again(call.plan, result.failed[i].number));
   }
   if (p.failed > enough)
     console.warn("and " + std::to_string(p.failed - enough) + " more; " +
@@ -195,6 +201,7 @@ SweepOptions options_of(const Session& session, const SweepCall& call) {
   options.jobs = call.jobs;
   if (const auto rows = parse_row_range(call.rows)) std::tie(options.first_row, options.last_row) = *rows;
   options.records = call.records;
+  options.writes_pages = call.pages;
   options.fails_fast = call.fails_fast;
   options.call_limit = session.call_timeout();
   const auto percent = base::parse_number(call.audit.ends_with("%") ? call.audit.substr(0, call.audit.size() - 1) : call.audit);
@@ -211,6 +218,7 @@ SlurmOptions slurm_options_of(const SweepCall& call, const SweepOptions& options
   slurm.command = {editor::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
                    std::to_string(call.jobs)};
   if (call.records) slurm.command.emplace_back("--record");
+  if (call.pages) slurm.command.emplace_back("--page");
   return slurm;
 }
 
@@ -295,6 +303,7 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
                                  : "expected a fraction as 5% or 0.05, got " + base::in_quotes(text);
                     });
   command->add_flag("--record", call->records, "Record all ports of failed rows");
+  command->add_flag("--page", call->pages, "Write the HTML page run.html for each failed row, in its folder of --keep");
   auto* fails_fast = command->add_flag("--fail-fast", call->fails_fast, "Start no further rows after a failure");
   command->add_flag("--schema", call->prints_schema, "Print the JSON Schema of plans");
   command->callback([&chosen, call, plan, audit, fails_fast] {

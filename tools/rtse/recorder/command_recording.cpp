@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/descriptors.h"
 #include "base/text.h"
@@ -22,6 +21,7 @@
 #include "rtse/command.h"
 #include "rtse/output.h"
 #include "rtse/recorder/recorder_commands.h"
+#include "run/run_page.h"
 
 namespace recorder {
 
@@ -29,8 +29,6 @@ namespace {
 
 using editor::Console;
 using editor::Session;
-
-constexpr std::chrono::minutes longest_page{30};
 
 // ---- info, ls ----
 
@@ -255,19 +253,10 @@ void export_samples(Console& console, const ExportOptions& options) {
   if (!console.json()) std::cout << exported->files << (options.png ? " pictures in " : " tables in ") << options.folder << '\n';
 }
 
-// The page is written by a program of its own, which has the viewer.
 void export_page(Console& console, const Selection& selection, const std::string& page) {
-  auto child =
-      editor::ChildProcess::start({.words = {editor::own_program("rtse-page"), selection.file, "--output", page}, .environment = {}});
-  if (!child) return console.fail(child.error());
-  if (child->wait_or_interrupt(longest_page) == editor::Ending::ended && child->exit_code() == 0) {
-    if (!console.json()) std::cout << child->said();
-    return;
-  }
-  constexpr std::string_view name = "rtse-page: ";
-  auto lines = base::split_list(child->said(), '\n');
-  if (lines.empty()) lines.push_back("rtse-page " + child->how_it_ended());
-  console.fail({"page " + base::in_quotes(page) + ": " + lines.back().substr(lines.back().starts_with(name) ? name.size() : 0)});
+  const auto written = editor::write_run_page({.recording = selection.file, .file = page}, nlohmann::ordered_json::object());
+  if (!written) return console.fail(written.error());
+  if (!console.json()) std::cout << *written;
 }
 
 // ---- compare ----

@@ -8,12 +8,14 @@
 
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "recording/ring.h"
 #include "rtse/command.h"
 #include "rtse/recorder/recorder_commands.h"
 #include "run/recorded_run.h"
 #include "run/replay.h"
+#include "run/run_page.h"
 #include "system/profile/rts_profile.h"
 
 namespace recorder {
@@ -31,7 +33,7 @@ struct Options {
   std::vector<std::string> settings;  // NAME=VALUE, of the active configuration set
   std::vector<std::string> module_paths, properties, start;
   bool compares = false;
-  std::string junit, keep;
+  std::string junit, keep, page;
   double hang_timeout_s = 30;
 };
 
@@ -219,11 +221,46 @@ base::Result<void> write_report(const Options& options, const ReplayResult& resu
   names.duration_s = result.simulated_s;
   editor::RunResult run;
   run.problem = problem;
+  run.page = options.page;
   run.wall_s = result.wall_s;
   for (const auto& output : result.outputs)
     run.verdicts.push_back(
         {"output " + output.topic + " is as recorded", output.first.empty() ? "" : "first difference at " + output.first});
   return editor::write_junit(options.junit, names, {run});
+}
+
+// The page of the recording, which opens at the first difference. It shows the recorded run, not what the component sent now.
+base::Result<void> write_page(Console& console, const Options& options, const ReplayResult& result, const std::string& command) {
+  editor::RunResult run;
+  for (const auto& output : result.outputs) {
+    if (output.first.empty()) continue;
+    run.verdicts.push_back({.expectation = "output " + output.topic + " is as recorded",
+                            .problem = "first difference at " + output.first,
+                            .time = output.first_s,
+                            .subject = options.component});
+  }
+  auto summary = editor::page_summary(run, command);
+  for (const char* unknown : {"seed", "hash", "simulated"}) summary.erase(unknown);
+  const auto written = editor::write_run_page({options.file, options.page}, summary);
+  if (!written) return written.error();
+  if (!console.json()) std::cout << "page " << *written;
+  return {};
+}
+
+std::string repeating_command(const Options& options) {
+  std::vector<std::string> words{"--into", options.component, "--compare"};
+  const auto add = [&](const char* name, const std::vector<std::string>& values) {
+    for (const auto& value : values)
+      for (auto& word : base::option_words(name, value)) words.push_back(std::move(word));
+  };
+  add("--tolerance", options.tolerances);
+  add("--ignore", options.ignored);
+  add("--link", options.links);
+  add("--set", options.settings);
+  add("--start", options.start);
+  add("--module-path", options.module_paths);
+  add("--property", options.properties);
+  return base::shell_line(base::command_words({"rtse", "replay"}, {options.file}, words));
 }
 
 // It is of another maker: its stamps are those of its own clock.
@@ -302,6 +339,9 @@ void replay_file(const Session& session, Console& console, const Options& option
     problem = nothing_compared(options, result);
   }
   if (!problem.empty()) console.fail({problem});
+  if (!options.page.empty() && problem.empty()) {
+    if (const auto written = write_page(console, options, result, repeating_command(options)); !written) console.fail(written.error());
+  }
   if (options.junit.empty()) return;
   if (const auto written = write_report(options, result, problem); !written) console.fail(written.error());
 }
@@ -334,8 +374,10 @@ void add_replay(base::Command& app, editor::Chosen& chosen) {
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
+  command->add_option("--page", options->page, "With --compare: write the recording as an HTML page, opened at the first difference");
   command->add_option("--keep", options->keep, "Folder for the logs");
   command->callback([&chosen, options] {
+    editor::require(options->page.empty() || options->compares, "replay", "--page needs --compare");
     chosen.work = [options](const Session& session, Console& console) { replay_file(session, console, *options); };
   });
 }

@@ -15,6 +15,7 @@ void add_play(base::Command& app, editor::Chosen& chosen);
 void add_replay(base::Command& app, editor::Chosen& chosen);
 void add_run_like(base::Command& app, editor::Chosen& chosen);
 void add_goto(base::Command& app, editor::Chosen& chosen);
+void add_page(base::Command& app, editor::Chosen& chosen);
 void add_recording(base::Command& app, editor::Chosen& chosen);  // info, ls, cat, export, compare, repair
 
 }  // namespace recorder

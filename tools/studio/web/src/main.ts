@@ -329,7 +329,7 @@ on('selection', () => {
 });
 
 apply_theme();
-document.body.append(run_summary(playback, copy), page, profile_input);
+document.body.append(run_summary(playback, copy, plot), page, profile_input);
 lay_out();
 show_only('world');
 changed('acts');

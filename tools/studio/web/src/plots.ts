@@ -12,7 +12,7 @@ import { signal_name } from './tree';
 import { watch } from './watches';
 import { palette } from './palette';
 
-interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string; at?: HTMLElement }
+interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string; at?: HTMLElement; other?: [number[], (number | null)[]] } // `other`: of the recording that is compared with
 const most_points = 12000;
 const recorded_points = 6000; // of a line, of all of a recording or of the part that is looked at
 
@@ -108,10 +108,17 @@ class Plot {
         from = result.until >= whole.to ? whole.to : result.until;
       }
       if (line.values.length > 0 && line.values.every((value) => value === null)) line.error = 'has no such number';
+      if (store.hello?.page?.other) await this.load_other(line, whole.from, whole.to);
     } catch (error) {
       line.error = (error as Error).message;
     }
     this.show_legend();
+  }
+
+  private async load_other(line: Line, from: number, to: number): Promise<void> {
+    const { result } = await wire.request('series', { topic: line.topic, members: [line.member], from, to, points: recorded_points, other: true });
+    line.other = [result.t, result.v.map(([value]: [unknown]) => number_of(line, value))];
+    this.make();
   }
 
   // The server has changed: what was a run may be a recording.
@@ -127,7 +134,7 @@ class Plot {
       const sign = h('i');
       line.at = h('span', { class: 'at' });
       sign.style.background = palette[i % palette.length];
-      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${name_of(line)}`, line.at, line.error ? h('em', null, ` ${line.error}`) : null,
+      return h('span', { title: `${line.topic} ${line.member}${line.error ? `: ${line.error}` : ''}` }, sign, `${signal_name(line)} ${name_of(line)}`, line.at, line.error ? h('em', null, ` ${line.error}`) : null, line.other ? h('span', { class: 'more' }, ` dashed: ${store.hello?.page?.other}`) : null,
         button(`Remove ${line.member}`, { icon: 'close', class: 'plain small' }, () => this.drop(i)));
     }), this.time, h('span', { class: 'spring' }), button('Save the plot as CSV', { icon: 'table', class: 'plain small csv' }, () => download(new Blob([this.csv()], { type: 'text/csv' }), 'plot.csv')));
   }
@@ -148,14 +155,16 @@ class Plot {
   }
 
   private data(from: number, to: number): uPlot.AlignedData {
-    const tables = this.lines.map((line) => {
-      const first = Math.max(0, line.times.findIndex((t) => t >= from) - 1);
-      let last = line.times.findIndex((t) => t > to);
-      if (last < 0) last = line.times.length;
-      return [line.times.slice(first, last), line.values.slice(first, last)] as [number[], (number | null)[]];
+    const tables = [...this.lines.map((line): [number[], (number | null)[]] => [line.times, line.values]), ...this.others()].map(([times, values]) => {
+      const first = Math.max(0, times.findIndex((t) => t >= from) - 1);
+      let last = times.findIndex((t) => t > to);
+      if (last < 0) last = times.length;
+      return [times.slice(first, last), values.slice(first, last)] as [number[], (number | null)[]];
     });
     return tables.length === 1 ? tables[0] : uPlot.join(tables as never);
   }
+
+  private readonly others = () => this.lines.flatMap((line) => (line.other ? [line.other] : []));
 
   make(): void {
     const { clientWidth: width, clientHeight: height } = this.body;
@@ -169,7 +178,8 @@ class Plot {
       width, height, pxAlign: 0, legend: { show: false }, cursor: { sync: { key: 'studio' }, drag: { setScale: false, x: true, y: false, dist: 6 } },
       scales: { x: { time: false }, y: { range: (_, low, high) => around(low, high) } },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${t}`) }, { ...axis, size: 46 }],
-      series: [{}, ...this.lines.map((_, i) => ({ stroke: palette[i % palette.length], width: 1.5, spanGaps: true, points: { show: false } }))],
+      series: [{}, ...this.lines.map((_, i) => ({ stroke: palette[i % palette.length], width: 1.5, spanGaps: true, points: { show: false } })),
+        ...this.lines.flatMap((line, i) => (line.other ? [{ stroke: palette[i % palette.length], width: 1.5, dash: [5, 4], spanGaps: true, points: { show: false } }] : []))],
       hooks: { draw: [(plot) => this.mark_moment(plot)], setSelect: [(plot) => this.select(plot)], setCursor: [(plot) => this.show_values(plot)] },
     }, this.data(-Infinity, Infinity), this.body);
   }
@@ -198,7 +208,8 @@ class Plot {
     const { min, max } = this.plot?.scales.x ?? {};
     const [times, ...columns] = this.data(this.is_zoomed ? min ?? -Infinity : -Infinity, this.is_zoomed ? max ?? Infinity : Infinity);
     const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-    const rows = [['time [s]', ...this.lines.map((line) => `${line.topic} ${name_of(line)}`)].map(quoted).join(',')];
+    const names = [...this.lines.map((line) => `${line.topic} ${name_of(line)}`), ...this.lines.filter((line) => line.other).map((line) => `${store.hello?.page?.other}: ${line.topic} ${name_of(line)}`)];
+    const rows = [['time [s]', ...names].map(quoted).join(',')];
     for (let i = 0; i < times.length; ++i) rows.push([times[i], ...columns.map((c) => c[i] ?? '')].join(','));
     return `${rows.join('\n')}\n`;
   }
@@ -218,7 +229,7 @@ class Plot {
   draw(from: number, to: number, moment: number | null, is_zoomed = false): void {
     this.moment = moment;
     this.is_zoomed = is_zoomed;
-    if (!this.plot || this.plot.series.length !== this.lines.length + 1) return;
+    if (!this.plot || this.plot.series.length !== this.lines.length + this.others().length + 1) return;
     this.plot.setData(this.data(from, to), false);
     this.plot.batch(() => {
       this.plot!.setScale('x', { min: from, max: Math.max(to, from + 0.01) });

@@ -1,11 +1,12 @@
 // The data of a run inside the page itself: a page that `rtse run --page` wrote. It answers the requests of a recording (see the protocol of
-// rtm-studio) in place of the server. Each block is zlib data in base64; parts hold ten seconds each and are unpacked when they are needed.
+// rtm-studio) in place of the server. Each block is zlib data in base64; parts hold up to ten seconds each and are unpacked when they are needed.
 import type { Hello, Signal, System, WorldEvent } from './wire';
 
 interface Index { hello: Hello; system: System; signals: { signals: Signal[] }; world: WorldEvent; parts: [number, number][] }
 interface Samples { t: number[]; v: unknown[] }
-interface Packed { poses: [number, string][]; late: [number, object][]; samples: [string, number, unknown][]; images?: Record<string, [number, string][]> }
-interface Part extends Packed { values: Map<string, Samples> }
+interface Moving { poses: [number, string][]; samples: [string, number, unknown][] }
+interface Packed extends Moving { late: [number, object][]; images?: Record<string, [number, string][]>; other?: Moving }
+interface Part extends Packed { values: Map<string, Samples>; other_values: Map<string, Samples> }
 interface Watch { topic: string; members?: string[]; is_image: boolean; shown: string }
 type Timed = [number, ...unknown[]];
 
@@ -45,15 +46,23 @@ function count_until(times: (i: number) => number, length: number, time: number)
   return low;
 }
 
-function by_topic(packed: Packed): Part {
+function by_topic(all: Moving['samples']): Map<string, Samples> {
   const values = new Map<string, Samples>();
-  for (const [topic, time, value] of packed.samples) {
+  for (const [topic, time, value] of all) {
     if (!values.has(topic)) values.set(topic, { t: [], v: [] });
     const samples = values.get(topic)!;
     samples.t.push(time);
     samples.v.push(value);
   }
-  return { ...packed, values };
+  return values;
+}
+
+const to_part = (packed: Packed): Part => ({ ...packed, values: by_topic(packed.samples), other_values: by_topic(packed.other?.samples ?? []) });
+
+// The frame of the recording that is compared with.
+function ghost(frame: Uint8Array<ArrayBuffer>): ArrayBuffer {
+  frame[0] = 0x85;
+  return frame.buffer;
 }
 
 const newest = <T extends Timed>(list: T[], time: number): T | undefined => list[count_until((i) => list[i][0], list.length, time) - 1];
@@ -77,6 +86,7 @@ export class RunData {
   private time: number;
   private shown_part = -1;
   private shown_poses = 0; // of the part
+  private shown_ghosts = 0;
   private shown_late: object | null = null;
 
   private constructor(private readonly index: Index, private readonly take: (data: string | ArrayBuffer) => void, private readonly damaged: (why: string) => void) {
@@ -126,7 +136,7 @@ export class RunData {
   private part(number: number): Promise<Part> {
     const there = this.parts.get(number);
     if (there) return there;
-    const part = json_of(String(number)).then(by_topic);
+    const part = json_of(String(number)).then(to_part);
     part.catch((error) => this.damaged(`part ${number}: ${error.message}`));
     this.parts.set(number, part);
     for (const old of this.parts.keys()) {
@@ -144,7 +154,9 @@ export class RunData {
     const late = newest(part.late, time)?.[1] ?? null;
     if (late && (is_whole || JSON.stringify(late) !== JSON.stringify(this.shown_late))) this.take(JSON.stringify(late));
     for (let i = goes_on ? this.shown_poses : 0; i < poses; ++i) this.take(from_base64(part.poses[i][1]).buffer);
-    [this.time, this.shown_part, this.shown_poses, this.shown_late] = [time, number, poses, late];
+    const others = part.other?.poses ?? [], ghosts = count_until((i) => others[i][0], others.length, time);
+    for (let i = goes_on ? this.shown_ghosts : 0; i < ghosts; ++i) this.take(ghost(from_base64(others[i][1])));
+    [this.time, this.shown_part, this.shown_poses, this.shown_ghosts, this.shown_late] = [time, number, poses, ghosts, late];
     for (const [id, watch] of this.watches) this.show(id, watch, part, is_whole);
     return {};
   }
@@ -205,11 +217,12 @@ export class RunData {
     return newest(changes, this.time)?.[1] ?? changes[0][1];
   }
 
-  private async series({ topic, members, from = -Infinity, to = Infinity, points = 4000 }: { topic: string; members: string[]; from?: number; to?: number; points?: number }): Promise<object> {
+  // `other`: of the recording that is compared with.
+  private async series({ topic, members, from = -Infinity, to = Infinity, points = 4000, other = false }: { topic: string; members: string[]; from?: number; to?: number; points?: number; other?: boolean }): Promise<object> {
     const t: number[] = [], v: unknown[][] = [];
     for (const [number, [begin, end]] of this.index.parts.entries()) {
       if (end < from || begin > to) continue;
-      const samples = (await this.part(number)).values.get(topic);
+      const part = await this.part(number), samples = (other ? part.other_values : part.values).get(topic);
       samples?.t.forEach((time, i) => {
         if (time < from || time > to || (t.length > 0 && time <= t[t.length - 1])) return; // the first repeats the last of the part before
         t.push(time);

@@ -29,8 +29,12 @@ export interface LogLine { level: string; source: string; time?: number; text: s
 export interface Recording {
   file: string; from: number; to: number; step: number; damage: string; states: Record<string, [number, string][]>; lines: [number, string, string, string][]; lines_left_out: number;
 }
-// Of a page with a run in it; `at` [s] and `select` (a component or a model): where it opens.
-export interface RunResult { passed?: boolean; why?: string[]; seed?: number; hash?: string; command?: string; at?: number; select?: string; left_out?: string[] }
+// Of a page with a run in it; `at` [s] and `select` (a component or a model): where it opens. `other`: the recording that is compared with.
+export interface RunMark { time: number; kind: string; text: string; subject?: string }
+export interface RunResult {
+  passed?: boolean; why?: string[]; note?: string; seed?: number; hash?: string; command?: string; at?: number; select?: string; left_out?: string[];
+  marks?: RunMark[]; other?: string; plot?: { topic: string; member: string } | null;
+}
 export interface Hello { version: string; read_only: boolean; name_server: string; server_id: number; start?: { simulator: string; components: string }; recording?: Recording; page?: RunResult }
 // Of a recorded moment: models that the scene of the beginning does not have, with the triangles of their links, and those that are there no more.
 export interface Late { version: number; models: { name: string; links: { name: string; parts: { color: number[]; points: number[] }[] }[] }[]; gone: string[] }
@@ -55,6 +59,7 @@ interface Events {
   values: Values;
   late: Late;
   poses: Poses;
+  ghosts: Poses; // of the recording that is compared with
   image: { watch: number; time: number; jpeg: Blob };
 }
 
@@ -101,6 +106,13 @@ export class Wire {
   }
 
   private async open_run(): Promise<void> {
+    // Data of another shape than a page has may fail anywhere in the viewer.
+    const fail = (why: unknown) => {
+      this.damage ||= why instanceof Error ? why.message : String(why);
+      this.set('damaged');
+    };
+    window.addEventListener('error', (event) => fail(event.error ?? event.message));
+    window.addEventListener('unhandledrejection', (event) => fail(event.reason));
     try {
       const run = await RunData.open((data) => this.take(data), (why) => {
         this.damage = why;
@@ -110,8 +122,7 @@ export class Wire {
       this.set('open');
       run.begin();
     } catch (error) {
-      this.damage = (error as Error).message;
-      this.set('damaged');
+      fail(error);
     }
   }
 
@@ -154,8 +165,8 @@ export class Wire {
 
   private take_binary(data: ArrayBuffer): void {
     const view = new DataView(data);
-    if (view.getUint8(0) === 0x81) {
-      this.tell('poses', {
+    if (view.getUint8(0) === 0x81 || view.getUint8(0) === 0x85) {
+      this.tell(view.getUint8(0) === 0x81 ? 'poses' : 'ghosts', {
         all: (view.getUint8(1) & 1) !== 0,
         version: view.getUint32(4, true),
         time: Number(view.getBigUint64(8, true)) * 1e-9,

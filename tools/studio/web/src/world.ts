@@ -3,6 +3,7 @@ import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, SkinnedMesh, Vecto
 import { Contacts } from './contacts';
 import { Daylight } from './daylight';
 import { Frames } from './frames';
+import { Ghosts } from './ghosts';
 import { button, h, put, with_code } from './dom';
 import { Model, read_world, WorldScene } from './glb';
 import { Hands } from './hands';
@@ -32,6 +33,7 @@ export class WorldView {
   readonly contacts = new Contacts(this.scene, () => this.redraw());
   readonly axes = new Frames(this.scene);
   readonly trails = new Trails(this.scene);
+  readonly ghosts = new Ghosts(this.scene, () => this.redraw());
   readonly hands: Hands;
   private marker = new Marker(this.scene);
   private labels = new Labels();
@@ -334,6 +336,7 @@ export class WorldView {
     if (!this.renderer || !this.world) return;
     const { clientWidth: width, clientHeight: height } = this.element;
     this.world.root.updateMatrixWorld();
+    this.ghosts.world?.root.updateMatrixWorld();
     this.eye.update();
     const { camera } = this.eye;
     camera.updateMatrixWorld();
