@@ -67,8 +67,10 @@ void Drive::watch_and_publish() {
   auto* robot = link().fresh(wait_limit());
   if (!robot) return;
   const auto& stamp = robot->sample<shm::Stamp>();
-  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout()))
+  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout())) {
     RTC_WARN(("no velocity for %g s: the robot stops", command_timeout()));
+    timed_out();
+  }
   if (stamp.valid) publish(*robot);
 }
 

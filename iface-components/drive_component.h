@@ -61,6 +61,8 @@ class Drive : public IfaceComponent {
   void set_odometry(shm::ResetOdometryRequest request);
   void switch_motors();
   void watch_and_publish();
+  // No command has come for command_timeout: the robot was stopped.
+  virtual void timed_out() {}
   Commander& commander() { return commander_; }
   RTC::CorbaPort& service_port() { return service_port_; }
 
@@ -89,14 +91,21 @@ class DriveComponent : public Drive {
     if (!follow_configuration()) return RTC::RTC_ERROR;
     const bool simulated = in_simulated_time();
     commander().set_simulated_time(simulated);
-    // In real time the listener has driven the robot already.
-    if (read_newest_velocity() && simulated && commander().is_newest_of_this_run()) commander().drive(values_of(velocity_));
+    if (read_newest_velocity()) {
+      // In real time the listener has driven the robot already.
+      if (simulated && commander().is_newest_of_this_run()) commander().drive(values_of(velocity_));
+      velocity_came();
+    }
+    read_goals();
     switch_motors();
     watch_and_publish();
     return RTC::RTC_OK;
   }
 
  protected:
+  virtual void velocity_came() {}
+  virtual void read_goals() {}  // commands other than velocities
+
   // To be called in onInitialize.
   void addVelocityPort() {
     addInPort("velocity", velocity_in_);

@@ -1,5 +1,7 @@
 #include "rtc_position2d.h"
 
+#include <cmath>
+
 #include "conversions.h"
 #include "specification.h"
 
@@ -13,6 +15,8 @@ static const iface::Specification specification{
 
 RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position2d),
+      pose_in_("pose_control", pose_),
+      heading_in_("heading_control", heading_),
       odometry_out_("odometry", odometry_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
       odometry_service_([this](const RTC::Pose2D& pose) {
@@ -23,6 +27,8 @@ RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
 
 RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   addVelocityPort();
+  addInPort("pose_control", pose_in_);
+  addInPort("heading_control", heading_in_);
   addOutPort("odometry", odometry_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
   service_port().registerProvider("odometry", "RTC::Odometry2D", odometry_service_);
@@ -33,13 +39,66 @@ RTC::ReturnCode_t RTCPosition2d::onInitialize() {
 
 void RTCPosition2d::describe(const shm::Iface& robot) {
   DriveComponent::describe(robot);
-  const auto& info = robot.info<shm::Position2dInfo>();
+  const auto& info = robot_ = robot.info<shm::Position2dInfo>();
   odometry_service_.describe(iface::to_geometry(info.pose, info.size));
   velocity_service_.describe(iface::to_geometry_2d(info.pose, info.size));
 }
 
+void RTCPosition2d::detaching() {
+  goal_ = {};
+  DriveComponent::detaching();
+}
+
+void RTCPosition2d::command(const shm::PlanarPose& velocity) {
+  const double values[] = {velocity.x, velocity.y, velocity.a};
+  commander().received(values);  // in real time it drives
+  if (iface::in_simulated_time()) commander().drive(values);
+}
+
+// Values that are no numbers are ignored with a line: the robot goes on as before.
+void RTCPosition2d::read_goals() {
+  bool has_pose = false, has_heading = false;
+  while (pose_in_.isNew()) has_pose = pose_in_.read() || has_pose;
+  while (heading_in_.isNew()) has_heading = heading_in_.read() || has_heading;
+  if (has_heading) {
+    const auto& [speed, angle] = heading_.data;
+    if (std::isfinite(speed) && std::isfinite(angle)) {
+      goal_ = Heading{speed, angle};
+      resets_.reset();
+      command({speed, 0, 0});  // counts as a velocity: command_timeout stops the robot when no more come
+    } else {
+      RTC_WARN(("heading_control: expected finite numbers, got %g m/s and %g rad; ignored", speed, angle));
+    }
+  }
+  if (has_pose) {
+    const auto& [position, angle] = pose_.data;
+    if (robot_.drive == RTMSIM_DRIVE_CAR) {
+      RTC_WARN(("pose_control: a car cannot turn on the spot; ignored"));
+    } else if (std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(angle)) {
+      goal_ = shm::PoseControl({position.x, position.y, angle}, shm::within({}, robot_));
+      resets_.reset();
+    } else {
+      RTC_WARN(("pose_control: expected finite numbers, got %g m, %g m and %g rad; ignored", position.x, position.y, angle));
+    }
+  }
+}
+
+void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample) {
+  if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets) goal_ = {};  // the goal is no longer where it was
+  resets_ = sample.stamp.resets;
+  const shm::PlanarPose odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
+  if (auto* way = std::get_if<shm::PoseControl>(&goal_)) {
+    command(way->next(odometry));
+    if (way->has_arrived()) goal_ = {};
+  } else if (const auto* heading = std::get_if<Heading>(&goal_)) {
+    const double velocity[] = {heading->speed, 0, shm::turn_towards(odometry.a, heading->angle, shm::within({}, robot))};
+    commander().drive(velocity);
+  }
+}
+
 void RTCPosition2d::publish(const shm::Iface& robot) {
   const auto& sample = robot.sample<shm::Position2dSample>();
+  go_on(robot.info<shm::Position2dInfo>(), sample);
   odometry_.tm = iface::to_time(sample.stamp.sim_time_ns);
   odometry_.data.position.x = sample.odometry[0];
   odometry_.data.position.y = sample.odometry[1];

@@ -1,12 +1,17 @@
 // RTCPosition2d: drives a position2d iface by the InPort `velocity` (RTC::TimedVelocity2D), and bridges its state to the OutPorts
-// `odometry` (RTC::TimedPose2D) and `actual_velocity` (RTC::TimedVelocity2D). Service port
-// `drive` (RTC::Odometry2D, RTC::VelocityControl2D). Configuration and threads: see drive_component.h.
+// `odometry` (RTC::TimedPose2D) and `actual_velocity` (RTC::TimedVelocity2D). The InPort `pose_control` (RTC::TimedPose2D) takes a pose of
+// the odometry to drive to, `heading_control` (RTC::TimedSpeedHeading2D) a speed and a heading to keep; the newest command of the three
+// counts. Service port `drive` (RTC::Odometry2D, RTC::VelocityControl2D). Configuration and threads: see drive_component.h.
 #pragma once
 
 #include <rtm/ext/OdometrySkel.h>
 #include <rtm/ext/VelocityControlSkel.h>
 
 #include <rtm/DataOutPort.h>
+#include <shm/pose_control.h>
+
+#include <optional>
+#include <variant>
 
 #include "drive_component.h"
 
@@ -18,8 +23,25 @@ class RTCPosition2d : public iface::DriveComponent<RTC::TimedVelocity2D> {
  protected:
   void describe(const shm::Iface& robot) override;
   void publish(const shm::Iface& robot) override;
+  void velocity_came() override { goal_ = {}; }
+  void timed_out() override { goal_ = {}; }
+  void read_goals() override;
+  void detaching() override;
 
  private:
+  struct Heading {
+    double speed = 0, angle = 0;  // [m/s], [rad]
+  };
+  void command(const shm::PlanarPose& velocity);
+  void go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample);
+
+  std::variant<std::monostate, shm::PoseControl, Heading> goal_;
+  std::optional<std::uint32_t> resets_;  // of the world, when the goal was first pursued
+  shm::Position2dInfo robot_{};
+  RTC::TimedPose2D pose_;
+  RTC::InPort<RTC::TimedPose2D> pose_in_;
+  RTC::TimedSpeedHeading2D heading_;
+  RTC::InPort<RTC::TimedSpeedHeading2D> heading_in_;
   RTC::TimedPose2D odometry_;
   RTC::OutPort<RTC::TimedPose2D> odometry_out_;
   RTC::TimedVelocity2D actual_velocity_;

@@ -2,7 +2,6 @@
 rtmsim_test(player_protocol_test player/player_protocol_test.cpp LIBRARIES player_protocol)
 rtmsim_test(player_gateway_test player/player_gateway_test.cpp LIBRARIES player_gateway)
 rtmsim_test(player_devices_test player/player_devices_test.cpp player/new_player_interface_test.cpp LIBRARIES player_gateway)
-rtmsim_test(pose_control_test player/pose_control_test.cpp LIBRARIES player_gateway)
 rtmsim_test(door_test player/door_test.cpp LIBRARIES player_gateway)
 rtmsim_test(alarm_test player/alarm_test.cpp LIBRARIES player_gateway)
 foreach(script_and_cases

@@ -139,10 +139,10 @@ void Position2d::drive_to(Client& client, const std::string& payload) {
     return end_goal();
   }
   take_over(client);
-  const bool is_known = pursuer_ != nullptr && asked_ == payload && std::holds_alternative<PoseControl>(goal_);
+  const bool is_known = pursuer_ != nullptr && asked_ == payload && std::holds_alternative<shm::PoseControl>(goal_);
   pursuer_ = &client;
   if (is_known) return;  // many say it again and again
-  goal_ = PoseControl(pose, limits(std::hypot(velocity.x, velocity.y), std::abs(velocity.a)));
+  goal_ = shm::PoseControl({pose.x, pose.y, pose.a}, limits(std::hypot(velocity.x, velocity.y), std::abs(velocity.a)));
   asked_ = payload;
 }
 
@@ -160,13 +160,13 @@ void Position2d::go_on(const shm::Position2dSample& sample) {
   if (!iface().is_commander()) return end_goal();  // somebody else drives now
   if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets) return give_up();
   resets_ = sample.stamp.resets;
-  const player::Pose2d odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
-  player::Pose2d velocity;
-  if (auto* way = std::get_if<PoseControl>(&goal_)) {
+  const shm::PlanarPose odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
+  shm::PlanarPose velocity;
+  if (auto* way = std::get_if<shm::PoseControl>(&goal_)) {
     if (way->has_arrived()) return;
     velocity = way->next(odometry);
   } else if (const auto* heading = std::get_if<Heading>(&goal_)) {
-    velocity = {heading->speed, 0, turn_towards(odometry.a, heading->angle, limits(0, 0))};
+    velocity = {heading->speed, 0, shm::turn_towards(odometry.a, heading->angle, limits(0, 0))};
   }
   command_velocity(*pursuer_, std::array{velocity.x, velocity.y, velocity.a});
 }
@@ -190,17 +190,12 @@ void Position2d::forget(Client& client) {
 
 bool Position2d::is_car() const { return iface().info<shm::Position2dInfo>().drive == RTMSIM_DRIVE_CAR; }
 
-DriveLimits Position2d::limits(double speed, double turn) const {
-  const auto& info = iface().info<shm::Position2dInfo>();
-  const auto within = [](double value, double limit) { return limit > 0 ? std::min(value, limit) : value; };
-  DriveLimits all;
-  all.speed = within(speed > 0 ? speed : speed_, info.max_speed);
-  all.turn = within(turn > 0 ? turn : turn_, info.max_yaw_rate);
-  all.acceleration = within(acceleration_, info.max_acceleration);
-  all.turn_acceleration = within(all.turn_acceleration, info.max_yaw_acceleration);
-  if (info.rate > 0) all.rate = info.rate;
-  all.is_holonomic = info.drive == RTMSIM_DRIVE_HOLONOMIC;
-  return all;
+shm::DriveLimits Position2d::limits(double speed, double turn) const {
+  shm::DriveLimits wanted;
+  wanted.speed = speed > 0 ? speed : speed_;
+  wanted.turn = turn > 0 ? turn : turn_;
+  wanted.acceleration = acceleration_;
+  return shm::within(wanted, iface().info<shm::Position2dInfo>());
 }
 
 bool Position2d::set_profile(const std::string& payload) {

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "device.h"
-#include "pose_control.h"
+#include "shm/pose_control.h"
 
 namespace gateway {
 
@@ -30,7 +30,7 @@ class Drive : public Device {
   Client* commander_ = nullptr;
 };
 
-// Also drives to poses of its odometry and keeps headings: one velocity per sample, as pose_control.h says. That ends with any other
+// Also drives to poses of its odometry and keeps headings: one velocity per sample, as shm/pose_control.h says. That ends with any other
 // command, also one from elsewhere; when the client lets go; and when the odometry is set or the world is reset, since the goal is no
 // longer where it was. Cars, which can't turn on the spot, keep headings only.
 class Position2d final : public Drive {
@@ -76,10 +76,10 @@ class Position2d final : public Drive {
   void give_up();
   bool set_profile(const std::string& payload);
   // Of a way with these speeds (0: as set), within what the robot can do.
-  DriveLimits limits(double speed, double turn) const;
+  shm::DriveLimits limits(double speed, double turn) const;
 
   Client* pursuer_ = nullptr;  // who gave the goal; nothing without one
-  std::variant<std::monostate, PoseControl, Heading> goal_;
+  std::variant<std::monostate, shm::PoseControl, Heading> goal_;
   std::string asked_;                    // the command that the goal was given by; empty: a new one would mean something else
   std::optional<std::uint32_t> resets_;  // of the world, when the goal was first pursued
   double speed_ = 0.4, turn_ = 1, acceleration_ = 0.5;  // of ways to a pose, unless a command says otherwise [m/s, rad/s, m/s^2]

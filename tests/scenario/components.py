@@ -193,6 +193,33 @@ def odometry():
     assert is_set()
 
 
+def inject(port, data):
+    rig.rtse("inject", f"RTCPosition2d0:{port}", json.dumps({"data": data}))
+
+
+def goals():
+    up("RTCPosition2d")
+    at = lambda: (odometry := rig.robot()["odometry"])[:2] + [math.remainder(odometry[2], 2 * math.pi)]
+    goal = [-0.8, 0.5, 2.0]
+    inject("pose_control", {"position": {"x": goal[0], "y": goal[1]}, "heading": goal[2]})
+    await_("a robot at its goal", lambda: all(abs(got - wanted) < 0.03 for got, wanted in zip(at(), goal)))
+    await_("a robot that stands there", lambda: abs(rig.robot()["velocity"][2]) < 0.01)
+    turned = lambda angle: abs(math.remainder(at()[2] - angle, 2 * math.pi)) < 0.05
+    await_("a robot that looks back", lambda: inject("heading_control", {"speed": 0.1, "heading": -2.5}) or turned(-2.5))
+    await_("a robot that stands when nobody commands", lambda: abs(rig.robot()["velocity"][0]) < 0.01)
+    assert "no velocity for 1 s" in rig.log(rig.running[-1])
+    inject("pose_control", {"position": {"x": 3, "y": 3}, "heading": 0})
+    await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)
+    inject("velocity", {"vx": 0, "vy": 0, "va": 0})  # ends it
+    await_("a robot that stands", lambda: abs(rig.robot()["velocity"][2]) < 0.01)
+    before = at()
+    inject("pose_control", {"position": {"x": math.nan, "y": 3}, "heading": 0})
+    inject("heading_control", {"speed": math.inf, "heading": 0})
+    for port in ("pose_control", "heading_control"):
+        await_("a line", lambda: f"{port}: expected finite numbers" in rig.log(rig.running[-1]))
+    close(at(), before, 0.02)
+
+
 # Each against what the simulator says of the same device.
 def meters():
     meters = {"RTCForceTorque": "scale::force_torque", "RTCAltimeter": "robot::altimeter", "RTCAirPressure": "robot::air_pressure",
@@ -464,7 +491,7 @@ def restarted_server():
     assert [rig.state(name) for name in names] == ["Active"] * 3
 
 
-cases = {f.__name__: f for f in (sonar, imu, gps, bumper, ranger, places, point_cloud, odometry, meters, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_service, camera_jpeg, depth_camera, drone, wrong_camera_device,
+cases = {f.__name__: f for f in (sonar, imu, gps, bumper, ranger, places, point_cloud, odometry, goals, meters, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_service, camera_jpeg, depth_camera, drone, wrong_camera_device,
                                  restarted_server)}
 with rig:
     cases[case]()

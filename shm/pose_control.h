@@ -2,14 +2,16 @@
 // at a time.
 //
 // Each sample of the odometry gives the next velocity, so it needs no clock, and a simulator on its own knows only velocities. In 3D the
-// simulator has pose commands of its own, and the gateway hands them on.
+// simulator has pose commands of its own.
 #pragma once
 
-#include <optional>
+#include "shm/iface_types.h"
 
-#include "protocol/payloads.h"
+namespace shm {
 
-namespace gateway {
+struct PlanarPose {
+  double x = 0, y = 0, a = 0;  // [m], [m], [rad]; of a velocity [m/s], [m/s], [rad/s]
+};
 
 // Of the commands; all greater than 0.
 struct DriveLimits {
@@ -18,6 +20,8 @@ struct DriveLimits {
   double rate = 10;                                  // of the odometry [Hz]
   bool is_holonomic = false;
 };
+// The same within what a robot can do.
+DriveLimits within(DriveLimits wanted, const Position2dInfo& robot);
 
 // One way to one goal. A robot that can't move sideways turns towards the goal, drives there and turns to the heading that is wanted; a
 // holonomic one does all at once. Speeds are proportional to what is left, within the limits; the factors are at most 1.5/s (turning: 2/s),
@@ -29,18 +33,18 @@ class PoseControl {
   static constexpr double straight = 0.5;
   static constexpr double near_enough = 0.01, straight_enough = 0.01;  // [m], [rad]
 
-  PoseControl(const player::Pose2d& goal, const DriveLimits& limits) : goal_(goal), limits_(limits) {}
+  PoseControl(const PlanarPose& goal, const DriveLimits& limits) : goal_(goal), limits_(limits) {}
 
   // The velocity to command, in the robot's frame. Zero once it has arrived.
-  player::Pose2d next(const player::Pose2d& odometry);
+  PlanarPose next(const PlanarPose& odometry);
   bool has_arrived() const { return phase_ == Phase::arrived; }
 
  private:
   enum class Phase { turn, drive, turn_to_heading, arrived };
-  player::Pose2d next_holonomic(double ahead, double beside, double heading_error);
-  player::Pose2d turn_to_heading(double heading_error);
+  PlanarPose next_holonomic(double ahead, double beside, double heading_error);
+  PlanarPose turn_to_heading(double heading_error);
 
-  player::Pose2d goal_;
+  PlanarPose goal_;
   DriveLimits limits_;
   Phase phase_ = Phase::turn;
 };
@@ -48,4 +52,4 @@ class PoseControl {
 // The turn rate [rad/s] that brings the robot from one heading to the other by the shorter way.
 double turn_towards(double heading, double wanted, const DriveLimits& limits);
 
-}  // namespace gateway
+}  // namespace shm

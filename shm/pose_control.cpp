@@ -1,10 +1,10 @@
-#include "pose_control.h"
+#include "shm/pose_control.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace gateway {
+namespace shm {
 namespace {
 
 // [1/s] so that braking from the limit needs no more than the acceleration, and the odometry is fresh enough.
@@ -23,9 +23,20 @@ double difference(double to, double from) { return std::remainder(to - from, 2 *
 
 }  // namespace
 
+DriveLimits within(DriveLimits wanted, const Position2dInfo& robot) {
+  const auto lower = [](double value, double limit) { return limit > 0 ? std::min(value, limit) : value; };
+  wanted.speed = lower(wanted.speed, robot.max_speed);
+  wanted.turn = lower(wanted.turn, robot.max_yaw_rate);
+  wanted.acceleration = lower(wanted.acceleration, robot.max_acceleration);
+  wanted.turn_acceleration = lower(wanted.turn_acceleration, robot.max_yaw_acceleration);
+  if (robot.rate > 0) wanted.rate = robot.rate;
+  wanted.is_holonomic = robot.drive == RTMSIM_DRIVE_HOLONOMIC;
+  return wanted;
+}
+
 double turn_towards(double heading, double wanted, const DriveLimits& limits) { return turn_for(difference(wanted, heading), limits); }
 
-player::Pose2d PoseControl::turn_to_heading(double heading_error) {
+PlanarPose PoseControl::turn_to_heading(double heading_error) {
   if (std::abs(heading_error) < straight_enough) {
     phase_ = Phase::arrived;
     return {};
@@ -33,7 +44,7 @@ player::Pose2d PoseControl::turn_to_heading(double heading_error) {
   return {0, 0, turn_for(heading_error, limits_)};
 }
 
-player::Pose2d PoseControl::next_holonomic(double ahead, double beside, double heading_error) {
+PlanarPose PoseControl::next_holonomic(double ahead, double beside, double heading_error) {
   const double distance = std::hypot(ahead, beside);
   const bool is_there = distance < near_enough;
   if (is_there && std::abs(heading_error) < straight_enough) {
@@ -44,7 +55,7 @@ player::Pose2d PoseControl::next_holonomic(double ahead, double beside, double h
   return {speed * ahead, speed * beside, turn_for(heading_error, limits_)};
 }
 
-player::Pose2d PoseControl::next(const player::Pose2d& odometry) {
+PlanarPose PoseControl::next(const PlanarPose& odometry) {
   if (phase_ == Phase::arrived) return {};
   const double dx = goal_.x - odometry.x, dy = goal_.y - odometry.y, distance = std::hypot(dx, dy);
   const double c = std::cos(odometry.a), s = std::sin(odometry.a);
@@ -69,4 +80,4 @@ player::Pose2d PoseControl::next(const player::Pose2d& odometry) {
   return {speed, 0, turn_for(bearing, limits_)};
 }
 
-}  // namespace gateway
+}  // namespace shm

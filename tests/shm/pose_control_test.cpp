@@ -6,12 +6,10 @@
 #include <numbers>
 #include <random>
 
-#include "pose_control.h"
+#include "shm/pose_control.h"
 
-namespace gateway {
+namespace shm {
 namespace {
-
-using player::Pose2d;
 
 constexpr double pi = std::numbers::pi;
 
@@ -20,9 +18,9 @@ double between(double a, double b) { return std::abs(std::remainder(a - b, 2 * p
 // Follows each command one sample later, as fast as its motors can.
 class Robot {
  public:
-  Robot(const Pose2d& pose, const DriveLimits& limits) : pose_(pose), limits_(limits) {}
+  Robot(const PlanarPose& pose, const DriveLimits& limits) : pose_(pose), limits_(limits) {}
 
-  void follow(const Pose2d& command) {
+  void follow(const PlanarPose& command) {
     const double dt = 1 / limits_.rate;
     const auto approach = [](double from, double to, double most) { return from + std::clamp(to - from, -most, most); };
     velocity_.x = approach(velocity_.x, late_.x, 2 * limits_.acceleration * dt);
@@ -34,16 +32,16 @@ class Robot {
     pose_.a = std::remainder(pose_.a + velocity_.a * dt, 2 * pi);
     late_ = command;
   }
-  const Pose2d& pose() const { return pose_; }
-  const Pose2d& velocity() const { return velocity_; }
+  const PlanarPose& pose() const { return pose_; }
+  const PlanarPose& velocity() const { return velocity_; }
 
  private:
-  Pose2d pose_, velocity_, late_;
+  PlanarPose pose_, velocity_, late_;
   DriveLimits limits_;
 };
 
 // [s] until it has arrived and stands; checks on the way.
-double travel(const Pose2d& from, const Pose2d& to, const DriveLimits& limits) {
+double travel(const PlanarPose& from, const PlanarPose& to, const DriveLimits& limits) {
   Robot robot(from, limits);
   PoseControl way(to, limits);
   double time = 0;
@@ -67,7 +65,7 @@ TEST(PoseControl, arrives_from_anywhere_in_about_the_time_that_it_takes) {
     for (const bool is_holonomic : {false, true}) {
       const DriveLimits limits{.rate = rate, .is_holonomic = is_holonomic};
       for (int i = 0; i < 200; ++i) {
-        const Pose2d from{place(random), place(random), angle(random)}, to{place(random), place(random), angle(random)};
+        const PlanarPose from{place(random), place(random), angle(random)}, to{place(random), place(random), angle(random)};
         const double distance = std::hypot(to.x - from.x, to.y - from.y);
         EXPECT_LT(travel(from, to, limits), distance / limits.speed + 2 * pi / limits.turn + (rate < 5 ? 30 : 15));
       }
@@ -77,8 +75,8 @@ TEST(PoseControl, arrives_from_anywhere_in_about_the_time_that_it_takes) {
 
 TEST(PoseControl, goal_beside_behind_or_where_it_stands) {
   const DriveLimits limits;
-  for (const Pose2d& goal :
-       {Pose2d{0, 0.03, 0}, Pose2d{-0.02, 0, 0}, Pose2d{0.005, 0.005, pi}, Pose2d{-1, 0, 0}, Pose2d{0, 0, 7}, Pose2d{1, 0, -9}})
+  for (const PlanarPose& goal : {PlanarPose{0, 0.03, 0}, PlanarPose{-0.02, 0, 0}, PlanarPose{0.005, 0.005, pi}, PlanarPose{-1, 0, 0},
+                                 PlanarPose{0, 0, 7}, PlanarPose{1, 0, -9}})
     travel({}, goal, limits);
   PoseControl there({}, limits);
   EXPECT_EQ(there.next({0.001, 0, 0.001}).a, 0);
@@ -128,4 +126,4 @@ TEST(TurnTowards, takes_the_shorter_way_within_the_limit) {
 }
 
 }  // namespace
-}  // namespace gateway
+}  // namespace shm
