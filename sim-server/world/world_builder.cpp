@@ -125,7 +125,8 @@ SceneDef build_scene(pugi::xml_node node, BuildContext& context) {
     if (out.type == "none") {
       scene.fog.reset();
     } else if (out.type != "linear" && out.type != "exponential" && out.type != "quadratic") {
-      context.complaints.warn(fog, "fog of type " + base::in_quotes(out.type) + " is not known; there is none");
+      context.complaints.warn(fog, "fog of type " + base::in_quotes(out.type) +
+                                       " is unknown, expected none, linear, exponential or quadratic; the world has no fog");
       scene.fog.reset();
     }
   }
