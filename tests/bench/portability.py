@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""Builds simulator, components and tools with gcc and clang, -O2 and -O3, and prints the hashes of all shipped worlds and systems for each build, and for each once more
+with the variants of the C library hidden that use AVX2 and fused multiply-add (same_hashes.py). Exit code 1 if one differs.
+
+usage: portability.py [--jobs N] [--steps N] [FOLDER]      (of the builds; default build/portability. It needs g++ and clang++, and takes four builds)
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+
+source = pathlib.Path(__file__).resolve().parents[2]
+parser = argparse.ArgumentParser()
+parser.add_argument("--jobs", type=int, default=os.cpu_count())
+parser.add_argument("--steps", type=int, default=2000)
+parser.add_argument("folder", nargs="?", type=pathlib.Path, default=source / "build/portability")
+options = parser.parse_args()
+options.folder = options.folder.resolve()
+targets = ("sim-server", "rtm-asset-reader", "simctl", "rtcd", "rtse", "demo", "demo_farm", "demo_follow")
+
+
+def build(compiler, level):
+    folder = options.folder / f"{compiler}{level}"
+    if not (folder / "CMakeCache.txt").exists():
+        subprocess.run(["cmake", "--preset", "release", "-B", folder, f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS_RELEASE={level} -DNDEBUG", "-DRTMSIM_COLD_BUILD=ON",
+                        "-DRTMSIM_TESTS=OFF", "-DRTMSIM_BENCH=OFF", "-DRTMSIM_STUDIO=OFF"], cwd=source, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", folder, "-j", str(options.jobs), "--target", *targets], check=True, stdout=subprocess.DEVNULL)
+    return folder
+
+
+builds = [build(compiler, level) for compiler in ("g++", "clang++") for level in ("-O3", "-O2")]
+for compiler in ("g++", "clang++"):
+    print(subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[0])
+sys.exit(subprocess.run([sys.executable, source / "tests/bench/same_hashes.py", *builds, "--steps", str(options.steps), "--hashes", "--plain-libm"]).returncode)
