@@ -3,7 +3,7 @@ import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from '
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { inflateSync } from 'node:zlib';
+import { deflateSync, inflateSync } from 'node:zlib';
 import { flows as recorded_flows, moment, near, recorded_place, robot, scrub } from './recorded_steps.mjs';
 import { blocks_of, mutated, random } from './page_mutations.mjs';
 import { check, compared, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
@@ -122,6 +122,21 @@ const flows = [
       await until(`a message about ${id}`, async () => /damaged|data of this page|cannot|compressed|JSON/i.test(await page.locator('body').innerText()));
       await page.context().close();
     }
+  }],
+  ['hostile names and texts stay text', async ({ rig, browser, html }) => {
+    const hostile = join(rig.work, 'hostile.html'), text = readFileSync(html, 'utf8'), packed = blocks_of(text).get('index');
+    const bad = '<img src=x onerror="window.bad=1"></script><b id="bad">x</b>';
+    const index = JSON.parse(inflateSync(Buffer.from(packed, 'base64')).toString());
+    Object.assign(index.hello.page, { passed: false, why: [bad], command: bad, left_out: [bad], marks: [{ time: 1, kind: bad, text: bad, subject: bad }] });
+    index.hello.recording.lines = [[0.5, 'ERROR', bad, bad]];
+    index.system.components[0].instance = index.world.models[0].name = bad;
+    writeFileSync(hostile, text.replace(packed, deflateSync(JSON.stringify(index)).toString('base64')));
+    const page = await open_file(browser, hostile);
+    await has_world(page);
+    await page.locator('#tab-logs').click();
+    check((await summary(page)).includes(bad), 'the text is shown');
+    same(await page.evaluate(() => [window.bad, document.getElementById('bad')]), [null, null], 'nothing of it is an element');
+    await page.context().close();
   }],
   ['mutated data leave a message or a run, never a blank page', async ({ rig, browser, html }) => {
     const broken = join(rig.work, 'mutated.html');
