@@ -145,6 +145,16 @@ def same_state():
     ok("reset")
     ok("step", "200")
     assert state() == once, "the state differs after a reset"
+    ok("reset", "--seed", "7")
+    ok("step", "200")
+    seventh = state()
+    assert seventh != once, "the seed is in the state"
+    stop(process)
+    process = started("-u", "--seed", "7", world=world)
+    ok("step", "200")
+    assert state() == seventh, "a reset with a seed differs from a start with it"
+    refused = simctl("reset", "--seed", "-1")
+    assert refused.returncode == 2 and "not negative" in refused.stderr, refused
     stop(process)
 
 

@@ -79,8 +79,14 @@ void add_control(base::Command& app, Work& work) {
   add_simple(app, work, "run", "Continue simulated time", [](Control& c) { c.ask(shm::RunRequest{}); });
   auto* reset = app.add_subcommand("reset", "Reset the world and the clock");
   auto poses_only = option_value(false);
-  reset->add_flag("--poses", *poses_only, "Reset the poses and velocities of all models only; time continues");
-  reset->callback([&work, poses_only] { work = [poses_only](Control& c) { c.ask(shm::ResetRequest{*poses_only}); }; });
+  auto* poses = reset->add_flag("--poses", *poses_only, "Reset the poses and velocities of all models only; time continues");
+  auto seed = option_value<std::optional<std::uint64_t>>();
+  reset->add_option("--seed", *seed, "New seed of all sensor noise (default: unchanged)")
+      ->excludes(poses)
+      ->check([](const std::string& text) {
+        return text.starts_with("-") ? "expected a whole number that is not negative, got " + text : std::string();
+      });
+  reset->callback([&work, poses_only, seed] { work = [poses_only, seed](Control& c) { c.ask(shm::ResetRequest{*poses_only, *seed}); }; });
 
   auto* rtf = app.add_subcommand("rtf", "Set the real-time factor");
   auto factor = option_value(1.0);
