@@ -66,15 +66,13 @@ void RTCManipulator::addServices() {
 
 std::string RTCManipulator::all_names(const std::string& joints) const { return gripper_.empty() ? joints : joints + "," + gripper_; }
 
-std::size_t RTCManipulator::axes() const {
-  const std::size_t fingers = base::split_list(gripper_).size();
-  return part().size() > fingers ? part().size() - fingers : 0;
-}
-
 void RTCManipulator::chosen() {
+  const std::size_t fingers = base::split_list(gripper_).size();
+  axes_ = part().size() > fingers ? part().size() - fingers : 0;
   std::vector<shm::Joint> arm;
   iface::ClientUnits units;
-  for (std::size_t i = 0; i < axes(); ++i) {
+  units.is_deg_mm = units_ == "deg_mm";
+  for (std::size_t i = 0; i < axes_; ++i) {
     arm.push_back(part().joint(i));
     units.slides.push_back(arm.back().kind == RTMSIM_JOINT_SLIDES);
   }
@@ -85,7 +83,7 @@ void RTCManipulator::chosen() {
   logged_alarms_ = 0;
   auto shared = shared_.lock();
   shared->units = units;
-  shared->arm.begin(arm, part().size() > axes(), std::clamp(speed_, 0, 100) / 100.0, std::max(cycle_, 1));
+  shared->arm.begin(arm, part().size() > axes_, std::clamp(speed_, 0, 100) / 100.0, std::max(cycle_, 1));
   if (is_chain && part().has_states()) shared->arm.feed(feedback());
   shared->is_there = is_chain;
 }
@@ -120,7 +118,7 @@ Reply RTCManipulator::move(const Planned& plan) {
 
 // Of the first finger.
 double RTCManipulator::finger_ratio() const {
-  const std::size_t first = axes();
+  const std::size_t first = axes_;
   if (first >= part().size()) return 0;
   const shm::Joint& joint = part().joint(first);
   const double way = joint.upper - joint.lower;
@@ -130,12 +128,12 @@ double RTCManipulator::finger_ratio() const {
 Manipulator::Feedback RTCManipulator::feedback() const {
   Manipulator::Feedback now;
   now.finger_ratio = finger_ratio();
-  for (std::size_t i = 0; i < axes(); ++i) {
+  for (std::size_t i = 0; i < axes_; ++i) {
     now.positions.push_back(part().state(i).position);
     if (part().state(i).status == RTMSIM_JOINT_STALLED) now.overloaded = i;
   }
   constexpr double at_stop = 1e-3;  // [m or rad]; [m/s or rad/s]
-  for (std::size_t i = axes(); i < part().size(); ++i) {
+  for (std::size_t i = axes_; i < part().size(); ++i) {
     const auto& finger = part().state(i);
     const bool is_closed = finger.position < part().joint(i).lower + at_stop && std::abs(finger.velocity) < at_stop;
     now.are_fingers_still = now.are_fingers_still && (is_closed || finger.status == RTMSIM_JOINT_STALLED || !part().is_moving(i));
@@ -144,7 +142,7 @@ Manipulator::Feedback RTCManipulator::feedback() const {
 }
 
 void RTCManipulator::command_fingers(const FingerCommand& command) {
-  for (std::size_t i = axes(); i < part().size(); ++i) {
+  for (std::size_t i = axes_; i < part().size(); ++i) {
     const shm::Joint& joint = part().joint(i);
     const double speed = joint.max_velocity / 2;
     if (command.kind == FingerCommand::Kind::close) {
@@ -192,15 +190,15 @@ void RTCManipulator::step() {
     alarms = shared->arm.alarms();
   }
   log_alarms(alarms);
-  for (std::size_t i = 0; target && i < axes(); ++i) note(part().follow(i, target->positions[i], target->velocities[i], 0));
+  for (std::size_t i = 0; target && i < axes_; ++i) note(part().follow(i, target->positions[i], target->velocities[i], 0));
   const bool must_brake = !target && (was_servo_on_ || part().was_reset());
-  for (std::size_t i = 0; must_brake && i < axes(); ++i) part().brake(i);
+  for (std::size_t i = 0; must_brake && i < axes_; ++i) part().brake(i);
   was_servo_on_ = target.has_value();
   if (fingers) command_fingers(*fingers);
 }
 
 void RTCManipulator::publish(const shm::Stamp& stamp) {
-  const std::size_t count = axes();
+  const std::size_t count = axes_;
   const bool has_fingers = count < part().size();
   joints_.tm = iface::to_time(stamp.sim_time_ns);
   joints_.pos.length(static_cast<CORBA::ULong>(count + (has_fingers ? 1 : 0)));

@@ -39,7 +39,6 @@ class RTCManipulator : public iface::JointComponent, public iface::ManipulatorOw
     iface::ClientUnits units;
   };
   void addServices();
-  std::size_t axes() const;
   iface::Manipulator::Feedback feedback() const;
   double finger_ratio() const;
   void command_fingers(const iface::FingerCommand& command);
@@ -47,6 +46,7 @@ class RTCManipulator : public iface::JointComponent, public iface::ManipulatorOw
 
   std::string gripper_, units_ = "si";
   double force_ = 0;
+  std::size_t axes_ = 0;  // the first ones of part(); then the fingers
   int speed_ = 50, cycle_ = 1;
   bool was_servo_on_ = true;  // the first tick without a servo puts the brakes on
   std::size_t logged_alarms_ = 0;

@@ -100,7 +100,7 @@ class CALLER : public RTC::DataFlowComponentBase {
   Answer information() {
     JARA::ManipInfo_var info;
     Answer answer = common_->getManipInfo(info.out());
-    out_ << " " << info->manufactur.in() << " " << info->axisNum << " " << info->cmdCycle << " " << info->isGripper;
+    out_ << " " << info->manufactur.in() << " " << info->axisNum << " " << info->cmdCycle << " " << (info->isGripper ? 1 : 0);
     return answer;
   }
   Answer soft_limits() {
