@@ -13,7 +13,7 @@ void JointComponent::bindJoints() {
 }
 
 void JointComponent::attached(const Device&) {
-  choose();
+  choose(false);
   shared_.lock()->is_active = true;
 }
 
@@ -23,7 +23,7 @@ void JointComponent::detaching() {
   shared->works.clear();
 }
 
-void JointComponent::choose() {
+void JointComponent::choose(bool has_sample) {
   chosen_attachment_ = link().attachments();
   chosen_names_ = all_names(names_);
   auto* iface = link().live();
@@ -31,6 +31,8 @@ void JointComponent::choose() {
   const auto done = part_.choose(*iface, chosen_names_);
   if (!done) part_.clear();
   note(done);
+  // Services can command before the next sample comes.
+  if (done && (has_sample || iface->read()) && iface->sample<shm::Stamp>().valid != 0) part_.read(*iface);
   std::vector<shm::Joint> joints;
   for (std::size_t i = 0; i < part_.size(); ++i) joints.push_back(part_.joint(i));
   shared_.lock()->joints = std::move(joints);
@@ -60,7 +62,7 @@ RTC::ReturnCode_t JointComponent::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
   auto* iface = link().fresh(wait_limit());
   if (iface == nullptr) return RTC::RTC_OK;
-  if (chosen_attachment_ != link().attachments() || chosen_names_ != all_names(names_)) choose();
+  if (chosen_attachment_ != link().attachments() || chosen_names_ != all_names(names_)) choose(true);
   part_.read(*iface);
   const auto works = std::exchange(shared_.lock()->works, {});
   for (const auto& work : works) work();

@@ -41,7 +41,7 @@ class JointComponent : public IfaceComponent {
   virtual void publish(const shm::Stamp& stamp) = 0;
 
  private:
-  void choose();
+  void choose(bool has_sample);  // whether the iface has been read
 
   struct Shared {
     bool is_active = false;

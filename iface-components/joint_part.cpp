@@ -57,7 +57,7 @@ base::Result<void> JointPart::choose(const shm::Iface& iface, std::string_view n
   }
   members_ = std::move(chosen);
   values_.assign(RTMSIM_JOINT_VALUES * iface.count(), 0.0);
-  time_ns_ = -1;
+  time_ns_ = -1, was_reset_ = false;
   return {};
 }
 
@@ -66,7 +66,7 @@ void JointPart::read(const shm::Iface& iface) {
   const auto* states = reinterpret_cast<const shm::JointState*>(iface.sample_followers(0));
   const bool is_first = time_ns_ < 0, is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
   const double dt = dt_ = is_first || is_reset ? 0 : static_cast<double>(stamp.sim_time_ns - time_ns_) * 1e-9;
-  time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets;
+  time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets, was_reset_ = is_reset;
   for (Member& member : members_) {
     if (member.joint.id < iface.count()) member.state = states[member.joint.id];
     if (is_reset) member.mode = RTMSIM_JOINT_NONE, member.has_changed = false;

@@ -28,8 +28,11 @@ class JointPart {
   // As of the last read().
   const shm::JointState& state(std::size_t i) const { return members_[i].state; }
 
+  bool has_states() const { return time_ns_ >= 0; }
   // [s] of simulated time between the last two samples.
   double dt() const { return dt_; }
+  // Whether the world was reset between them.
+  bool was_reset() const { return was_reset_; }
 
   // Takes the sample that the iface has, and steps what moves by the time since the one before. After a reset of the world nothing is
   // commanded any more.
@@ -66,6 +69,7 @@ class JointPart {
   std::vector<Member> members_;
   std::vector<double> values_;
   double dt_ = 0;
+  bool was_reset_ = false;
   std::int64_t time_ns_ = -1;
   std::uint32_t resets_ = 0;
 };

@@ -1,11 +1,19 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
 rtmsim_test(iface_components_test iface-components/conversions_test.cpp LIBRARIES iface_link)
+rtmsim_test(manipulator_test iface-components/arm_kinematics_test.cpp iface-components/manipulator_test.cpp LIBRARIES manipulator)
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
 rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)
+rtmsim_component(ManipulatorCaller scenario/manipulator_caller.cpp)
+rtmsim_component(ManipulatorCallerWithoutModule scenario/manipulator_caller_without_module.cpp IDL scenario/without_module/ManipulatorWithoutModule.idl)
+foreach(case moves without_module settings bad_values queue alarms low_level dead_client reset)
+  add_test(NAME manipulator.${case}
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/manipulator.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(manipulator.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
 foreach(case simctl act_array dead_commander gripper ptz robot_hardware)
   add_test(NAME arms.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

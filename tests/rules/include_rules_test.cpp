@@ -48,7 +48,7 @@ const std::vector<Layer> layers = {
     {"sim-server",
      {"devices", "server", "shm", "world", "physics", "rays", "render", "reader", "base"},
      {"Eigen", "JSON", "PNG", "spdlog"}},
-    {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}},
+    {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"Eigen"}},
     {"gateways/player/protocol", {"protocol", "base"}},
     {"gateways/player", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},

@@ -84,7 +84,7 @@ def facts_of_components():
             yield "port", name, f"{way.lower()} `{port}`", re.search(rf"Port<([\w:]+)> {member};", header)[1]
         if velocity := re.search(r"Drive\w*<(RTC::Timed\w+)", header):
             yield "port", name, "in `velocity`", velocity[1]
-        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text):
+        for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text) + re.findall(r'registerProvider\(value\("(\w+)"\)\.c_str\(\), \(module \+ "(\w+)"', text):
             yield "port", name, f"provides `{port}`", service
         listed = drive if "drive_parameters()" in text else text
         for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):
