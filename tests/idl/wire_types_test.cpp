@@ -1,9 +1,15 @@
 // Every type and interface of the wire contract has the repository id, the members and the order that the contract names.
 #include <gtest/gtest.h>
+#include <rtm/ext/ActArraySkel.h>
 #include <rtm/ext/CameraCommonInterfaceSkel.h>
+#include <rtm/ext/GripperSkel.h>
+#include <rtm/ext/HRPDataTypesSkel.h>
+#include <rtm/ext/LimbSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_CommonSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_DataTypesSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_MiddleSkel.h>
+#include <rtm/ext/PanTiltSkel.h>
+#include <rtm/ext/RobotHardwareServiceSkel.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 #include <rtm/idl/ComponentObserverSkel.h>
 #include <rtm/idl/DataPortSkel.h>
@@ -436,6 +442,11 @@ const Interface interfaces[] = {
      "IDL:JARA_ARM/ManipulatorCommonInterface_Common:1.0"},
     {JARA_ARM::ManipulatorCommonInterface_Middle::_PD_repoId, JARA_ARM::_tc_ManipulatorCommonInterface_Middle,
      "IDL:JARA_ARM/ManipulatorCommonInterface_Middle:1.0"},
+    {RTC::ActArray::_PD_repoId, RTC::_tc_ActArray, "IDL:RTC/ActArray:1.0"},
+    {RTC::Gripper::_PD_repoId, RTC::_tc_Gripper, "IDL:RTC/Gripper:1.0"},
+    {RTC::Limb::_PD_repoId, RTC::_tc_Limb, "IDL:RTC/Limb:1.0"},
+    {RTC::PanTilt::_PD_repoId, RTC::_tc_PanTilt, "IDL:RTC/PanTilt:1.0"},
+    {OpenHRP::RobotHardwareService::_PD_repoId, OpenHRP::_tc_RobotHardwareService, "IDL:OpenHRP/RobotHardwareService:1.0"},
 };
 
 TEST(WireTypes, every_type_has_the_id_members_and_order_of_the_contract) {

@@ -6,6 +6,7 @@
 #include <rtm/Manager.h>
 #include <rtm/ext/ActArraySkel.h>
 #include <rtm/ext/GripperSkel.h>
+#include <rtm/ext/LimbSkel.h>
 #include <rtm/ext/RobotHardwareServiceSkel.h>
 
 #include <cmath>
@@ -16,7 +17,11 @@
 class ArmProbe : public RTC::DataFlowComponentBase {
  public:
   explicit ArmProbe(RTC::Manager* manager)
-      : RTC::DataFlowComponentBase(manager), array_port_("act_array"), gripper_port_("gripper"), hardware_port_("hardware") {}
+      : RTC::DataFlowComponentBase(manager),
+        array_port_("act_array"),
+        gripper_port_("gripper"),
+        hardware_port_("hardware"),
+        limb_port_("limb") {}
 
   RTC::ReturnCode_t onInitialize() override {
     array_port_.registerConsumer("act_array", "RTC::ActArray", array_);
@@ -25,6 +30,8 @@ class ArmProbe : public RTC::DataFlowComponentBase {
     addPort(array_port_);
     addPort(gripper_port_);
     addPort(hardware_port_);
+    limb_port_.registerConsumer("limb", "RTC::Limb", limb_);
+    addPort(limb_port_);
     bindParameter("call", call_, "");
     return RTC::RTC_OK;
   }
@@ -42,6 +49,10 @@ class ArmProbe : public RTC::DataFlowComponentBase {
          [this] { return hardware_->servo("all", Hardware::SWITCH_OFF) && !hardware_->servo("nobody", Hardware::SWITCH_OFF); }},
         {"servo_on", [this] { return hardware_->servo("waist", Hardware::SWITCH_ON) && has_status(); }},
         {"error_limit", [this] { return hardware_->setServoErrorLimit("waist", 0.05), true; }},
+        {"limb_brakes_on", [this] { return limb_->Brakes(true), true; }},
+        {"limb_brakes_off", [this] { return limb_->Brakes(false), true; }},
+        {"limb_power_off", [this] { return limb_->Power(false), true; }},
+        {"limb_speed", [this] { return limb_->SetSpeed(-1), std::abs(limb_->GetGeometry().pose.position.z - 0.1) < 1e-9; }},
         {"open", [this] { return gripper_->Open(), true; }},
         {"close", [this] { return gripper_->Close(), true; }},
     };
@@ -80,10 +91,11 @@ class ArmProbe : public RTC::DataFlowComponentBase {
   }
 
   std::string call_;
-  RTC::CorbaPort array_port_, gripper_port_, hardware_port_;
+  RTC::CorbaPort array_port_, gripper_port_, hardware_port_, limb_port_;
   RTC::CorbaConsumer<RTC::ActArray> array_;
   RTC::CorbaConsumer<RTC::Gripper> gripper_;
   RTC::CorbaConsumer<Hardware> hardware_;
+  RTC::CorbaConsumer<RTC::Limb> limb_;
 };
 
 // clang-format off

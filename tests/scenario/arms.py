@@ -142,6 +142,46 @@ def ptz():
     await_("a refusal", lambda: "joint tilt: a position must be within -0.8 and 1.2, got 9" in log())
 
 
+# The tip goes to poses; brakes, power and what it cannot reach.
+def limb():
+    server()
+    rig.naming()
+    rig.host(device("RTCLimb", "conf.default.tool=0.09", "conf.default.speed=0.5"), "ArmProbe")
+    rig.there("RTCLimb0", "ArmProbe0")
+    rig.rtse("con", "ArmProbe0:limb", "RTCLimb0:limb")
+    rig.rtse("act", "RTCLimb0")
+
+    def pose(x, y, z):  # the hand points down
+        rig.rtse("inject", "RTCLimb0:pose", json.dumps({"tm": {"sec": 0, "nsec": 0}, "data": {"position": {"x": x, "y": y, "z": z}, "orientation": {"r": 0, "p": 3.14159265, "y": 0}}}))
+
+    def tip():
+        return sample("RTCLimb0:state")
+
+    def is_at(*goal):
+        at = tip()["oapMatrix"]["position"]
+        return all(abs(at[axis] - value) < 0.002 for axis, value in zip("xyz", goal))
+
+    pose(0.45, 0.1, 0.2)
+    await_("the tip at a pose", lambda: is_at(0.45, 0.1, 0.2))
+    await_("rest", lambda: tip()["status"] == "LIMB_STATUS_IDLE")
+    approach = tip()["oapMatrix"]["approach"]
+    assert abs(approach["z"] + 1) < 1e-3, approach
+    pose(3, 0, 0.2)
+    await_("a pose out of reach", lambda: tip()["status"] == "LIMB_STATUS_OOR" and "the arm cannot reach the pose" in log())
+    assert is_at(0.45, 0.1, 0.2)
+    call("limb_speed")
+    await_("a refusal", lambda: "SetSpeed: speeds must be above 0" in log())
+    call("limb_brakes_on")
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake" and tip()["status"] == "LIMB_STATUS_BRAKED")
+    pose(0.45, 0, 0.3)
+    await_("a refusal", lambda: "the brakes are on; the pose is ignored" in log())
+    call("limb_brakes_off")
+    pose(0.45, -0.1, 0.3)
+    await_("the tip at a pose", lambda: is_at(0.45, -0.1, 0.3))
+    call("limb_power_off")
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake")
+
+
 # The ports and the service of hrpsys.
 def robot_hardware():
     server()
@@ -169,7 +209,7 @@ def robot_hardware():
     await_("a servo that switched off", lambda: "joint waist: servo error" in log() and joints()["waist"]["mode"] == "brake")
 
 
-cases = {f.__name__: f for f in (simctl, act_array, dead_commander, gripper, ptz, robot_hardware)}
+cases = {f.__name__: f for f in (simctl, act_array, dead_commander, gripper, limb, ptz, robot_hardware)}
 with rig:
     cases[case]()
 print("ok")
