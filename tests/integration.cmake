@@ -8,6 +8,9 @@ add_test(NAME integration.obstacle_avoidance_explores_without_touching
           --expect ${CMAKE_CURRENT_SOURCE_DIR}/scenario/obstacle_avoidance.yaml)
 add_test(NAME integration.the_same_run_in_one_process_and_in_three
   COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/same_state.py ${rtse} ${avoidance} ${course})
+add_test(NAME integration.an_arm_stacks_boxes_alike_in_20_runs
+  COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/stacking.py ${rtse} ${PROJECT_SOURCE_DIR})
+set_tests_properties(integration.an_arm_stacks_boxes_alike_in_20_runs PROPERTIES LABELS integration TIMEOUT 900)
 add_test(NAME integration.free_run_in_real_time
   COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/free_run.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
 add_test(NAME integration.the_farm_is_seen_from_the_helicopter

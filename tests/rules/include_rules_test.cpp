@@ -68,6 +68,7 @@ const std::vector<Layer> layers = {
     {"tools/page", {"page", "studio", "recording", "base"}, {"deflate"}},
     {"clients/examples", {"rtm", "coil", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
+    {"clients/box-stacker", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "base"}},
 };

@@ -73,7 +73,8 @@ def write_layers():
 
 # (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of a drive are in a common file.
 def facts_of_components():
-    sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp", source / "clients/video-player/video_player.cpp"]
+    sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp",
+               source / "clients/box-stacker/box_stacker.cpp", source / "clients/video-player/video_player.cpp"]
     drive = (source / "iface-components/drive_component.cpp").read_text()
     for file in sources:
         text, header = file.read_text(), file.with_suffix(".h").read_text()
@@ -86,6 +87,8 @@ def facts_of_components():
             yield "port", name, "in `velocity`", velocity[1]
         for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', text) + re.findall(r'registerProvider\(value\("(\w+)"\)\.c_str\(\), \(module \+ "(\w+)"', text):
             yield "port", name, f"provides `{port}`", service
+        for port, service in re.findall(r'registerConsumer\("(\w+)", "([\w:]+)"', text):
+            yield "port", name, f"uses `{port}`", service
         listed = drive if "drive_parameters()" in text else text
         for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):
             yield "parameter", name, parameter, default

@@ -30,6 +30,7 @@ executed = {
     "docs/recordings.md": avoidance,
     "docs/hash-logs.md": "",
     "docs/arms.md": "",
+    "docs/jara.md": "",
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
     "docs/run-page.md": "",
     "docs/simulator.md": "",
