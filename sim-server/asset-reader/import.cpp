@@ -34,9 +34,7 @@ Import::Import(std::string path, FileLog& files) : path_(std::move(path)) {
     importer_.UnregisterLoader(other);
     delete other;  // no longer the importer's
   }
-  auto* io = new MeshIo(files);
-  io_ = io;
-  importer_.SetIOHandler(io);  // the importer's from now on
+  importer_.SetIOHandler(new MeshIo(files));  // the importer's from now on
   importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 }
 
@@ -47,7 +45,6 @@ base::Result<const aiScene*> Import::read(unsigned flags) {
     return base::Error{"is of no format that is read; expected " + base::join(known, ", ")};
   }
   const aiScene* scene = importer_.ReadFile(path_, flags);
-  if (!io_->fault().empty()) return base::Error{io_->fault()};
   if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};
   return scene;
 }

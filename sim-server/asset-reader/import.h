@@ -12,8 +12,6 @@
 
 namespace sim {
 
-class MeshIo;
-
 class Import {
  public:
   Import(std::string path, FileLog& files);
@@ -27,7 +25,6 @@ class Import {
   std::string path_;
   bool is_known_ = false;
   Assimp::Importer importer_;
-  const MeshIo* io_;  // the importer's
 };
 
 }  // namespace sim

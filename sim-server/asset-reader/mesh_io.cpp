@@ -51,23 +51,6 @@ std::string with_named_images(const std::string& collada) {
   return copied == 0 ? collada : out.append(collada, copied);
 }
 
-std::string ply_fault(std::string_view content) {
-  constexpr std::size_t most_header = 1U << 16U;
-  std::string_view header = content.substr(0, std::min(content.size(), most_header));
-  header = header.substr(0, std::min(header.find("end_header"), header.size()));
-  while (!header.empty()) {
-    const auto end = std::min(header.find_first_of("\r\n"), header.size());
-    const auto words = base::split_list(header.substr(0, end), ' ');
-    header.remove_prefix(std::min(end + 1, header.size()));
-    if (words.size() < 3 || words[0] != "element") continue;
-    const auto count = base::parse_integer(words[2]);
-    if (!count || *count < 0 || static_cast<std::uint64_t>(*count) > content.size())
-      return "says it has " + base::in_quotes(words[2]) + " of element " + base::in_quotes(words[1]) + ", but has " +
-             std::to_string(content.size()) + " bytes";
-  }
-  return {};
-}
-
 std::string import_fault(std::string_view said) {
   const auto is_said = [&](std::string_view words) { return said.find(words) != std::string_view::npos; };
   if (is_said("bad_alloc")) return "is too large for the memory";
@@ -81,10 +64,7 @@ Assimp::IOStream* MeshIo::Open(const char* file, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
   const auto content = files_.read(file, most_mesh_file);
   if (!content) return nullptr;
-  const std::string extension = base::to_lower(std::filesystem::path(file).extension().string());
-  if (extension == ".ply") fault_ = ply_fault(*content);
-  if (!fault_.empty()) return nullptr;
-  const bool is_collada = extension == ".dae";
+  const bool is_collada = base::to_lower(std::filesystem::path(file).extension().string()) == ".dae";
   const std::string text = is_collada ? with_named_images(*content) : std::string();
   const std::string& all = is_collada ? text : *content;
   auto* bytes = new std::uint8_t[all.size() + 1];  // the stream's from now on

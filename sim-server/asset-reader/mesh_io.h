@@ -15,9 +15,6 @@ namespace sim {
 inline constexpr std::string_view no_image = "no_image";
 std::string with_named_images(const std::string& collada);
 
-// Why a PLY file is not worth reading: Assimp counts to what its header says, whatever comes behind it. Empty: it is.
-std::string ply_fault(std::string_view content);
-
 // What to say of an importer that gave nothing: Assimp passes on the name of the exception when memory runs out.
 std::string import_fault(std::string_view said);
 
@@ -27,12 +24,9 @@ class MeshIo : public Assimp::DefaultIOSystem {
   bool Exists(const char* file) const override;
   // Null: it is none; the importer that asked says what it misses.
   Assimp::IOStream* Open(const char* file, const char* mode) override;
-  // Of a file that was not opened because of what it holds; empty: there was none.
-  const std::string& fault() const { return fault_; }
 
  private:
   FileLog& files_;
-  std::string fault_;
 };
 
 }  // namespace sim

@@ -93,7 +93,10 @@ ForkServer::ForkServer(std::size_t memory) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return;
   server_ = ::fork();
-  if (server_ == 0) serve(ends[1], memory);
+  if (server_ == 0) {
+    ::close(ends[0]);  // else it would never see the end
+    serve(ends[1], memory);
+  }
   ::close(ends[1]);
   control_ = ends[0];
 }
