@@ -119,6 +119,38 @@ Descriptor memory_with(std::span<const std::uint8_t> content) {
   return memory;
 }
 
+// rtm-asset-reader, with this end of the socket.
+base::Result<pid_t> run_program(int socket) {
+  std::error_code problem;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "rtm-asset-reader";
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+#if defined(__SANITIZE_ADDRESS__)
+    if (standard == STDERR_FILENO) continue;  // its reports
+#endif
+    posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", standard == STDIN_FILENO ? O_RDONLY : O_WRONLY, 0);
+  }
+  posix_spawn_file_actions_adddup2(&actions, socket, reader_socket);
+  posix_spawn_file_actions_addclosefrom_np(&actions, reader_socket + 1);
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::string name = program.string(), job = "--socket";
+  char* words[] = {name.data(), job.data(), nullptr};
+  pid_t pid = 0;
+  const int failed = ::posix_spawn(&pid, program.c_str(), &actions, &attributes, words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (failed != 0) return broken(("the reader of files does not start, " + program.string()).c_str(), failed);
+  return pid;
+}
+
 std::string reason_of(int status, const ReadLimits& limits) {
   if (WIFEXITED(status)) return "is damaged: its reader ended with exit status " + std::to_string(WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
@@ -157,7 +189,7 @@ struct AssetReader::Child {
   pid_t pid = 0;
   Descriptor socket;
 
-  static base::Result<std::unique_ptr<Child>> start();
+  static base::Result<std::unique_ptr<Child>> start(const Starter& starter);
   ~Child() { static_cast<void>(end()); }
   // Ends it when it has not ended; its status. Again: the same.
   int end() {
@@ -177,47 +209,25 @@ struct AssetReader::Child {
   std::optional<int> status_;
 };
 
-base::Result<std::unique_ptr<AssetReader::Child>> AssetReader::Child::start() {
-  std::error_code problem;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", problem).parent_path() / "rtm-asset-reader";
+base::Result<std::unique_ptr<AssetReader::Child>> AssetReader::Child::start(const Starter& starter) {
   int ends[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return broken("no socket for the reader of files", errno);
   auto child = std::make_unique<Child>();
   child->socket = Descriptor(ends[0]);
   // Above the number that it gets: a descriptor that is put in its own place would stay closed on exec.
-  Descriptor theirs(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10));
+  const Descriptor theirs(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10));
   ::close(ends[1]);
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-#if defined(__SANITIZE_ADDRESS__)
-    if (standard == STDERR_FILENO) continue;  // its reports
-#endif
-    posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", standard == STDIN_FILENO ? O_RDONLY : O_WRONLY, 0);
-  }
-  posix_spawn_file_actions_adddup2(&actions, theirs.get(), reader_socket);
-  posix_spawn_file_actions_addclosefrom_np(&actions, reader_socket + 1);
-  sigset_t none, all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  std::string name = program.string(), job = "--socket";
-  char* words[] = {name.data(), job.data(), nullptr};
-  const int failed = ::posix_spawn(&child->pid, program.c_str(), &actions, &attributes, words, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  if (failed != 0) {
+  const auto pid = starter ? starter(theirs.get()) : run_program(theirs.get());
+  if (!pid) {
     child->status_ = 0;
-    return broken(("the reader of files does not start, " + program.string()).c_str(), failed);
+    return pid.error();
   }
+  child->pid = *pid;
   return child;
 }
 
 struct AssetReader::State {
+  Starter starter;    // empty: run_program
   base::Turn<> turn;  // everything below is for the thread that has it
   std::unique_ptr<Child> child;
   // Files that a reader has ended with.
@@ -236,7 +246,7 @@ struct AssetReader::State {
 
   base::Result<Child*> reader() {
     if (child) return child.get();
-    auto made = Child::start();
+    auto made = Child::start(starter);
     if (!made) return made.error();
     child = std::move(*made);
     process.store(child->pid, std::memory_order_relaxed);
@@ -258,6 +268,7 @@ AssetReader& AssetReader::mine() {
 AssetReader::AssetReader() : state_(std::make_unique<State>()) {}
 AssetReader::~AssetReader() = default;
 void AssetReader::stop() { state_->is_stopped.store(true, std::memory_order_release); }  // pairs with the acquires in ask
+void AssetReader::start_by(Starter starter) { state_->starter = std::move(starter); }
 pid_t AssetReader::process() const { return state_->process.load(std::memory_order_relaxed); }
 std::size_t AssetReader::started() const { return state_->started.load(std::memory_order_relaxed); }
 

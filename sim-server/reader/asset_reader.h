@@ -102,6 +102,11 @@ class AssetReader {
   // This process ends: what is being read, and all that is asked for from now on, fails at once.
   void stop();
 
+  // For tests: starts a child process of this one, which answers on this end of the socket, instead of rtm-asset-reader. Before the first
+  // file.
+  using Starter = std::function<base::Result<pid_t>(int socket)>;
+  void start_by(Starter starter);
+
   // Of the reader that runs now; 0: none.
   pid_t process() const;
   // Readers that this process has started.

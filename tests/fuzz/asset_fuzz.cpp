@@ -1,9 +1,9 @@
 // Has mutations of meshes and pictures read as a simulator reads them (by rtm-asset-reader, checked), and gives what comes of them to ODE,
 // Embree and the bending of skins: none may end, hang or corrupt this process. The reader may die, which is counted.
-//   asset_fuzz [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...
+//   asset_fuzz [--fork] [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...
 // N mutations of each file, each given up after MS milliseconds (2000); bodies fall on every Nth mesh (1). A crash leaves the last one in
 // asset_fuzz_last.EXTENSION; --keep keeps those that ended the reader. One reader reads until a file ends it. Prints counts by file and by
-// format. For a campaign beside an instrumented reader: a folder with this program and the rtm-asset-reader of another build.
+// format. --fork, for campaigns: readers are forked (fork_server.h) and have 64 MiB; sanitizer reports of readers go to stderr.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,16 +16,26 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "base/text.h"
+#include "fuzz/fork_server.h"
 #include "physics/physics.h"
 #include "rays/ray_scene.h"
 #include "reader/asset_reader.h"
 #include "render/assets.h"
 #include "support/usage.h"
+
+// Readers end in thousands: a report names addresses, which addr2line translates where somebody asks.
+extern "C" const char* __asan_default_options();
+extern "C" const char* __asan_default_options() {
+  return "detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=2048:quarantine_size_mb=16:symbolize=0";
+}
+extern "C" const char* __ubsan_default_options();
+extern "C" const char* __ubsan_default_options() { return "halt_on_error=1:print_stacktrace=1"; }
 
 namespace {
 
@@ -37,6 +47,8 @@ void require(bool holds, const char* what) {
   std::fprintf(stderr, "asset_fuzz: %s\n", what);
   std::abort();
 }
+
+constexpr std::size_t reader_memory = 64 << 20U;  // [byte] with --fork
 
 struct Count {
   long files = 0, results = 0, errors = 0, deaths = 0, late = 0;
@@ -55,6 +67,7 @@ struct Options {
   long runs = 50;
   std::chrono::milliseconds limit{2000};
   long bodies = 1;
+  bool has_fork_server = false;
   fs::path keep;
 };
 
@@ -122,7 +135,7 @@ bool run(const std::string& file, const Options& options, Count& count) {
     has_result = has_result || result.ok();
     return result.ok();
   };
-  if (extension == ".png" || extension == ".jpg" || extension == ".dds") {
+  if (extension == ".png" || extension == ".jpg" || extension == ".dds" || extension == ".pgm") {
     const auto image = sim::read_image(file);
     if (look(image)) require(image.value().rgba.size() == image.value().size_bytes(), "a picture has not its size");
     look(sim::TriangleCache().heights({file, {1, 1, 1}, {0, 0, 0}, 1, {}, {}}));
@@ -259,14 +272,16 @@ Count run_seed(const std::vector<Seed>& seeds, std::size_t which, const Options&
 }  // namespace
 
 int main(int argc, char** argv) {
-  ::test::answer_help(argc, argv,
-                      "asset_fuzz [--runs N] [--seed N] [FILE]...\nReads damaged mesh and image files; it must not crash or hang.");
+  ::test::answer_help(
+      argc, argv, "asset_fuzz [--fork] [--runs N] [--seed N] [FILE]...\nReads damaged mesh and image files; it must not crash or hang.");
   Options options;
   std::vector<fs::path> files;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const auto number = [&](long otherwise) { return static_cast<long>(base::parse_integer(argv[++i]).value_or(otherwise)); };
-    if (word == "--seed" && i + 1 < argc) {
+    if (word == "--fork") {
+      options.has_fork_server = true;
+    } else if (word == "--seed" && i + 1 < argc) {
       options.seed = static_cast<unsigned>(number(1));
     } else if (word == "--runs" && i + 1 < argc) {
       options.runs = number(50);
@@ -284,8 +299,13 @@ int main(int argc, char** argv) {
   }
   const auto seeds = seeds_of(std::move(files));
   if (seeds.empty()) {
-    std::fprintf(stderr, "usage: asset_fuzz [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...\n");
+    std::fprintf(stderr, "usage: asset_fuzz [--fork] [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...\n");
     return 2;
+  }
+  std::optional<fuzz::ForkServer> forks;
+  if (options.has_fork_server) {
+    forks.emplace(reader_memory);
+    sim::AssetReader::mine().start_by([&forks](int socket) { return forks->start(socket); });
   }
   std::map<std::string, Count> formats;
   for (std::size_t which = 0; which < seeds.size(); ++which) {

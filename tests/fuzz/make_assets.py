@@ -82,6 +82,33 @@ write("cube.fbx", "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeader
       "\t\tVertices: *24 {\n\t\t\ta: " + ",".join(str(c) for corner in corners for c in corner) + "\n\t\t}\n\t\tPolygonVertexIndex: *36 {\n\t\t\ta: "
       + ",".join(f"{a},{b},{-c - 1}" for a, b, c in faces) + "\n\t\t}\n\t\tGeometryVersion: 124\n\t}\n\tModel: 2, \"Model::cube\", \"Mesh\" {\n\t\tVersion: 232\n\t}\n}\n"
       "Connections:  {\n\tC: \"OO\",2,0\n\tC: \"OO\",1,2\n}\n")
+
+
+def fbx_node(at, name, properties=(), children=()):
+    def array(code, kind, values):  # the second encoding is zlib
+        data = struct.pack(f"<{len(values)}{kind}", *values)
+        packed = zlib.compress(data) if len(values) > 30 else data
+        return code.encode() + struct.pack("<3I", len(values), int(packed != data), len(packed)) + packed
+    def number(value):  # identifiers have 64 bits
+        return b"I" + struct.pack("<i", value) if "Version" in name else b"L" + struct.pack("<q", value)
+    values = b"".join(b"S" + struct.pack("<I", len(p)) + p if isinstance(p, bytes) else number(p) if isinstance(p, int) else array(*p) for p in properties)
+    inside = b""
+    for child in children:
+        inside += fbx_node(at + 13 + len(name) + len(values) + len(inside), *child)
+    inside += b"\0" * 13 if children else b""
+    size = 13 + len(name) + len(values) + len(inside)
+    return struct.pack("<3IB", at + size, len(properties), len(values), len(name)) + name.encode() + values + inside
+
+
+binary = b"Kaydara FBX Binary  \0\x1a\0" + struct.pack("<I", 7400)
+for node in [("FBXHeaderExtension", (), [("FBXHeaderVersion", (1003,)), ("FBXVersion", (7400,))]),
+             ("Objects", (), [("Geometry", (1, b"\0\1Geometry", b"Mesh"), [("Vertices", (("d", "d", [c for corner in corners for c in corner]),)),
+                                                                          ("PolygonVertexIndex", (("i", "i", [i for a, b, c in faces for i in (a, b, -c - 1)]),)), ("GeometryVersion", (124,))]),
+                              ("Model", (2, b"cube\0\1Model", b"Mesh"), [("Version", (232,))])]),
+             ("Connections", (), [("C", (b"OO", 2, 0)), ("C", (b"OO", 1, 2))])]:
+    binary += fbx_node(len(binary), *node)
+write("binary.fbx", binary + b"\0" * 13)
+write("map.pgm", b"P5\n# a map\n8 4\n255\n" + bytes(8 * i for i in range(32)))
 write("limb.dae", """<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="1" name="m"/><up_axis>Z_UP</up_axis></asset>
 <library_images><image id="i"><init_from>colors.png</init_from></image></library_images>
 <library_effects><effect id="e"><profile_COMMON><newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam><newparam sid="t"><sampler2D><source>s</source></sampler2D></newparam>

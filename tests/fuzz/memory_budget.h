@@ -1,0 +1,13 @@
+// The memory of a reader of files under test. The address sanitizer needs more address space than a limit leaves, and then nothing stops
+// a file that says it has 4294967295 corners: most of the time goes into clearing pages. Here operator new counts instead, and fails as it
+// does at the limit, by std::bad_alloc. Linking this replaces it in the whole program.
+#pragma once
+
+#include <cstddef>
+
+namespace fuzz {
+
+// From now on this process has so many bytes more than it has now.
+void limit_memory(std::size_t bytes);
+
+}  // namespace fuzz
