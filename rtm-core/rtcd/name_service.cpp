@@ -4,16 +4,13 @@
 #include <netdb.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -22,6 +19,7 @@
 
 #include "base/log.h"
 #include "base/own_account.h"
+#include "base/scratch_folder.h"
 #include "base/text.h"
 
 namespace {
@@ -75,42 +73,7 @@ bool answers(const Address& address) {
   return answered;
 }
 
-constexpr std::string_view folder_prefix = "rtcd-names-";
-
-// Folders whose keeper was killed: a living one holds a lock on the file in it.
-void remove_stale_folders(const std::filesystem::path& where) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(where, error)) {
-    if (!entry.path().filename().string().starts_with(folder_prefix)) continue;
-    struct stat status {};
-    if (lstat(entry.path().c_str(), &status) != 0 || status.st_uid != geteuid() || !S_ISDIR(status.st_mode)) continue;
-    const int lock = open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (lock < 0) continue;
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), error);
-    close(lock);
-  }
-}
-
-struct Folder {
-  std::string path;
-  int lock;
-};
-
-base::Result<Folder> make_folder() {
-  std::error_code error;
-  const auto where = std::filesystem::temp_directory_path(error);
-  remove_stale_folders(where);
-  for (int attempt = 0; attempt < 5; ++attempt) {
-    auto path = (where / (std::string(folder_prefix) + "XXXXXX")).string();
-    if (mkdtemp(path.data()) == nullptr) break;
-    const int lock = open((path + "/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
-    struct stat opened {};
-    if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0 && fstat(lock, &opened) == 0 && opened.st_nlink > 0) return Folder{path, lock};
-    if (lock >= 0) close(lock);  // another process took the new folder for a stale one
-    if (lock < 0) rmdir(path.c_str());
-  }
-  return base::Error{"name server: cannot create a folder in the temporary folder"};
-}
+constexpr const char* folder_prefix = "rtcd-names-";
 
 // What the library in omniNames tells, until it and the keeper have gone.
 void log_lines(int file) {
@@ -170,9 +133,8 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
 
   const auto door = is_open ? std::string() : base::own_account_door();
   if (!is_open && door.empty()) return base::Error{"name server: librtmsim_own_account.so is missing, which rejects other accounts"};
-  const auto made = make_folder();
-  if (!made) return made.error();
-  const auto& folder = made->path;
+  auto folder = base::ScratchFolder::make(folder_prefix);
+  if (!folder) return base::Error{"name server: " + folder.error().message};
   int ends[2], lines[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return base::Error{"name server: cannot create a pipe"};
   std::unique_ptr<NameService> service(new NameService);
@@ -186,11 +148,11 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   if (service->keeper_ == 0) {
     close(ends[1]);
     close(lines[0]);
-    keep(*address, folder, door, ends[0], lines[1]);
+    keep(*address, folder->path(), door, ends[0], lines[1]);
   }
   close(ends[0]);
   close(lines[1]);
-  close(made->lock);  // the keeper has it now
+  if (service->keeper_ > 0) folder->give_away();
   service->log_ = std::thread([file = lines[0]] { log_lines(file); });
 
   constexpr std::chrono::seconds patience{10};

@@ -1,15 +1,13 @@
 #include "run/recorded_run.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <utility>
 
 #include "base/text.h"
 #include "recording/ring.h"
+#include "run/run_files.h"
 
 namespace recorder {
 
@@ -17,32 +15,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-base::Result<fs::path> new_folder() {
-  const char* place = std::getenv("TMPDIR");
-  std::string name = std::string(place != nullptr && *place != '\0' ? place : "/tmp") + "/rtse-run-XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) return base::Error{"folder " + base::in_quotes(name) + ": cannot be made"};
-  return fs::path(name);
-}
-
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
-
-RecordedRun::RecordedRun(RecordedRun&& other) noexcept
-    : folder_(std::exchange(other.folder_, {})),
-      system_(std::move(other.system_)),
-      world_(std::move(other.world_)),
-      resource_paths_(std::move(other.resource_paths_)),
-      notes_(std::move(other.notes_)),
-      end_s_(other.end_s_) {}
-
-RecordedRun::~RecordedRun() {
-  std::error_code ignored;  // what stays in the temporary folder harms nobody
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
-}
 
 base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Needs needs) {
   auto reader = open_recording(recording);
@@ -54,9 +32,9 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Need
   for (const auto& one : *metadata) {
     if (one.name == "run") run.notes_ = one.texts;
   }
-  const auto folder = new_folder();
+  auto folder = base::ScratchFolder::make(editor::scratch_prefix);
   if (!folder) return folder.error();
-  run.folder_ = *folder;
+  run.folder_.emplace(std::move(*folder));
   for (const auto& [name, place] : {std::pair("system.xml", &run.system_), std::pair("world.sdf", &run.world_)}) {
     const auto attachment = reader->attachment(name);
     if (!attachment) {
@@ -64,7 +42,7 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Need
       return base::Error{base::in_quotes(recording) + ": has no attachment " + base::in_quotes(name) +
                          ", which makes the run again; rtse run --record writes it"};
     }
-    *place = (run.folder_ / name).string();
+    *place = (run.folder() / name).string();
     std::ofstream(*place, std::ios::binary) << attachment->data;
   }
   // What the world names is found from where its file was.

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "base/scratch_folder.h"
 #include "recording/mcap/mcap.h"
 #include "run/run_system.h"
 
@@ -18,13 +20,10 @@ class RecordedRun {
   enum class Needs { system_and_world, world };
   // Fails when the recording has not what is needed: `rtse run --record` writes both, `rtse record` the world that a simulator runs.
   static base::Result<RecordedRun> unpack(const std::string& recording, Needs needs = Needs::system_and_world);
-  RecordedRun(RecordedRun&& other) noexcept;
-  RecordedRun& operator=(RecordedRun&&) = delete;
-  ~RecordedRun();
 
   const std::string& system() const { return system_; }
   const std::string& world() const { return world_; }
-  const std::filesystem::path& folder() const { return folder_; }  // for files of the caller's own
+  std::filesystem::path folder() const { return folder_->path(); }  // for files of the caller's own
   // A text of the metadata `run`; empty when it is not there.
   std::string note(const std::string& key) const;
   double end() const { return end_s_; }  // the time of the last sample [s]
@@ -36,7 +35,7 @@ class RecordedRun {
 
  private:
   RecordedRun() = default;
-  std::filesystem::path folder_;
+  std::optional<base::ScratchFolder> folder_;
   std::string system_, world_;
   std::vector<std::string> resource_paths_;
   mcap::Texts notes_;

@@ -1,30 +1,20 @@
 #include "run/run_files.h"
 
-#include <signal.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
 
-#include "base/id.h"
 #include "base/text.h"
 
 namespace editor {
 namespace {
 
-constexpr std::string_view prefix = "rtse-run-";
-
-// What runs left that were killed.
-void remove_leftovers() {
-  std::error_code ignored;  // others clean up at the same time
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::temp_directory_path(), ignored)) {
-    const auto name = entry.path().filename().string();
-    if (!name.starts_with(prefix)) continue;
-    const auto pid = base::parse_integer(name.substr(prefix.size(), name.find('-', prefix.size()) - prefix.size()));
-    if (pid && *pid > 0 && kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH) std::filesystem::remove_all(entry.path(), ignored);
-  }
+base::ScratchFolder made_scratch() {
+  errno = ENOTDIR;  // where nothing else is said
+  auto made = base::ScratchFolder::make(scratch_prefix);
+  if (!made) throw std::filesystem::filesystem_error(made.error().message, {}, std::error_code(errno, std::generic_category()));
+  return std::move(*made);
 }
 
 // How many octets the UTF-8 character at the start has; 0: it is none, or none that XML 1.0 allows.
@@ -46,19 +36,11 @@ std::size_t character_at(std::string_view text) {
 
 }  // namespace
 
-Workplace::Workplace(const std::string& keep) {
-  remove_leftovers();
-  scratch_ =
-      std::filesystem::temp_directory_path() / (std::string(prefix) + std::to_string(getpid()) + "-" + base::make_uuid().substr(0, 8));
-  std::filesystem::create_directories(scratch_ / "names");
-  std::filesystem::create_directories(scratch_ / "tmp");
-  files_ = keep.empty() ? scratch_ : std::filesystem::absolute(keep);
+Workplace::Workplace(const std::string& keep)
+    : scratch_(made_scratch()), files_(keep.empty() ? std::filesystem::path(scratch_.path()) : std::filesystem::absolute(keep)) {
+  std::filesystem::create_directory(scratch("names"));
+  std::filesystem::create_directory(scratch("tmp"));
   std::filesystem::create_directories(files_);
-}
-
-Workplace::~Workplace() {
-  std::error_code ignored;  // a file that cannot be removed from the temporary folder is no failure of the run
-  std::filesystem::remove_all(scratch_, ignored);
 }
 
 std::string Workplace::new_file(const std::string& name) const {

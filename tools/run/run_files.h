@@ -7,26 +7,27 @@
 #include <string_view>
 #include <vector>
 
+#include "base/scratch_folder.h"
 #include "base/sudden_end.h"
 
 namespace editor {
+
+inline constexpr const char* scratch_prefix = "rtse-run-";  // of temporary folders of runs
 
 // A folder for what is to be looked at afterwards, and one for everything else, which is gone at the end.
 class Workplace {
  public:
   // `keep`: the folder for logs and records, made if need be; empty: the temporary one. Throws std::filesystem::filesystem_error.
   explicit Workplace(const std::string& keep);
-  ~Workplace();
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
 
   // A new file among those to be looked at.
   std::string new_file(const std::string& name) const;
   std::string file(const std::string& name) const { return (files_ / name).string(); }
-  std::string scratch(const std::string& name) const { return (scratch_ / name).string(); }
+  std::string scratch(const std::string& name) const { return scratch_.path() + "/" + name; }
 
  private:
-  std::filesystem::path scratch_, files_;
+  base::ScratchFolder scratch_;
+  std::filesystem::path files_;
 };
 
 // Of the folder of a run.

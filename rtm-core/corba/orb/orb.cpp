@@ -1,14 +1,9 @@
 #include "corba/orb/orb.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -16,6 +11,7 @@
 
 #include "base/guarded.h"
 #include "base/log.h"
+#include "base/scratch_folder.h"
 #include "base/text.h"
 #include "corba/members/member_watch.h"
 #include "corba/orb/call_context.h"
@@ -40,63 +36,20 @@ std::filesystem::path runtime_folder() {
   return error ? "/tmp" : folder;
 }
 
-// Folders whose owner has died are removed: the owner holds a lock on the file in it.
-void remove_stale_folders(const std::filesystem::path& where) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(where, error)) {
-    if (!entry.path().filename().string().starts_with(folder_prefix)) continue;
-    struct stat status {};
-    if (lstat(entry.path().c_str(), &status) != 0 || status.st_uid != geteuid() || !S_ISDIR(status.st_mode)) continue;
-    const int lock = open((entry.path() / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-    // Its owner could open no file, or is just about to.
-    constexpr std::time_t while_made = 60;  // [s]
-    if (lock < 0 && errno == ENOENT && status.st_mtime + while_made < std::time(nullptr)) rmdir(entry.path().c_str());
-    if (lock < 0) continue;
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), error);
-    close(lock);
-  }
-}
-
-bool is_same_file(int file, const std::string& path) {
-  struct stat opened {
-  }, named{};
-  return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
-}
-
 }  // namespace
 
 // Removed with its owner.
 class Orb::PrivateFolder {
  public:
   static std::unique_ptr<PrivateFolder> make() {
-    const auto where = runtime_folder();
-    remove_stale_folders(where);
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      auto pattern = (where / (folder_prefix + std::string("XXXXXX"))).string();
-      if (mkdtemp(pattern.data()) == nullptr) return nullptr;
-      const auto lock_path = pattern + "/lock";
-      const int lock = open(lock_path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
-      if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0 && is_same_file(lock, lock_path)) {
-        return std::unique_ptr<PrivateFolder>(new PrivateFolder(pattern, lock));
-      }
-      if (lock >= 0) close(lock);  // another process took the new folder for a stale one
-      if (lock < 0) rmdir(pattern.c_str());
-    }
-    return nullptr;
+    auto folder = base::ScratchFolder::make(folder_prefix, runtime_folder());
+    return folder ? std::make_unique<PrivateFolder>(std::move(*folder)) : nullptr;
   }
-  ~PrivateFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-    close(lock_);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  const std::string& path() const { return path_; }
+  explicit PrivateFolder(base::ScratchFolder folder) : folder_(std::move(folder)) {}
+  const std::string& path() const { return folder_.path(); }
 
  private:
-  PrivateFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
-  std::string path_;
-  int lock_;
+  base::ScratchFolder folder_;
 };
 
 namespace {

@@ -8,10 +8,12 @@
 
 #include "base/guarded.h"
 #include "base/interrupt.h"
+#include "base/scratch_folder.h"
 #include "base/text.h"
 #include "campaign/results/disk_room.h"
 #include "campaign/slurm/slurm_sweep.h"
 #include "campaign/slurm/task_folder.h"
+#include "run/run_files.h"
 #include "run/warm_program.h"
 #include "system/remote.h"
 
@@ -62,23 +64,6 @@ class Part {
   Clock::time_point synced_ = Clock::now();
 };
 
-// Rows run on a disk of this machine; only what a row leaves behind goes to the shared one.
-class Scratch {
- public:
-  // Under the name of runs, so that the next one takes it away when this process was killed.
-  Scratch() : folder_(fs::temp_directory_path() / ("rtse-run-" + std::to_string(getpid()) + "-rows")) {}
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
-
 Result<void> keep(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::remove_all(to, error);  // of a task that was killed
@@ -107,7 +92,9 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   const auto rows = shared.rows_of(place.attempt, place.task);
   if (!rows) return rows.error();
   Part part(shared.part(place.attempt, place.task));
-  const Scratch scratch;
+  // Rows run on a disk of this machine; only what a row leaves behind goes to the shared one.
+  const auto scratch = base::ScratchFolder::make(editor::scratch_prefix);
+  if (!scratch) return scratch.error();
   const auto warm = rows->size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
   const auto work = [&](std::size_t number) {
     if (editor::is_interrupted() || !part.problem().empty()) return;
@@ -115,7 +102,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     if (!row) return;  // the caller has made it
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
-    const auto folder = scratch.folder() / name;
+    const auto folder = fs::path(scratch->path()) / name;
     auto outcome =
         run_row(orb, campaign, *row,
                 {.folder = folder.string(), .keeps_files = false, .records = options.records, .warm = warm ? &*warm : nullptr}, reporter);
