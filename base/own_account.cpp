@@ -3,6 +3,10 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <algorithm>
+
+#include "base/text.h"
+
 namespace base {
 
 std::string own_account_door() {
@@ -18,6 +22,15 @@ std::string own_account_door() {
     if (access(file.c_str(), R_OK) == 0) return file;
   }
   return {};
+}
+
+std::string with_numeric_host(std::string_view address) {
+  std::string_view protocol, host = address;
+  for (const std::string_view known : {"iiop:", "ssliop:"})
+    if (address.starts_with(known)) protocol = known, host = address.substr(known.size());
+  const auto name = host.substr(0, std::min(host.find_first_of(":/"), host.size()));
+  if (!equal_ignoring_case(name, "localhost")) return std::string(address);
+  return std::string(protocol) + "127.0.0.1" + std::string(host.substr(name.size()));
 }
 
 }  // namespace base

@@ -1,7 +1,8 @@
-// The library that restricts third-party servers, such as omniNames, to the own account. Any thread.
+// Servers of the own account: where they are, and the library that restricts third-party ones, such as omniNames, to it. Any thread.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace base {
 
@@ -14,5 +15,9 @@ std::string own_account_door();
 // limit for a call, which its user may have set for all programs, it would look for the rest of a message at the connection, where nothing
 // is any more.
 inline constexpr const char* naming_options[] = {"-ORBmaxServerThreadPerConnection", "1", "-ORBserverCallTimeOutPeriod", "0"};
+
+// HOST[:PORT], perhaps behind "iiop:" or "ssliop:", with 127.0.0.1 for localhost. That name has an address of IPv6, too, which is asked
+// first on most machines: where a server uses the other one alone, any account can listen at ::1 and would get the calls.
+std::string with_numeric_host(std::string_view address);
 
 }  // namespace base

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "base/own_account.h"
 #include "base/text.h"
 #include "corba/orb/asker.h"
 #include "corba/orb/naming.h"
@@ -165,7 +166,7 @@ struct NamingManager::Impl {
   // Nil if none answers there.
   RTM::Manager_var manager_at(const std::string& host) {
     try {
-      const auto url = "corbaloc:iiop:" + host + "/" + manager->configValue("manager.name");
+      const auto url = "corbaloc:iiop:" + base::with_numeric_host(host) + "/" + manager->configValue("manager.name");
       CORBA::Object_var object = manager->getORB()->string_to_object(url.c_str());
       corba::set_call_timeout(object, settings.call_timeout);
       RTM::Manager_var other = RTM::Manager::_narrow(object);

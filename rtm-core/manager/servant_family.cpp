@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "base/own_account.h"
 #include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
@@ -198,7 +199,7 @@ std::vector<RTM::Manager_var> ManagerServant::living_slaves() {
 
 // Nil if nothing that is a manager answers there.
 RTM::Manager_var ManagerServant::manager_at(const std::string& address) {
-  const auto url = "corbaloc:iiop:" + address + "/" + manager_.configValue("manager.name");
+  const auto url = "corbaloc:iiop:" + base::with_numeric_host(address) + "/" + manager_.configValue("manager.name");
   try {
     CORBA::Object_var object = manager_.getORB()->string_to_object(url.c_str());
     corba::set_call_timeout(object, peer_timeout);

@@ -104,8 +104,17 @@ TEST(NamingName, empty_components_are_refused) {
   for (const auto* bad : {"", "/", "a//b", "/a", "a/"}) EXPECT_FALSE(parse_name(bad).ok()) << bad;
 }
 
+// By its name ::1 would be asked first, where another account can listen.
+TEST(NamingUrl, localhost_is_where_servers_of_the_own_account_listen) {
+  EXPECT_EQ(naming_url("localhost"), "corbaloc::127.0.0.1/NameService");
+  EXPECT_EQ(naming_url(""), "corbaloc::127.0.0.1/NameService");
+  EXPECT_EQ(naming_url("iiop:LocalHost:2898"), "corbaloc:iiop:127.0.0.1:2898/NameService");
+  EXPECT_EQ(naming_url("ssliop:localhost:1"), "corbaloc:ssliop:127.0.0.1:1/NameService");
+  EXPECT_EQ(naming_url("localhost.example"), "corbaloc::localhost.example/NameService");
+  EXPECT_EQ(naming_url("[::1]:2809"), "corbaloc::[::1]:2809/NameService");
+}
+
 TEST(NamingUrl, addresses_become_corbaloc_urls) {
-  EXPECT_EQ(naming_url("localhost"), "corbaloc::localhost/NameService");
   EXPECT_EQ(naming_url(" host:2898 "), "corbaloc::host:2898/NameService");
   EXPECT_EQ(naming_url("corbaloc:iiop:h:1/X"), "corbaloc:iiop:h:1/X");
 }

@@ -102,6 +102,9 @@ def doors():
     assert Socket(other.port, other.token, headers={"Origin": "https://viewer.example"}).status == 101
     assert Socket(other.port, other.token, headers={"Host": "robots.example"}).status == 101
     assert other.get("/world.glb", token=studio.token)[0] == 403, "each has its own"
+    # For "localhost" a browser may ask an address that is not ours: somebody who listens there would get the token.
+    everywhere = Studio("--bind", "0.0.0.0")
+    assert rig.log(everywhere.process).startswith(f"http://127.0.0.1:{everywhere.port}/#token="), rig.log(everywhere.process)
     studio.lives()
 
 

@@ -73,12 +73,12 @@ int fail(const base::Error& error) {
   return 1;
 }
 
-// As a browser has to be given it. What follows a '#' stays in the browser: no server, proxy or log gets the token from there.
+// As a browser has to be given it. What follows a '#' stays in the browser: no server, proxy or log gets the token from there. Always a
+// number: for "localhost" a browser asks ::1 and 127.0.0.1, and where only one of them is ours, another account may listen at the other
+// with a page that reads the token.
 std::string url_of(const studio::WebOptions& options, const studio::WebServer& server) {
-  const bool is_any = options.address == "0.0.0.0" || options.address == "::";
-  const std::string host = is_any                                           ? "localhost"
-                           : options.address.find(':') != std::string::npos ? "[" + options.address + "]"
-                                                                            : options.address;
+  const std::string address = options.address == "0.0.0.0" ? "127.0.0.1" : options.address == "::" ? "::1" : options.address;
+  const std::string host = address.find(':') != std::string::npos ? "[" + address + "]" : address;
   return "http://" + host + ":" + std::to_string(server.port()) + "/#token=" + server.door().token();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/own_account.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "corba/orb/naming.h"
@@ -133,7 +134,7 @@ bool same_server(std::string a, std::string b) {
   for (auto* name : {&a, &b}) {
     if (name->starts_with("iiop:")) name->erase(0, 5);
     if (name->find(':', name->starts_with("ssliop:") ? 7 : 0) == std::string::npos) *name += ":2809";
-    if (name->starts_with("localhost:")) name->replace(0, 9, "127.0.0.1");
+    *name = base::with_numeric_host(*name);
   }
   return a == b;
 }
@@ -142,7 +143,7 @@ bool same_server(std::string a, std::string b) {
 std::string address_of(const std::string& server) {
   if (server.starts_with("corbaloc:")) return server;
   const bool has_protocol = server.starts_with("iiop:") || server.starts_with("ssliop:");
-  return "corbaloc:" + std::string(has_protocol ? "" : ":") + server + "/NameService";
+  return "corbaloc:" + std::string(has_protocol ? "" : ":") + base::with_numeric_host(server) + "/NameService";
 }
 
 // When several match, one that is alive beats zombies.

@@ -1,5 +1,6 @@
 #include "corba/orb/naming.h"
 
+#include "base/own_account.h"
 #include "base/text.h"
 #include "corba/orb/orb.h"
 
@@ -62,8 +63,8 @@ std::string to_text(const CosNaming::Name& name) {
 std::string naming_url(std::string_view address) {
   const std::string text(base::trim(address));
   if (text.starts_with("corbaloc:") || text.starts_with("corbaname:") || text.starts_with("IOR:")) return text;
-  if (text.starts_with("iiop:") || text.starts_with("ssliop:")) return "corbaloc:" + text + "/NameService";
-  return "corbaloc::" + (text.empty() ? "localhost" : text) + "/NameService";
+  const std::string server = base::with_numeric_host(text.empty() ? "localhost" : text);
+  return std::string(server.starts_with("iiop:") || server.starts_with("ssliop:") ? "corbaloc:" : "corbaloc::") + server + "/NameService";
 }
 
 base::Result<CosNaming::NamingContext_var> root_context(CORBA::ORB_ptr orb, std::string_view address, std::chrono::milliseconds timeout) {
