@@ -171,7 +171,8 @@ Completion complete(const Command& program, const std::vector<std::string>& word
 
 namespace {
 
-// Bash takes ':' and '=' for ends of words: what stands before the last of them is left out of the answers.
+// Bash takes ':' and '=' for ends of words: what stands before the last of them is left out of the answers. It puts an answer into the line
+// as it is, and a world or another component host may have chosen the name: it is quoted, so that Enter runs nothing of it.
 constexpr const char* bash_script = R"sh(FUNCTION() {
   local line="${COMP_LINE:0:COMP_POINT}" text rest current cut=""
   local -a words found
@@ -187,7 +188,8 @@ constexpr const char* bash_script = R"sh(FUNCTION() {
       mapfile -t found < <(compgen -f -- "${current#"$cut"}")
       COMPREPLY+=("${found[@]}")
     elif [[ $text == "$current"* ]]; then
-      COMPREPLY+=("${text#"$cut"}")
+      printf -v rest %q "${text#"$cut"}"
+      COMPREPLY+=("$rest")
       [[ $text == *[:=/] ]] && compopt -o nospace 2>/dev/null
     fi
   done < <("${COMP_WORDS[0]}" --complete "${words[@]:1}" 2>/dev/null)

@@ -1,8 +1,12 @@
 #include "base/completion.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 
 namespace base {
 namespace {
@@ -58,6 +62,30 @@ TEST(Completion, asks_the_program_for_each_positional_and_offers_files_otherwise
   const auto third = complete(program.app, {"list", "a", "b", ""}, offers);
   EXPECT_TRUE(third.offers.empty());
   EXPECT_TRUE(third.files);
+}
+
+// What bash has on its line when the only candidate was taken, as the words that it would run.
+std::string taken_by_bash(const std::string& candidate) {
+  std::string folder = testing::TempDir() + "completion_XXXXXX";
+  if (::mkdtemp(folder.data()) == nullptr) return "no folder";
+  std::ofstream(folder + "/candidate") << candidate << "\tdescription\n";
+  std::ofstream(folder + "/script") << completion_script("tool", "bash") << "cd '" << folder << "'\n"
+                                    << "tool() { cat candidate; }\n"
+                                    << "COMP_WORDS=(tool z) COMP_LINE='tool z' COMP_POINT=6 COMP_WORDBREAKS=$' \\t\\n\"\\'><=;|&(:'\n"
+                                    << "_tool_completion\neval \"printf '<%s>' ${COMPREPLY[0]}\"\n";
+  std::string words;
+  if (FILE* pipe = ::popen(("bash " + folder + "/script 2>&1").c_str(), "r")) {
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) words += static_cast<char>(c);
+    ::pclose(pipe);
+  }
+  std::filesystem::remove_all(folder);
+  return words;
+}
+
+TEST(Completion, names_with_shell_characters_become_one_word_in_bash) {
+  for (const char* name :
+       {"zero", "z$(id -u)", "z`id`", "z;id;", "z|id", "z two", "z'", "z\"", "z\\", "z&", "z>out", "z\x1b]0;t\x07", "z~$HOME*", "z::laser"})
+    EXPECT_EQ(taken_by_bash(name), "<" + std::string(name) + ">");
 }
 
 TEST(Completion, knows_the_word_that_is_no_command) {
