@@ -1,10 +1,12 @@
 # What the tests of campaigns share: a folder of their own, plans in it, and calls of rtse. Arguments: CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import contextlib
 import csv
 import io
 import json
 import os
 import pathlib
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -56,6 +58,9 @@ def interrupted_at(pattern, *words):
     while not list(folder.glob(pattern)):
         assert time.monotonic() < deadline and process.poll() is None, (pattern, process.poll())
         time.sleep(0.02)
+    for scratch in folder.glob("rtse-run-*"):
+        with contextlib.suppress(FileNotFoundError):  # of a row that has ended
+            assert stat.S_IMODE(scratch.stat().st_mode) == 0o700, "other accounts can read what a run writes"
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=100)
     return process.returncode, *said
