@@ -4,6 +4,6 @@ target_link_libraries(asset_fuzz PRIVATE asset_jobs simphysics simrays simrender
 add_test(NAME asset_fuzz COMMAND asset_fuzz --runs 20 ${CMAKE_CURRENT_SOURCE_DIR}/assets ${PROJECT_SOURCE_DIR}/tests/worlds/damaged_meshes
                                  WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
 set_tests_properties(asset_fuzz PROPERTIES TIMEOUT 300 LABELS "world;fuzz")
-add_test(NAME asset_fuzz.forked COMMAND asset_fuzz --fork --runs 100 ${CMAKE_CURRENT_SOURCE_DIR}/assets WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/forked)
+add_test(NAME asset_fuzz.forked COMMAND asset_fuzz --fork --runs 100 --limit 300 ${CMAKE_CURRENT_SOURCE_DIR}/assets WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/forked)
 file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/forked)
 set_tests_properties(asset_fuzz.forked PROPERTIES TIMEOUT 300 LABELS "world;fuzz")
