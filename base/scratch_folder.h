@@ -1,7 +1,6 @@
-// A folder among the temporary ones for the files of one process and of those that it starts: for its account alone, with a name that
-// nobody can know beforehand, and gone with this object. What a process left that was killed is removed by the next one that makes a folder
-// of the same prefix: the owner holds a lock on the file "lock" in it. Folders of other accounts are never touched, whatever their name.
-// One thread at a time.
+// A folder among the temporary ones for the files of one process and of those that it starts: for its account alone, with a random name,
+// and removed with this object. What a killed process left is removed by the next one that makes a folder of the same prefix: the owner
+// holds a lock on the file "lock" in it. Folders of other accounts are never touched, whatever their name. One thread at a time.
 #pragma once
 
 #include <string>
