@@ -1,6 +1,8 @@
-// Makes the pictures of docs/studio.md anew, with the real programs: docs_pictures.mjs BIN_DIR SOURCE_DIR LIB_DIR [FOLDER]
+// Makes the pictures of docs/studio.md and docs/run-page.md anew, with the real programs: docs_pictures.mjs BIN_DIR SOURCE_DIR LIB_DIR [FOLDER]
 // Look at each at full size before it is committed. Those of the farm are what picture_flows.mjs writes with STUDIO_PICTURES.
+import { writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { has_world, is_ready, launch, open, Rig, until } from './rig.mjs';
 
 const [bin, source, lib, folder] = process.argv.slice(2).map((path) => resolve(path));
@@ -104,8 +106,22 @@ async function recording(browser, rig) {
   await save(page, 'studio-recording');
 }
 
+// Of a run that leaves its region.
+async function run_page(browser, rig) {
+  const html = join(rig.work, 'run.html'), expectations = join(rig.work, 'expect.yaml');
+  writeFileSync(expectations, `- stay: {model: ${robot}, region: [-6, -6, -2.5, 6]}\n`);
+  await rig.call('rtse', 'run', join(source, 'worlds/systems/obstacle_avoidance.xml'), '-w', join(source, 'worlds/obstacle_course.sdf'), '-d', '30', '--expect', expectations, '--page', html).catch((error) => error.stdout);
+  const page = await open(browser, pathToFileURL(html).href, { width: 1100, height: 640 });
+  await has_world(page);
+  await plot(page, '/LaserObstacleAvoid0/velocity', ['data.vx', 'data.va']);
+  await page.evaluate((name) => window.studio.world.follow(name), robot);
+  await until('both lines', async () => (await page.locator('.plot canvas').count()) === 2);
+  await page.waitForTimeout(1500); // the last of what the page draws
+  await save(page, 'run-page');
+}
+
 const browser = await launch();
-for (const scene of [demo, hundred, empty, recording]) {
+for (const scene of [demo, hundred, empty, recording, run_page]) {
   if (process.env.STUDIO_FLOW && !process.env.STUDIO_FLOW.split('|').includes(scene.name)) continue;
   await with_rig((rig) => scene(browser, rig));
   console.log(`made ${scene.name}`);
