@@ -495,6 +495,72 @@ def foreign():
     newer.event("connectionGraphUpdate", lambda m: {"name": "/RTCLaser0/range", "subscriberIds": []} in m["subscribedTopics"])
 
 
+# A client of another make sets parameters, calls services and publishes to an InPort.
+def controls():
+    rig.naming()
+    rig.server("--rtf", "1")
+    rig.host(rig.device("RTCPosition2d"), "LaserObstacleAvoid")
+    rig.there("RTCPosition2d0", "LaserObstacleAvoid0")
+    rig.rtse("act", "RTCPosition2d0")
+    studio = Studio()
+    studio.viewer().event("system", lambda m: len(m["components"]) == 2)
+    name = "LaserObstacleAvoid0.max_turn"
+    words = [f"ws://127.0.0.1:{studio.port}/ws?token={studio.token}", name, "55", "/RTCPosition2d0/velocity", json.dumps({"data": {"vx": 0.3}})]
+    client = subprocess.Popen(["node", f"{rig.source}/tests/foreign/control.mjs", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    timer = threading.Timer(120, client.kill)
+    timer.start()
+
+    def said(key):
+        line = json.loads(client.stdout.readline())
+        assert key in line, (key, line)
+        return line
+
+    def do(what):
+        client.stdin.write(what + "\n")
+        client.stdin.flush()
+
+    try:
+        offer = said("services")
+        assert {"parameters", "parametersSubscribe", "services", "clientPublish"} <= set(offer["capabilities"]) and "json" in offer["encodings"], offer
+        assert "/simulator/pause" in offer["services"] and "/simulator/spawn" in offer["services"], offer
+        assert said("all")["all"][name] == 40
+        assert said("before")["before"] == {name: 40}
+        assert said("set")["set"] == {name: 55}
+        assert said("after")["after"] == {name: 55}
+        assert "55" in rig.rtse("conf", "LaserObstacleAvoid0", "get", "max_turn")
+        assert said("call")["answer"] == {}
+        await_("a pause", lambda: rig.stats()["paused"])
+        assert said("call")["answer"]["steps"] >= 10
+        assert "nobody" in said("call")["answer"]
+        assert said("call")["answer"] == "rtf: expected a number"
+        assert "no InPort has this topic" in said("refused")["refused"]
+        rig.simctl("run")
+        do("again")
+        rig.driving("a published velocity")
+        rig.rtse("conf", "LaserObstacleAvoid0", "set", "max_turn", "33")
+        do("other")
+        assert said("other")["other"] == {name: 33}
+        do("end")
+        assert client.wait(60) == 0
+    finally:
+        timer.cancel()
+        client.kill()
+        client.wait()
+    # One who may only look reads, and changes nothing.
+    watched = Studio("--read-only").viewer(protocol="foxglove.websocket.v1")
+    assert "clientPublish" not in watched.event("serverInfo")["capabilities"]
+    services = {one["name"]: one["id"] for one in watched.event("advertiseServices")["services"]}
+    assert "/simulator/tree" in services and "/simulator/pause" not in services, services
+    watched.send({"op": "setParameters", "parameters": [{"name": name, "value": 1}], "id": "x"})
+    assert "read-only" in watched.event("status")["message"]
+    watched.send({"op": "advertise", "channels": [{"id": 1, "topic": "/RTCPosition2d0/velocity", "encoding": "json", "schemaName": ""}]})
+    assert "read-only" in watched.event("status")["message"]
+    watched.send(struct.pack("<BIII", 2, 2, 7, 4) + b"json{}", opcode=2)  # pause
+    assert watched.event("serviceCallFailure")["message"] == "this studio is read-only"
+    watched.send(b"\x09", opcode=2)
+    assert "binary frame" in watched.event("status")["message"]
+
+
 # Pictures of a camera as JPEG, and a line when there is none.
 def pictures():
     rig.naming()

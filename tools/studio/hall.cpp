@@ -73,6 +73,7 @@ WebHandlers Hall::handlers() {
             now_.joined(std::move(viewer));
           },
           [this](Viewer& viewer, std::string_view text) { hear(viewer, text); },
+          [this](Viewer& viewer, std::string_view octets) { now_.sent(viewer, octets); },
           [this](Viewer& viewer) {
             now_.left(viewer);
             viewers_.erase(viewer.id());
