@@ -561,6 +561,42 @@ def controls():
     assert "binary frame" in watched.event("status")["message"]
 
 
+# Joints obey as long as their command is renewed, and brake when it is released, not renewed, or its viewer has left.
+def joints():
+    rig.server("--rtf", "1", world=f"{rig.source}/worlds/arm.sdf")
+    studio = Studio()
+    viewer = studio.viewer()
+    viewer.event("world", lambda m: m["present"])
+
+    def waist():
+        return next(joint for joint in json.loads(rig.simctl("--json", "joints", "arm")) if joint["name"] == "waist")
+
+    def move(value, mode="position", joint="waist", by=viewer):
+        return by.ask("move_joints", iface="arm::joints", joints={joint: {"mode": mode, "value": value}})
+
+    def moved(value, by=viewer):
+        return "error" not in move(value, by=by) and abs(waist()["position"] - value) < 0.01
+
+    reply = move(0.3)
+    assert reply["command"] == f"simctl -s {rig.server_id} joints arm waist=0.3", reply
+    await_("the waist", lambda: moved(0.3))
+    viewer.do("release", iface="arm::joints")
+    await_("its brake", lambda: waist()["mode"] == "brake")
+    await_("the waist", lambda: moved(-0.2))
+    await_("a command that is not renewed", lambda: waist()["mode"] == "brake")
+    other = studio.viewer()
+    await_("the waist", lambda: moved(0.1, by=other))
+    other.close()
+    await_("a viewer that has left", lambda: waist()["mode"] == "brake")
+    assert "waist, shoulder" in move(0, joint="knee")["error"]
+    assert "expected position, velocity, effort, free or brake" in move(0, mode="fast")["error"]
+    assert move(None)["error"] == "value of joint \"waist\": expected a number"
+    assert "expected an object" in viewer.ask("move_joints", iface="arm::joints", joints={})["error"]
+    assert "nobody" in viewer.ask("move_joints", iface="nobody::joints", joints={"a": {"mode": "free"}})["error"]
+    looker = Studio("--read-only").viewer()
+    assert move(0, by=looker)["error"] == "this studio is read-only"
+
+
 # Pictures of a camera as JPEG, and a line when there is none.
 def pictures():
     rig.naming()

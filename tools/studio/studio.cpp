@@ -144,6 +144,7 @@ void Studio::handle(Guest& guest, const Request& request) {
 // What needs no worker.
 void Studio::handle_here(Guest& guest, const Request& request) {
   if (request.name == "drive") return handle_drive(guest, request);
+  if (request.name == "move_joints") return handle_joints(guest, request);
   if (request.name == "release") return handle_release(guest, request);
   if (request.name == "watch") return answer(guest, request.id, start_watch(guest, request.args));
   if (request.name == "watch_image") return answer(guest, request.id, start_pictures(guest, request.args));

@@ -62,6 +62,7 @@ class Studio {
   void handle(Guest& guest, const Request& request);
   void handle_here(Guest& guest, const Request& request);
   void handle_drive(Guest& guest, const Request& request);
+  void handle_joints(Guest& guest, const Request& request);
   void handle_release(Guest& guest, const Request& request);
   base::Result<Json> start_watch(const Guest& guest, const Json& args);
   base::Result<Json> start_pictures(const Guest& guest, const Json& args);
