@@ -559,12 +559,12 @@ TEST(Hall, only_what_is_in_the_folder_is_opened) {
   for (const auto& file : {folder / "a.mcap", folder / "runs/b.mcap", folder / "c.txt", other}) std::ofstream(file) << "x";
   fs::create_symlink(other, folder / "link.mcap");
   std::set<std::string> names;
-  for (const auto& one : studio::recordings_in(folder)) names.insert(one.at("file").get<std::string>());
+  for (const auto& one : studio::files_in(folder, ".mcap")) names.insert(one.at("file").get<std::string>());
   EXPECT_EQ(names, (std::set<std::string>{"a.mcap", "link.mcap", "runs/b.mcap"}));
   for (const std::string& name : {std::string("a.mcap"), std::string("runs/../a.mcap"), (folder / "runs/b.mcap").string()})
-    EXPECT_TRUE(studio::recording_in(folder, name).ok()) << name;
+    EXPECT_TRUE(studio::file_in(folder, "recording", name).ok()) << name;
   for (const std::string name : {"../other.mcap", "link.mcap", "runs", "", "/etc/passwd", "d.mcap"})
-    EXPECT_FALSE(studio::recording_in(folder, name).ok()) << name;
+    EXPECT_FALSE(studio::file_in(folder, "recording", name).ok()) << name;
   fs::remove_all(top);
 }
 

@@ -12,9 +12,9 @@ import { fixed, flatten, format, image_iface, iface_type, kind_of_iface, measure
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  act, changed, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
+  act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
-import { shell_line } from './shell';
+import { replay } from './replay';
 import { signal_of_port } from './signal_names';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
@@ -303,7 +303,7 @@ export class Inspector {
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
         button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
-      store.hello?.recording ? h('div', { class: 'acts' }, button('Show the command that sends the recorded inputs to this component and compares its outputs', { label: 'Replay …', id: 'replay' }, () => show_replay(one.instance))) : null,
+      store.hello?.recording ? h('div', { class: 'acts' }, button('Send the recorded inputs to this component again and compare its outputs', { label: 'Replay', id: 'replay' }, () => replay(one.instance))) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
       one.ports.length > 0 ? h('h3', null, 'Ports') : null,
@@ -464,12 +464,6 @@ export function delete_model(name: string): void {
 }
 
 // Nothing runs beside a recording: what replays a component is a command, which the status line shows for copying.
-function show_replay(instance: string): void {
-  const file = store.world?.file || store.hello!.recording!.file;
-  store.acts.push({ text: `Replay ${instance} from the recording with:`, command: shell_line(['rtse', 'replay', file, '--into', instance, '--compare']) });
-  changed('acts');
-}
-
 export function disconnect_all(all: { id: string }[]): void {
   const group = {};
   for (const { id } of all) disconnect(id, group);
