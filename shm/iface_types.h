@@ -194,8 +194,10 @@ inline constexpr std::array gps_sample{field<&GpsSample::stamp>("stamp"), field<
                                        field<&GpsSample::longitude>("longitude", "degree"), field<&GpsSample::altitude>("altitude", "m"),
                                        field<&GpsSample::velocity>("velocity", "m/s")};
 
-inline constexpr std::array bumper_info{field<&BumperInfo::model>("model"), field<&BumperInfo::rate>("rate", "Hz"),
-                                        field<&BumperInfo::capacity>("capacity"), field<&BumperInfo::pose>("pose")};
+inline constexpr std::array bumper_info{field<&BumperInfo::model>("model"),       field<&BumperInfo::rate>("rate", "Hz"),
+                                        field<&BumperInfo::capacity>("capacity"), field<&BumperInfo::pose>("pose"),
+                                        field<&BumperInfo::middle>("middle"),     field<&BumperInfo::size>("size", "m"),
+                                        field<&BumperInfo::radius>("radius", "m")};
 inline constexpr std::array bumper_sample{field<&BumperSample::stamp>("stamp"), field<&BumperSample::total>("total"),
                                           followers("contacts", 0)};
 inline constexpr std::array contact_fields{field<&Contact::other>("other"), field<&Contact::position>("position", "m"),
@@ -357,7 +359,7 @@ inline constexpr std::array iface_types{
     IfaceRow{.type = IfaceType::bumper,
              .name = "bumper",
              .meaning = "contacts",
-             .info_size = detail::size<BumperInfo, 200>(),
+             .info_size = detail::size<BumperInfo, 288>(),
              .sample_size = detail::size<BumperSample, 40>(),
              .info = detail::bumper_info,
              .sample = detail::bumper_sample,

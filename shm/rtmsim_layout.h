@@ -348,6 +348,9 @@ typedef struct {
   double rate;
   rtmsim_pose pose;
   char model[128];
+  rtmsim_pose middle; /* of the box around the collisions that count, along the axes of their link; in the frame of the model */
+  double size[3];     /* of that box [m]; 0 without collisions */
+  double radius;      /* of a sphere, or of a cylinder that stands, when that is the only collision; else 0 [m] */
 } rtmsim_bumper_info;
 
 typedef struct {

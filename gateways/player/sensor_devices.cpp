@@ -118,6 +118,18 @@ std::optional<Answer> Imu::answer(std::uint8_t subtype, const std::string& paylo
 
 // ---- bumper ----
 
+// It looks away from the middle of the robot, along the shorter of its sides; a round one is as long as it is wide.
+static player::BumperShape shape_of(const shm::BumperInfo& info) {
+  player::BumperShape shape{to_pose3d(info.middle), static_cast<float>(std::max(info.size[0], info.size[1])),
+                            static_cast<float>(info.radius)};
+  if (info.radius > 0 || info.size[0] == info.size[1]) return shape;
+  const bool looks_along_x = info.size[0] < info.size[1];
+  const double along = shape.pose.yaw + (looks_along_x ? 0 : pi / 2);
+  const bool is_behind = shape.pose.x * std::cos(along) + shape.pose.y * std::sin(along) < 0;
+  shape.pose.yaw = std::remainder(along + (is_behind ? pi : 0), 2 * pi);
+  return shape;
+}
+
 void Bumper::show_sample() {
   const auto view = iface().bumper();
   publish(1, player::encode_bumpers({view.sample->total > 0}), view.sample->stamp);
@@ -126,7 +138,7 @@ void Bumper::show_sample() {
 std::optional<Answer> Bumper::answer(std::uint8_t subtype, const std::string&, const Later&) {
   constexpr std::uint8_t get_geometry = 1;
   if (subtype != get_geometry) return nack();
-  return ack(player::encode_bumper_shapes({{to_pose3d(iface().info<shm::BumperInfo>().pose), 0, 0}}));
+  return ack(player::encode_bumper_shapes({shape_of(iface().info<shm::BumperInfo>())}));
 }
 
 }  // namespace gateway

@@ -370,7 +370,10 @@ def sensors():
         assert 42_000_000 < gps[7] < 42_200_000 and 399_000_000 < gps[8] < 399_400_000, gps[7:9]
         assert gps[9] == 1
         assert faller.read_until(BUMPER, good=lambda p: p[8] == 1) == struct.pack(">IIBxxx", 1, 1, 1)  # it has landed
-        assert struct.unpack(">II6d2f", faller.demand(BUMPER, 0, 1))[:2] == (1, 1)
+        # A box of 0.4 x 0.3 m, 5 cm before the model's origin: its long side looks to the left.
+        shapes = struct.unpack(">II6d2f", faller.demand(BUMPER, 0, 1))
+        wanted = (1, 1, 0.05, 0, 0, 0, 0, math.pi / 2, 0.4, 0)
+        assert all(abs(got - value) < 1e-6 for got, value in zip(shapes, wanted)), shapes
         for kind, form in ((4, ">9f3d"), (1, ">6d"), (2, ">9f"), (3, ">9f4f"), (5, ">18d")):
             if kind != 4:  # what it is at first
                 faller.demand(IMU, 0, 1, struct.pack(">I", kind))

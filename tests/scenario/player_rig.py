@@ -104,7 +104,7 @@ flying = f"""<sdf version="1.9"><world name="sensors">
     <sensor name="grey" type="camera"><update_rate>10</update_rate><camera><image><width>64</width><height>48</height><format>L8</format></image></camera></sensor></link>
     <plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system"/></model>
   <model name="faller"><pose>0 3 1 0 0 0.7</pose><link name="l"><inertial><mass>3</mass><inertia><ixx>.03</ixx><iyy>.03</iyy><izz>.03</izz></inertia></inertial>
-    <collision name="c"><geometry><box><size>.3 .3 .3</size></box></geometry></collision>
+    <collision name="c"><pose>.05 0 0 0 0 0</pose><geometry><box><size>.4 .3 .3</size></box></geometry></collision>
     <sensor name="imu" type="imu"><update_rate>50</update_rate></sensor>
     <sensor name="gps" type="navsat"><update_rate>20</update_rate></sensor>
     <sensor name="bumper" type="contact"><update_rate>50</update_rate><contact><collision>c</collision></contact></sensor></link></model>

@@ -495,6 +495,108 @@ def foreign():
     newer.event("connectionGraphUpdate", lambda m: {"name": "/RTCLaser0/range", "subscriberIds": []} in m["subscribedTopics"])
 
 
+# A client of another make sets parameters, calls services and publishes to an InPort.
+def controls():
+    rig.naming()
+    rig.server("--rtf", "1")
+    rig.host(rig.device("RTCPosition2d"), "LaserObstacleAvoid")
+    rig.there("RTCPosition2d0", "LaserObstacleAvoid0")
+    rig.rtse("act", "RTCPosition2d0")
+    studio = Studio()
+    studio.viewer().event("system", lambda m: len(m["components"]) == 2)
+    name = "LaserObstacleAvoid0.max_turn"
+    words = [f"ws://127.0.0.1:{studio.port}/ws?token={studio.token}", name, "55", "/RTCPosition2d0/velocity", json.dumps({"data": {"vx": 0.3}})]
+    client = subprocess.Popen(["node", f"{rig.source}/tests/foreign/control.mjs", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    timer = threading.Timer(120, client.kill)
+    timer.start()
+
+    def said(key):
+        line = json.loads(client.stdout.readline())
+        assert key in line, (key, line)
+        return line
+
+    def do(what):
+        client.stdin.write(what + "\n")
+        client.stdin.flush()
+
+    try:
+        offer = said("services")
+        assert {"parameters", "parametersSubscribe", "services", "clientPublish"} <= set(offer["capabilities"]) and "json" in offer["encodings"], offer
+        assert "/simulator/pause" in offer["services"] and "/simulator/spawn" in offer["services"], offer
+        assert said("all")["all"][name] == 40
+        assert said("before")["before"] == {name: 40}
+        assert said("set")["set"] == {name: 55}
+        assert said("after")["after"] == {name: 55}
+        assert "55" in rig.rtse("conf", "LaserObstacleAvoid0", "get", "max_turn")
+        assert said("call")["answer"] == {}
+        await_("a pause", lambda: rig.stats()["paused"])
+        assert said("call")["answer"]["steps"] >= 10
+        assert "nobody" in said("call")["answer"]
+        assert said("call")["answer"] == "rtf: expected a number"
+        assert "no InPort has this topic" in said("refused")["refused"]
+        rig.simctl("run")
+        do("again")
+        rig.driving("a published velocity")
+        rig.rtse("conf", "LaserObstacleAvoid0", "set", "max_turn", "33")
+        do("other")
+        assert said("other")["other"] == {name: 33}
+        do("end")
+        assert client.wait(60) == 0
+    finally:
+        timer.cancel()
+        client.kill()
+        client.wait()
+    # One who may only look reads, and changes nothing.
+    watched = Studio("--read-only").viewer(protocol="foxglove.websocket.v1")
+    assert "clientPublish" not in watched.event("serverInfo")["capabilities"]
+    services = {one["name"]: one["id"] for one in watched.event("advertiseServices")["services"]}
+    assert "/simulator/tree" in services and "/simulator/pause" not in services, services
+    watched.send({"op": "setParameters", "parameters": [{"name": name, "value": 1}], "id": "x"})
+    assert "read-only" in watched.event("status")["message"]
+    watched.send({"op": "advertise", "channels": [{"id": 1, "topic": "/RTCPosition2d0/velocity", "encoding": "json", "schemaName": ""}]})
+    assert "read-only" in watched.event("status")["message"]
+    watched.send(struct.pack("<BIII", 2, 2, 7, 4) + b"json{}", opcode=2)  # pause
+    assert watched.event("serviceCallFailure")["message"] == "this studio is read-only"
+    watched.send(b"\x09", opcode=2)
+    assert "binary frame" in watched.event("status")["message"]
+
+
+# Joints obey as long as their command is renewed, and brake when it is released, not renewed, or its viewer has left.
+def joints():
+    rig.server("--rtf", "1", world=f"{rig.source}/worlds/arm.sdf")
+    studio = Studio()
+    viewer = studio.viewer()
+    viewer.event("world", lambda m: m["present"])
+
+    def waist():
+        return next(joint for joint in json.loads(rig.simctl("--json", "joints", "arm")) if joint["name"] == "waist")
+
+    def move(value, mode="position", joint="waist", by=viewer):
+        return by.ask("move_joints", iface="arm::joints", joints={joint: {"mode": mode, "value": value}})
+
+    def moved(value, by=viewer):
+        return "error" not in move(value, by=by) and abs(waist()["position"] - value) < 0.01
+
+    reply = move(0.3)
+    assert reply["command"] == f"simctl -s {rig.server_id} joints arm waist=0.3", reply
+    await_("the waist", lambda: moved(0.3))
+    viewer.do("release", iface="arm::joints")
+    await_("its brake", lambda: waist()["mode"] == "brake")
+    await_("the waist", lambda: moved(-0.2))
+    await_("a command that is not renewed", lambda: waist()["mode"] == "brake")
+    other = studio.viewer()
+    await_("the waist", lambda: moved(0.1, by=other))
+    other.close()
+    await_("a viewer that has left", lambda: waist()["mode"] == "brake")
+    assert "waist, shoulder" in move(0, joint="knee")["error"]
+    assert "expected position, velocity, effort, free or brake" in move(0, mode="fast")["error"]
+    assert move(None)["error"] == "value of joint \"waist\": expected a number"
+    assert "expected an object" in viewer.ask("move_joints", iface="arm::joints", joints={})["error"]
+    assert "nobody" in viewer.ask("move_joints", iface="nobody::joints", joints={"a": {"mode": "free"}})["error"]
+    looker = Studio("--read-only").viewer()
+    assert move(0, by=looker)["error"] == "this studio is read-only"
+
+
 # Pictures of a camera as JPEG, and a line when there is none.
 def pictures():
     rig.naming()

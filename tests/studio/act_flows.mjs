@@ -136,6 +136,30 @@ const flows = [
     await page.locator('#tab-plots').click();
     await until('no more', async () => { const count = asked(mock, 'statistics').length; await new Promise((resolve) => setTimeout(resolve, 1500)); return asked(mock, 'statistics').length === count; });
   }],
+  ['results of a campaign are sorted and filtered, and a failed row opens its recording', async ({ page, mock }) => {
+    const usual = mock.answer;
+    const csv = 'row,seed,component/Laser0/gain,passed,problem,state,simulated_s,wall_s,clearance\r\n1,1,0.3,1,,05bd,4,0.6,1.5\r\n2,1,0.5,0,"path ""a"", too short",05bd,4,0.6,0.25\r\n10,1,0.7,0,too short,05bd,4,0.6,1\r\n';
+    mock.answer = (message) => {
+      if (message.name === 'recordings' || message.name === 'campaigns') return { result: { folder: '/there', open: '', may_open: true, files: message.name === 'campaigns' ? [{ file: 'plan.db', size: 9, time: 1 }] : [] } };
+      return message.name === 'campaign' ? { result: { csv, recordings: [{ row: 2, file: 'plan.runs/row-2-ab/run.mcap' }] } } : usual(message);
+    };
+    await page.locator('#open-recording').click();
+    await page.locator('#campaigns button', { hasText: 'plan.db' }).click();
+    const table = page.locator('dialog[open] .campaign');
+    const rows = () => table.locator('tbody tr').evaluateAll((all) => all.map((row) => row.cells[0].textContent));
+    await until('its rows', async () => (await rows()).length === 3);
+    same(await page.locator('dialog[open] [role=status]').textContent(), '3 rows: 1 passed, 2 failed', 'summary');
+    same(await table.locator('thead th').allTextContents(), ['row', 'seed', 'Laser0/gain', 'problem', 'simulated_s', 'clearance'], 'columns');
+    check((await table.locator('tbody tr').nth(1).textContent()).includes('path "a", too short'), 'the problem');
+    await table.locator('th button', { hasText: 'clearance' }).click();
+    same(await rows(), ['✗ failed 2', '✗ failed 10', '✓ passed 1'], 'by numbers');
+    await page.locator('#campaign-failed').check();
+    same(await rows(), ['✗ failed 2', '✗ failed 10'], 'failed rows');
+    await table.locator('button', { hasText: /^2$/ }).click();
+    await until('opened', () => asked(mock, 'open_recording').at(-1)?.args.file === 'plan.runs/row-2-ab/run.mcap');
+    same(await page.locator('dialog[open]').count(), 0, 'dialogs');
+    mock.answer = usual;
+  }],
   ['a refusal is one line that stays', async ({ page }) => {
     await choose(page, 'manager', `${host}/rtcd.mgr`);
     await page.locator('#manager-create').click();

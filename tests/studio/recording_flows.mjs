@@ -40,9 +40,11 @@ const flows = [
     check(range[0] < 0.2 && range[1] > 11.8, `from ${range[0]} to ${range[1]}`);
     await page.context().close();
   }],
-  ['the command that replays a component is shown, and its outputs are equal', async ({ page, rig, file }) => {
+  ['a component is replayed, and its outputs are equal; the command that does it is shown', async ({ page, rig, file }) => {
     await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
     await page.locator('#replay').click();
+    await page.locator('#replayed', { hasText: 'equal' }).waitFor();
+    await page.keyboard.press('Escape');
     const command = await page.locator('.status .command').textContent();
     same(command, `rtse replay ${file} --into LaserObstacleAvoid0 --compare`, 'the command');
     await rig.call(...command.split(' '), '--module-path', rig.lib);
@@ -126,6 +128,33 @@ const flows = [
     await until('it says so', async () => (await looker.locator('#recordings').textContent()).includes('read-only'));
     await looker.context().close();
     await rig.end(shut);
+  }],
+  ['a failed row of a campaign leads to its recording, in which a component is replayed', async ({ rig, browser }) => {
+    const plan = ['system: ' + join(worlds, 'systems/obstacle_avoidance.xml'), 'world: ' + join(worlds, 'obstacle_course.sdf'), 'duration: 3', `module_path: ${lib}`,
+      'expect:', '  - path_length: {model: pioneer2dx, min: 0.5}', 'vary:', '  component/LaserObstacleAvoid0/speed_gain: [0.0001, 0.001]'];
+    writeFileSync(join(rig.work, 'plan.yaml'), plan.join('\n') + '\n');
+    const failed = await rig.call('rtse', 'sweep', 'plan.yaml', '--record').then(() => false, (error) => error.code === 1);
+    check(failed, 'a row fails');
+    const studio = await rig.studio();
+    const page = await open(browser, studio.url);
+    await is_ready(page);
+    await page.locator('#open-recording').click();
+    await page.locator('#campaigns button', { hasText: 'plan.db' }).click();
+    await until('its rows', async () => (await page.locator('.campaign tbody tr').count()) === 2);
+    same(await page.locator('dialog[open] [role=status]').textContent(), '2 rows: 1 passed, 1 failed', 'summary');
+    await page.locator('.campaign td.failed button').click();
+    await until('the recording', () => page.evaluate(() => window.studio.store.hello.recording?.file === 'run.mcap' && window.studio.store.system.components.length === 3));
+    await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
+    await page.locator('#replay').click();
+    await page.locator('#replayed', { hasText: 'equal' }).waitFor();
+    const ask = (name, args) => page.evaluate(([n, a]) => window.studio.wire.request(n, a).then(({ result }) => JSON.stringify(result), (error) => error.message), [name, args]);
+    check((await ask('replay', { component: 'Nobody0' })).includes('Nobody0'), 'no such component');
+    check((await ask('campaign', { file: '../../etc/passwd' })).includes('in the folder that rtm-studio was started in'), 'another file');
+    writeFileSync(join(rig.work, 'none.db'), 'hello');
+    check((await ask('campaign', { file: 'none.db' })).includes('none.db'), 'no campaign');
+    same(page.problems, [], 'problems');
+    await page.context().close();
+    await rig.end(studio);
   }],
   ['depth and raw pictures are seen, live and recorded', async ({ rig, browser }) => {
     const world = await rig.server('tests/worlds/every_device.sdf');

@@ -18,7 +18,9 @@
 #include "studio/http_head.h"
 #include "studio/late_models.h"
 #include "studio/outbox.h"
+#include "studio/parameters.h"
 #include "studio/pose_board.h"
+#include "studio/services.h"
 #include "studio/shown_picture.h"
 #include "studio/signal_book.h"
 #include "studio/signals.h"
@@ -215,9 +217,69 @@ TEST(ClientMessage, reads_what_viewers_say) {
   ASSERT_TRUE(message);
   EXPECT_EQ(std::get<studio::Request>(*message).id, -3);
   EXPECT_TRUE(std::get<studio::Request>(*message).is_dry);
-  message = studio::parse_message(R"({"op":"getParameters"})");
+  message = studio::parse_message(R"({"op":"fetchAsset"})");
   ASSERT_TRUE(message);
-  EXPECT_EQ(std::get<studio::Unused>(*message).op, "getParameters");
+  EXPECT_EQ(std::get<studio::Unused>(*message).op, "fetchAsset");
+}
+
+TEST(ClientMessage, reads_channels_and_parameters_of_foxglove_clients) {
+  auto message = studio::parse_message(R"({"op":"advertise","channels":[{"id":3,"topic":"/A0/in","encoding":"json","schemaName":"x"}]})");
+  ASSERT_TRUE(message);
+  const auto& channel = std::get<studio::Advertise>(*message).channels.at(0);
+  EXPECT_EQ(channel.id, 3U);
+  EXPECT_EQ(channel.topic + channel.encoding + channel.schema, "/A0/injsonx");
+  message = studio::parse_message(R"({"op":"unadvertise","channelIds":[3]})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<studio::Unadvertise>(*message).ids, std::vector<std::uint32_t>{3});
+  message = studio::parse_message(R"({"op":"setParameters","parameters":[{"name":"A0.x","value":1.5}],"id":"7"})");
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<studio::SetParameters>(*message).values.at(0), std::pair(std::string("A0.x"), Json(1.5)));
+  EXPECT_EQ(std::get<studio::SetParameters>(*message).id, "7");
+  message = studio::parse_message(R"({"op":"subscribeParameterUpdates","parameterNames":[]})");
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(std::get<studio::ParameterWish>(*message).is_wanted);
+}
+
+TEST(FoxgloveFrame, is_data_of_a_channel_or_a_call_of_a_service) {
+  using namespace std::string_literals;
+  const auto data = studio::parse_frame("\1\7\0\0\0{}"s);
+  ASSERT_TRUE(data);
+  EXPECT_EQ(std::get<studio::PublishedData>(*data).channel, 7U);
+  const auto octets = "\2\1\0\0\0\11\0\0\0\4\0\0\0json{}"s;
+  const auto call = studio::parse_frame(octets);
+  ASSERT_TRUE(call);
+  EXPECT_EQ(std::get<studio::ServiceCall>(*call).call, 9U);
+  EXPECT_EQ(std::get<studio::ServiceCall>(*call).encoding, "json");
+  for (std::size_t size = 0; size < 17; ++size) EXPECT_FALSE(studio::parse_frame(octets.substr(0, size))) << size;
+  EXPECT_FALSE(studio::parse_frame("\1\7\0\0"s));
+  EXPECT_FALSE(studio::parse_frame("\3\7\0\0\0\0\0\0\0\0\0\0\0\0"s));
+}
+
+TEST(Services, are_requests_to_the_simulator_with_the_schema_of_their_arguments) {
+  const Json all = Json::parse(studio::advertise_services(true)), some = Json::parse(studio::advertise_services(false));
+  EXPECT_GT(all["services"].size(), some["services"].size());
+  for (const Json& one : all["services"]) {
+    const auto service = studio::find_service(one["id"].get<std::uint32_t>());
+    ASSERT_TRUE(service && service->act != nullptr) << one;
+    EXPECT_EQ(one["name"].get<std::string>(), "/simulator/" + service->name);
+    const Json schema = Json::parse(one["request"]["schema"].get<std::string>());
+    for (const Json& name : schema["required"]) EXPECT_TRUE(schema["properties"].contains(name.get<std::string>())) << schema;
+  }
+  EXPECT_FALSE(studio::find_service(0));
+  EXPECT_FALSE(studio::find_service(1000));
+  EXPECT_FALSE(studio::arguments_of({1, 1, "cdr", "{}"}));
+  EXPECT_FALSE(studio::arguments_of({1, 1, "json", "[]"}));
+  EXPECT_EQ(*studio::arguments_of({1, 1, "json", " "}), Json::object());
+}
+
+TEST(Parameters, are_numbers_where_their_text_is_one_and_texts_again_when_they_are_set) {
+  EXPECT_EQ(studio::value_from_text("0.5", "double"), Json(0.5));
+  EXPECT_EQ(studio::value_from_text("0.5", "string"), Json("0.5"));
+  EXPECT_EQ(studio::value_from_text("left", ""), Json("left"));
+  EXPECT_EQ(*studio::text_from_value("x", Json(2)), "2");
+  EXPECT_EQ(*studio::text_from_value("x", Json(true)), "true");
+  EXPECT_EQ(*studio::text_from_value("x", Json::parse("[1,2.5]")), "1,2.5");
+  for (const char* text : {"null", "{}", "[[1]]"}) EXPECT_FALSE(studio::text_from_value("x", Json::parse(text))) << text;
 }
 
 TEST(ClientMessage, says_in_one_line_what_is_wrong) {
@@ -245,7 +307,9 @@ TEST(ClientMessage, mutated_messages_do_no_harm) {
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":7}]})",
       R"({"op":"request","id":1,"name":"set_pose","args":{"model":"a","pose":[0,0,0,1,0,0,0]},"dry":true})",
       R"({"op":"request","id":2,"name":"connect","args":{"ports":["a:b","c:d"],"properties":{"k":"v"}}})",
-      R"({"op":"unsubscribe","subscriptionIds":[1,2,3]})"};
+      R"({"op":"unsubscribe","subscriptionIds":[1,2,3]})",
+      R"({"op":"setParameters","parameters":[{"name":"a.b","value":[1,"x"]}],"id":"1"})",
+      R"({"op":"advertise","channels":[{"id":1,"topic":"/a/b","encoding":"json","schemaName":""}]})"};
   const char* from_outside = std::getenv("RTMSIM_STUDIO_MUTATIONS");
   const long count = from_outside != nullptr ? std::atol(from_outside) : 20000;
   std::mt19937 random(7);
@@ -495,12 +559,12 @@ TEST(Hall, only_what_is_in_the_folder_is_opened) {
   for (const auto& file : {folder / "a.mcap", folder / "runs/b.mcap", folder / "c.txt", other}) std::ofstream(file) << "x";
   fs::create_symlink(other, folder / "link.mcap");
   std::set<std::string> names;
-  for (const auto& one : studio::recordings_in(folder)) names.insert(one.at("file").get<std::string>());
+  for (const auto& one : studio::files_in(folder, ".mcap")) names.insert(one.at("file").get<std::string>());
   EXPECT_EQ(names, (std::set<std::string>{"a.mcap", "link.mcap", "runs/b.mcap"}));
   for (const std::string& name : {std::string("a.mcap"), std::string("runs/../a.mcap"), (folder / "runs/b.mcap").string()})
-    EXPECT_TRUE(studio::recording_in(folder, name).ok()) << name;
+    EXPECT_TRUE(studio::file_in(folder, "recording", name).ok()) << name;
   for (const std::string name : {"../other.mcap", "link.mcap", "runs", "", "/etc/passwd", "d.mcap"})
-    EXPECT_FALSE(studio::recording_in(folder, name).ok()) << name;
+    EXPECT_FALSE(studio::file_in(folder, "recording", name).ok()) << name;
   fs::remove_all(top);
 }
 

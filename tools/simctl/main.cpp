@@ -257,6 +257,34 @@ void reject_unless_finite(const std::string& option, const std::vector<double>& 
     base::reject_command_line(option, "expected finite numbers");
 }
 
+void add_map(base::Command& app, Work& work) {
+  auto* map = app.add_subcommand("map", "Write an occupancy map of the world: FILE.png and FILE.yaml, as map_server reads them");
+  auto options = option_value<simctl::MapOptions>();
+  map->add_option("FILE", options->file, "PNG file; the YAML file is written beside it")->required()->check([](const std::string& file) {
+    return base::to_lower(std::filesystem::path(file).extension().string()) == ".png"
+               ? std::string()
+               : "maps are PNG; expected a name that ends in .png, got " + base::in_quotes(file);
+  });
+  map->add_option("--resolution", options->resolution, "Side of a cell [m]")->check(base::number_between(1e-3, 100))->capture_default_str();
+  auto* heights =
+      map->add_option("--heights", options->heights, "A cell is occupied by what is between LOW and HIGH [m] (default: 0.05 0.5)")
+          ->expected(1, 2)
+          ->delimiter(' ');
+  auto* area = map->add_option("--area", options->area, "XMIN YMIN XMAX YMAX [m] (default: where something is occupied, and 0.5 m around)")
+                   ->expected(1, 4)
+                   ->delimiter(' ');
+  map->add_flag("--all", options->with_movable, "Include models that can move (default: static models only)");
+  map->callback([&work, options, heights, area] {
+    reject_unless_finite("--heights", options->heights);
+    reject_unless_finite("--area", options->area);
+    if (heights->count() > 0 && (options->heights.size() != 2 || options->heights[0] >= options->heights[1]))
+      base::reject_command_line("--heights", "expected LOW HIGH [m], the lower one first");
+    if (area->count() > 0 && (options->area.size() != 4 || options->area[0] >= options->area[2] || options->area[1] >= options->area[3]))
+      base::reject_command_line("--area", "expected XMIN YMIN XMAX YMAX [m], the lower left corner first");
+    work = [options](Control& c) { simctl::map(c, *options); };
+  });
+}
+
 void add_pictures(base::Command& app, Work& work) {
   auto* screenshot = app.add_subcommand("screenshot", "Save an image of the world (PNG)");
   auto options = option_value<simctl::ScreenshotOptions>();
@@ -316,6 +344,8 @@ void add_pictures(base::Command& app, Work& work) {
     work = [world_file, show](Control& c) { simctl::export_world(c, *world_file, *show == "collisions"); };
   });
 
+  add_map(app, work);
+
   auto* record = app.add_subcommand("record", "Record a camera as video (.mp4) or as PNG files in a folder");
   auto camera_name = option_value<std::string>();
   auto target = option_value<std::string>();
@@ -353,7 +383,7 @@ int main(int argc, char** argv) {
   app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts", "wait"})
       ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
       ->group_subcommands("Robots and models", {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
-      ->group_subcommands("Record", {"screenshot", "record", "export"})
+      ->group_subcommands("Record", {"screenshot", "record", "export", "map"})
       ->group_subcommands("Clean up", {"clean"});
   const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;

@@ -14,6 +14,12 @@ const Act* find_act(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+std::string subject_of(const Act& act, const Json& args) {
+  return act.is_reading ? std::string() : text_or(args, "path", text_or(args, "model", ""));
+}
+
+base::Error read_only() { return {"this studio is read-only"}; }
+
 std::vector<std::string> simctl_words(std::uint32_t server_id) {
   std::vector<std::string> words{"simctl"};
   if (server_id != 0) words.insert(words.end(), {"-s", std::to_string(server_id)});

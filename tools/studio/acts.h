@@ -39,6 +39,13 @@ struct Act {
 // nullptr: there is none of this name.
 const Act* find_act(std::string_view name);
 
+// The component or model that an act changes. What is done to the same one is done in the order in which it was asked for: values are read,
+// changed and written back. Empty: none.
+std::string subject_of(const Act& act, const Json& args);
+
+// What a studio that only shows answers to acts.
+base::Error read_only();
+
 // The first words of a line for this simulator.
 std::vector<std::string> simctl_words(std::uint32_t server_id);
 

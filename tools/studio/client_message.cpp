@@ -16,24 +16,6 @@ constexpr std::size_t most_depth = 24;
 constexpr std::size_t most_name = 64;
 constexpr std::size_t most_pairs = 1024;
 
-// Brackets inside each other, outside of texts; more than `most_depth` would be work for nothing.
-bool is_flat_enough(std::string_view text) {
-  std::size_t depth = 0;
-  bool is_in_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (is_in_text) {
-      if (c == '\\') ++i;
-      if (c == '"') is_in_text = false;
-      continue;
-    }
-    if (c == '"') is_in_text = true;
-    if ((c == '{' || c == '[') && ++depth > most_depth) return false;
-    if ((c == '}' || c == ']') && depth > 0) --depth;
-  }
-  return true;
-}
-
 Result<std::uint32_t> id_of(const Json& json, const char* what) {
   if (!json.is_number_integer() || json < 0 || json > std::numeric_limits<std::uint32_t>::max())
     return Error{std::string(what) + ": expected a whole number from 0 to 4294967295"};
@@ -44,32 +26,6 @@ const Json& member(const Json& object, const std::string& key) {
   static const Json nothing;
   const auto found = object.is_object() ? object.find(key) : object.end();
   return found == object.end() ? nothing : *found;
-}
-
-Result<ClientMessage> subscribe_of(const Json& json) {
-  Subscribe message;
-  const Json& list = member(json, "subscriptions");
-  if (!list.is_array() || list.size() > most_subscriptions) return Error{"subscribe: expected a list of at most 1024 subscriptions"};
-  for (const Json& entry : list) {
-    const auto id = id_of(member(entry, "id"), "id of a subscription");
-    const auto channel = id_of(member(entry, "channelId"), "channelId of a subscription");
-    if (!id) return id.error();
-    if (!channel) return channel.error();
-    message.subscriptions.emplace_back(*id, *channel);
-  }
-  return ClientMessage(std::move(message));
-}
-
-Result<ClientMessage> unsubscribe_of(const Json& json) {
-  Unsubscribe message;
-  const Json& list = member(json, "subscriptionIds");
-  if (!list.is_array() || list.size() > most_subscriptions) return Error{"unsubscribe: expected a list of at most 1024 subscriptionIds"};
-  for (const Json& entry : list) {
-    const auto id = id_of(entry, "id of a subscription");
-    if (!id) return id.error();
-    message.ids.push_back(*id);
-  }
-  return ClientMessage(std::move(message));
 }
 
 Result<ClientMessage> request_of(const Json& json) {
@@ -91,6 +47,23 @@ Error expected(const std::string& key, const std::string& what) { return {key + 
 
 }  // namespace
 
+bool is_flat_enough(std::string_view text) {
+  std::size_t depth = 0;
+  bool is_in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_in_text) {
+      if (c == '\\') ++i;
+      if (c == '"') is_in_text = false;
+      continue;
+    }
+    if (c == '"') is_in_text = true;
+    if ((c == '{' || c == '[') && ++depth > most_depth) return false;
+    if ((c == '}' || c == ']') && depth > 0) --depth;
+  }
+  return true;
+}
+
 Result<ClientMessage> parse_message(std::string_view text) {
   if (text.size() > most_message) return Error{"message: is longer than 1 MiB"};
   if (!is_flat_enough(text)) return Error{"message: its brackets are more than 24 deep"};
@@ -100,14 +73,19 @@ Result<ClientMessage> parse_message(std::string_view text) {
   if (!op.is_string()) return Error{"message: expected a text as op"};
   const auto& name = op.get_ref<const std::string&>();
   if (name == "request") return request_of(json);
-  if (name == "subscribe") return subscribe_of(json);
-  if (name == "unsubscribe") return unsubscribe_of(json);
-  if (name == "subscribeConnectionGraph") return ClientMessage(GraphWish{true});
-  if (name == "unsubscribeConnectionGraph") return ClientMessage(GraphWish{false});
+  auto foxglove = parse_foxglove(name, json);
+  if (!foxglove) return foxglove.error();
+  if (*foxglove) return std::visit([](auto& message) { return ClientMessage(std::move(message)); }, **foxglove);
   return ClientMessage(Unused{name.substr(0, most_name)});
 }
 
 std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+const Json& list_in(const Json& object, const char* key) {
+  static const Json nothing = Json::array();
+  const Json& list = member(object, key);
+  return list.is_array() ? list : nothing;
+}
 
 std::string values_key(std::uint32_t watch) { return "values." + std::to_string(watch); }
 
@@ -142,6 +120,18 @@ Result<double> number_of(const Json& args, const std::string& key) {
 }
 
 Result<std::uint32_t> whole_number_of(const Json& args, const std::string& key) { return id_of(member(args, key), key.c_str()); }
+
+Result<std::vector<std::uint32_t>> whole_numbers_of(const Json& args, const std::string& key) {
+  const Json& list = member(args, key);
+  if (!list.is_array() || list.size() > most_subscriptions) return expected(key, "a list of at most 1024 whole numbers");
+  std::vector<std::uint32_t> numbers;
+  for (const Json& entry : list) {
+    const auto number = id_of(entry, key.c_str());
+    if (!number) return number.error();
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
 
 double number_or(const Json& args, const std::string& key, double otherwise) {
   const auto number = number_of(args, key);

@@ -10,27 +10,15 @@
 #include <vector>
 
 #include "base/result.h"
+#include "studio/foxglove_message.h"
 
 namespace studio {
 
-using Json = nlohmann::ordered_json;
+inline constexpr std::size_t most_message = 1 << 20;   // octets of a frame
+inline constexpr std::size_t most_open_requests = 32;  // of a viewer
+inline constexpr std::size_t most_watches = 512;       // signals that all viewers watch
+inline constexpr std::size_t most_members = 256;       // of a watch
 
-inline constexpr std::size_t most_message = 1 << 20;     // octets of a frame
-inline constexpr std::size_t most_subscriptions = 1024;  // of a viewer
-inline constexpr std::size_t most_open_requests = 32;    // of a viewer
-inline constexpr std::size_t most_watches = 512;         // signals that all viewers watch
-inline constexpr std::size_t most_members = 256;         // of a watch
-
-// Of foxglove.websocket.v1.
-struct Subscribe {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> subscriptions;  // id, channel
-};
-struct Unsubscribe {
-  std::vector<std::uint32_t> ids;
-};
-struct GraphWish {
-  bool is_wanted = false;  // the connection graph
-};
 // Of rtmsim.studio.v1.
 struct Request {
   std::int64_t id = 0;
@@ -43,9 +31,13 @@ struct Unused {
   std::string op;
 };
 
-using ClientMessage = std::variant<Subscribe, Unsubscribe, GraphWish, Request, Unused>;
+using ClientMessage =
+    std::variant<Subscribe, Unsubscribe, GraphWish, Advertise, Unadvertise, GetParameters, SetParameters, ParameterWish, Request, Unused>;
 
 base::Result<ClientMessage> parse_message(std::string_view text);
+
+// Its brackets, outside of texts, are at most 24 deep: more would be work for nothing.
+bool is_flat_enough(std::string_view text);
 
 // JSON as text for the wire; what is no UTF-8 becomes a replacement character.
 std::string to_text(const Json& json);
@@ -55,11 +47,16 @@ std::string reply_text(std::int64_t id, const base::Result<Json>& result, const 
 // What the newest values of a watch are called while they wait for a slow viewer.
 std::string values_key(std::uint32_t watch);
 
+// The list with this key; an empty one when there is none.
+const Json& list_in(const Json& object, const char* key);
+
 // ---- arguments of requests: the value, or an error that names it and says what was expected ----
 base::Result<std::string> text_of(const Json& args, const std::string& key);
 std::string text_or(const Json& args, const std::string& key, const std::string& otherwise);
 base::Result<double> number_of(const Json& args, const std::string& key);
 base::Result<std::uint32_t> whole_number_of(const Json& args, const std::string& key);
+// At most 1024.
+base::Result<std::vector<std::uint32_t>> whole_numbers_of(const Json& args, const std::string& key);
 double number_or(const Json& args, const std::string& key, double otherwise);
 bool flag_of(const Json& args, const std::string& key);
 // `least` to `most` finite numbers.

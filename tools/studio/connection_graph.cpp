@@ -14,12 +14,6 @@ Json list_of(const Names& names, const char* ids) {
   return list;
 }
 
-const Json& list_in(const Json& event, const char* key) {
-  static const Json nothing = Json::array();
-  const auto found = event.is_object() ? event.find(key) : event.end();
-  return found != event.end() && found->is_array() ? *found : nothing;
-}
-
 }  // namespace
 
 Json connection_graph(const Json& system, const Json& signals) {

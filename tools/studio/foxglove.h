@@ -21,8 +21,11 @@ void put_u32(std::string& out, std::uint32_t value);
 void put_u64(std::string& out, std::uint64_t value);
 void put_f32(std::string& out, float value);
 
-// `has_graph`: it answers subscribeConnectionGraph.
-std::string server_info(std::string_view session, bool has_graph);
+// What a server offers: a recording; a system that is shown; one that viewers may change.
+enum class Offer { nothing, looking, acting };
+std::string server_info(std::string_view session, Offer offer);
+std::string service_failure(std::uint32_t service, std::uint32_t call, std::string_view message);
+std::string service_answer(std::uint32_t service, std::uint32_t call, std::string_view encoding, std::string_view payload);
 std::string status(int level, std::string_view message);  // 0 info, 1 warning, 2 error
 std::string message_data(std::uint32_t subscription, std::chrono::nanoseconds time, std::span<const char> octets);
 std::string time_data(std::chrono::nanoseconds time);

@@ -7,6 +7,7 @@
 #include "base/shell_word.h"
 #include "base/text.h"
 #include "studio/acts.h"
+#include "studio/campaigns.h"
 
 namespace studio {
 namespace {
@@ -26,7 +27,7 @@ double seconds_of(fs::file_time_type time) {
 
 }  // namespace
 
-Json recordings_in(const fs::path& folder) {
+Json files_in(const fs::path& folder, const std::string& extension) {
   struct Found {
     std::string name;
     std::uintmax_t size;
@@ -40,7 +41,7 @@ Json recordings_in(const fs::path& folder) {
     if (++looked_at > most_entries) break;
     if (at.depth() >= deepest_folder || at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
     std::error_code ignored;  // it has gone meanwhile
-    if (at->path().extension() != ".mcap" || !at->is_regular_file(ignored)) continue;
+    if (at->path().extension() != extension || !at->is_regular_file(ignored)) continue;
     const auto size = at->file_size(ignored);
     const auto time = at->last_write_time(ignored);
     if (!ignored) found.push_back({at->path().lexically_relative(folder).string(), size, seconds_of(time)});
@@ -52,8 +53,8 @@ Json recordings_in(const fs::path& folder) {
   return list;
 }
 
-Result<fs::path> recording_in(const fs::path& folder, const std::string& name) {
-  const Error refused{"recording " + base::in_quotes(name) + ": expected a file in the folder that rtm-studio was started in, or below it"};
+Result<fs::path> file_in(const fs::path& folder, const std::string& what, const std::string& name) {
+  const Error refused{what + " " + base::in_quotes(name) + ": expected a file in the folder that rtm-studio was started in, or below it"};
   if (name.find('\0') != std::string::npos) return refused;
   std::error_code problem;
   const auto root = fs::canonical(folder, problem);
@@ -65,7 +66,12 @@ Result<fs::path> recording_in(const fs::path& folder, const std::string& name) {
 }
 
 Hall::Hall(boost::asio::io_context& loop, WebHandlers first, HallOptions options)
-    : loop_(loop), options_(std::move(options)), first_(std::move(first)), now_(first_), reading_(std::make_unique<Workers>(1)) {}
+    : loop_(loop),
+      options_(std::move(options)),
+      first_(std::move(first)),
+      now_(first_),
+      reading_(std::make_unique<Workers>(1)),
+      replaying_(std::make_unique<Workers>(1)) {}
 
 WebHandlers Hall::handlers() {
   return {[this](std::shared_ptr<Viewer> viewer) {
@@ -73,6 +79,7 @@ WebHandlers Hall::handlers() {
             now_.joined(std::move(viewer));
           },
           [this](Viewer& viewer, std::string_view text) { hear(viewer, text); },
+          [this](Viewer& viewer, std::string_view octets) { now_.sent(viewer, octets); },
           [this](Viewer& viewer) {
             now_.left(viewer);
             viewers_.erase(viewer.id());
@@ -83,7 +90,8 @@ WebHandlers Hall::handlers() {
 
 void Hall::hear(Viewer& viewer, std::string_view text) {
   // Most of what is said is for the show, and is read there.
-  if (viewer.speaks_studio() && text.find("recording") != std::string_view::npos) {
+  const auto names = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
+  if (viewer.speaks_studio() && (names("recording") || names("campaign") || names("replay"))) {
     const auto message = parse_message(text);
     const auto* request = message ? std::get_if<Request>(&*message) : nullptr;
     if (request != nullptr && takes(viewer, *request)) return;
@@ -93,7 +101,13 @@ void Hall::hear(Viewer& viewer, std::string_view text) {
 
 bool Hall::takes(Viewer& viewer, const Request& request) {
   if (request.name == "recordings") {
-    list(viewer, request.id);
+    list(viewer, request.id, ".mcap");
+  } else if (request.name == "campaigns") {
+    list(viewer, request.id, ".db");
+  } else if (request.name == "campaign") {
+    show_campaign(viewer, request);
+  } else if (request.name == "replay") {
+    replay(viewer, request);
   } else if (request.name == "open_recording") {
     open(viewer, request);
   } else if (request.name == "close_recording") {
@@ -104,14 +118,50 @@ bool Hall::takes(Viewer& viewer, const Request& request) {
   return true;
 }
 
-void Hall::list(const Viewer& viewer, std::int64_t id) {
-  const auto work = [this, to = viewer.id(), id] {
-    Json files = recordings_in(options_.folder);
-    boost::asio::post(loop_, [this, to, id, files = std::move(files)] {
-      answer(to, id, Json{{"folder", options_.folder.string()}, {"open", opened_}, {"may_open", !options_.is_read_only}, {"files", files}});
-    });
+void Hall::read(const Viewer& viewer, std::int64_t id, Workers& workers, Work work, const std::string& command) {
+  const auto job = [this, to = viewer.id(), id, work = std::move(work), command] {
+    Result<Json> result = Error{"internal error (unexpected exception)"};
+    try {
+      result = work();
+    } catch (const std::exception& e) {
+      result = Error{e.what()};
+    }
+    boost::asio::post(loop_, [this, to, id, result = std::move(result), command] { answer(to, id, result, command); });
   };
-  if (!reading_->give(work)) answer(viewer.id(), id, Error{"too much is being done already; try again"});
+  if (!workers.give(job)) answer(viewer.id(), id, Error{"too much is being done already; try again"}, command);
+}
+
+void Hall::list(const Viewer& viewer, std::int64_t id, const std::string& extension) {
+  read(viewer, id, *reading_, [folder = options_.folder, opened = opened_, may_open = !options_.is_read_only, extension]() -> Result<Json> {
+    return Json{{"folder", folder.string()}, {"open", opened}, {"may_open", may_open}, {"files", files_in(folder, extension)}};
+  });
+}
+
+void Hall::show_campaign(const Viewer& viewer, const Request& request) {
+  const auto name = text_of(request.args, "file");
+  if (!name) return answer(viewer.id(), request.id, name.error());
+  std::vector<std::string> words = base::command_words({"rtse", "results"}, {*name});
+  read(
+      viewer, request.id, *reading_,
+      [folder = options_.folder, name = *name]() -> Result<Json> {
+        const auto file = file_in(folder, "campaign", name);
+        if (!file) return file.error();
+        return campaign_results(fs::canonical(folder), *file);
+      },
+      base::shell_line(words));
+}
+
+// Of the recording that is shown.
+void Hall::replay(const Viewer& viewer, const Request& request) {
+  const auto instance = text_of(request.args, "component");
+  if (!instance) return answer(viewer.id(), request.id, instance.error());
+  const std::string file = recording_ ? (options_.folder / opened_).string() : options_.recording;
+  if (file.empty()) return answer(viewer.id(), request.id, Error{"replay: no recording is shown"});
+  const auto command = replay_line(recording_ ? opened_ : file, *instance);
+  if (request.is_dry) return answer(viewer.id(), request.id, Json::object(), command);
+  if (options_.is_read_only) return answer(viewer.id(), request.id, Error{"this studio is read-only"}, command);
+  read(
+      viewer, request.id, *replaying_, [file, instance = *instance] { return replay_component(file, instance); }, command);
 }
 
 void Hall::open(const Viewer& viewer, const Request& request) {
@@ -120,7 +170,7 @@ void Hall::open(const Viewer& viewer, const Request& request) {
   const auto command = base::shell_line(base::command_words({"rtm-studio"}, {*name}));
   if (request.is_dry) return answer(viewer.id(), request.id, Json::object(), command);
   if (options_.is_read_only) return answer(viewer.id(), request.id, Error{"this studio is read-only"}, command);
-  const auto file = recording_in(options_.folder, *name);
+  const auto file = file_in(options_.folder, "recording", *name);
   if (!file) return answer(viewer.id(), request.id, file.error(), command);
   const auto work = [this, to = viewer.id(), id = request.id, name = *name, file = file->string()] {
     Result<Facts> facts = Error{"internal error (unexpected exception)"};

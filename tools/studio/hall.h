@@ -4,6 +4,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -19,13 +20,14 @@ namespace studio {
 struct HallOptions {
   std::filesystem::path folder;  // of recordings
   bool is_read_only = false;     // nothing is opened
+  std::string recording{};       // that the program was started for, if it was
 };
 
-// Recordings in a folder and three levels below it, the newest first, at most 200: [{file, size, time [s since 1970]}], names relative to
-// it.
-Json recordings_in(const std::filesystem::path& folder);
-// The file of this name in the folder, or below it. An error for all others, whatever is there.
-base::Result<std::filesystem::path> recording_in(const std::filesystem::path& folder, const std::string& name);
+// Files with this extension in a folder and three levels below it, the newest first, at most 200: [{file, size, time [s since 1970]}],
+// names relative to it.
+Json files_in(const std::filesystem::path& folder, const std::string& extension);
+// The file of this name in the folder, or below it. An error for all others, whatever is there. `what`: for the error.
+base::Result<std::filesystem::path> file_in(const std::filesystem::path& folder, const std::string& what, const std::string& name);
 
 class Hall {
  public:
@@ -39,7 +41,12 @@ class Hall {
   using Facts = std::shared_ptr<const RecordingFacts>;
   void hear(Viewer& viewer, std::string_view text);
   bool takes(Viewer& viewer, const Request& request);
-  void list(const Viewer& viewer, std::int64_t id);
+  using Work = std::function<base::Result<Json>()>;
+  // On a worker; the answer comes from there.
+  void read(const Viewer& viewer, std::int64_t id, Workers& workers, Work work, const std::string& command = "");
+  void list(const Viewer& viewer, std::int64_t id, const std::string& extension);
+  void show_campaign(const Viewer& viewer, const Request& request);
+  void replay(const Viewer& viewer, const Request& request);
   void open(const Viewer& viewer, const Request& request);
   void close(const Viewer& viewer, std::int64_t id);
   void has_read(std::uint64_t viewer, std::int64_t id, const std::string& name, const base::Result<Facts>& facts);
@@ -55,7 +62,7 @@ class Hall {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers_;
   std::unique_ptr<RecordedStudio> recording_;
   std::vector<std::unique_ptr<RecordedStudio>> ended_;  // those that work for them may still come back to
-  std::unique_ptr<Workers> reading_;                    // last: ends before what it posts to
+  std::unique_ptr<Workers> reading_, replaying_;        // last: they end before what they post to
 };
 
 }  // namespace studio

@@ -82,9 +82,10 @@ std::string url_of(const studio::WebOptions& options, const studio::WebServer& s
   return "http://" + host + ":" + std::to_string(server.port()) + "/#token=" + server.door().token();
 }
 
-int serve(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page, studio::WebHandlers first) {
+int serve(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page, studio::WebHandlers first,
+          const std::string& recording = "") {
   std::error_code problem;  // a folder that is gone has no recordings
-  studio::Hall hall(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only});
+  studio::Hall hall(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only, recording});
   const auto server = studio::WebServer::open(loop, settings.web, page, hall.handlers());
   if (!server) return fail(server.error());
   const std::string url = url_of(settings.web, **server);
@@ -106,7 +107,7 @@ int show_recording(boost::asio::io_context& loop, const Settings& settings, cons
     return fail({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
   const auto recording = studio::RecordedStudio::open(loop, settings.start.system);
   if (!recording) return fail(recording.error());
-  return serve(loop, settings, page, (*recording)->handlers());
+  return serve(loop, settings, page, (*recording)->handlers(), settings.start.system);
 }
 
 int show_run(boost::asio::io_context& loop, Settings settings, const studio::PageFiles& page) {

@@ -42,9 +42,12 @@ RecordedStudio::RecordedStudio(boost::asio::io_context& loop, std::shared_ptr<co
 }
 
 WebHandlers RecordedStudio::handlers() {
-  return {[this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
-          [this](Viewer& viewer, std::string_view text) { hear(viewer, text); }, [this](Viewer& viewer) { leave(viewer); },
-          [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
+  return {
+      [this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
+      [this](Viewer& viewer, std::string_view text) { hear(viewer, text); },
+      [](Viewer& viewer, std::string_view) { viewer.send(text_frame(status(2, "a recording is open here: nothing takes binary frames"))); },
+      [this](Viewer& viewer) { leave(viewer); },
+      [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
 }
 
 // ---- the scene ----
@@ -95,7 +98,7 @@ bool RecordedStudio::fetch(const std::string& path, const std::string& query, co
 // ---- viewers ----
 
 void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
-  viewer->send(text_frame(server_info(session_, false)));
+  viewer->send(text_frame(server_info(session_, Offer::nothing)));
   if (!viewer->speaks_studio()) {
     return viewer->send(text_frame(status(2, "a recording is open here, nothing runs: open " + base::in_quotes(facts_->file) + " itself")));
   }

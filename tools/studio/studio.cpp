@@ -29,19 +29,6 @@ constexpr unsigned tends_per_look = 10;    // for channels, whose simulator may 
 constexpr const char* poses_key = "poses";
 constexpr const char* lines_key = "logs";
 constexpr const char* clock_key = "clock";
-std::string channel_key(std::uint32_t subscription) { return "channel." + std::to_string(subscription); }
-std::string advertise(channels::ChannelId id, const channels::Channel& channel) {
-  return to_text({{"op", "advertise"},
-                  {"channels", Json::array({{{"id", id},
-                                             {"topic", channel.topic},
-                                             {"encoding", channel.encoding},
-                                             {"schemaName", channel.schema.name},
-                                             {"schema", channel.schema.text},
-                                             {"schemaEncoding", channel.schema.encoding}}})}});
-}
-
-Error read_only() { return {"this studio is read-only"}; }
-
 }  // namespace
 
 Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOptions& options)
@@ -73,11 +60,15 @@ Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOp
   logs_ = std::make_unique<LogBook>(loop, settings, *workers_, [this] {
     for (auto& [id, guest] : guests_) send_lines(guest);
   });
+  publications_ = std::make_unique<Publications>(loop, settings, *workers_, [this](std::uint64_t viewer, const std::string& line) {
+    if (const auto found = guests_.find(viewer); found != guests_.end()) warn(found->second, line);
+  });
   tend();
 }
 
 // Those who give work to the workers end before them.
 Studio::~Studio() {
+  publications_.reset();
   logs_.reset();
   channels_.reset();
   signals_.reset();
@@ -85,17 +76,17 @@ Studio::~Studio() {
 
 WebHandlers Studio::handlers() {
   return {[this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
-          [this](Viewer& viewer, std::string_view text) { hear(viewer, text); }, [this](Viewer& viewer) { leave(viewer); },
+          [this](Viewer& viewer, std::string_view text) { hear(viewer, text); },
+          [this](Viewer& viewer, std::string_view octets) { take_frame(viewer, octets); }, [this](Viewer& viewer) { leave(viewer); },
           [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
 }
 
 void Studio::join(std::shared_ptr<Viewer> viewer) {
   Guest& guest = guests_.try_emplace(viewer->id()).first->second;
   guest.viewer = std::move(viewer);
-  guest.viewer->send(text_frame(server_info(session_, true)));
+  guest.viewer->send(text_frame(server_info(session_, options_.is_read_only ? Offer::looking : Offer::acting)));
   if (!guest.viewer->speaks_studio()) {
-    for (const auto& [id, channel] : channels_->open_channels()) guest.viewer->send(text_frame(advertise(id, channel)));
-    channels_->tend();
+    greet_foxglove(guest);
   } else {
     const auto [simulator, components] = start_hints(options_.server_id, options_.name_server);
     guest.viewer->send(text_frame(to_text({{"op", "hello"},
@@ -115,6 +106,7 @@ void Studio::join(std::shared_ptr<Viewer> viewer) {
 
 void Studio::leave(Viewer& viewer) {
   drives_.release_all(viewer.id());
+  publications_->close_all(viewer.id());
   signals_->unwatch_all(viewer.id());
   pictures_->unwatch_all(viewer.id());
   const auto guest = guests_.extract(viewer.id());
@@ -133,11 +125,7 @@ void Studio::hear(Viewer& viewer, std::string_view text) {
     if (viewer.speaks_studio()) return handle(found->second, *request);
     return viewer.send(text_frame(status(2, "requests need the subprotocol rtmsim.studio.v1")));
   }
-  if (const auto* wish = std::get_if<Subscribe>(&*message)) return subscribe(found->second, *wish);
-  if (const auto* wish = std::get_if<Unsubscribe>(&*message)) return unsubscribe(found->second, *wish);
-  if (const auto* wish = std::get_if<GraphWish>(&*message)) return see_graph(found->second, wish->is_wanted);
-  if (const auto* unused = std::get_if<Unused>(&*message))
-    viewer.send(text_frame(status(1, "op " + base::in_quotes(unused->op) + ": is not offered by this server")));
+  hear_foxglove(found->second, *message);
 }
 
 void Studio::handle(Guest& guest, const Request& request) {
@@ -156,36 +144,12 @@ void Studio::handle(Guest& guest, const Request& request) {
 // What needs no worker.
 void Studio::handle_here(Guest& guest, const Request& request) {
   if (request.name == "drive") return handle_drive(guest, request);
+  if (request.name == "move_joints") return handle_joints(guest, request);
   if (request.name == "release") return handle_release(guest, request);
   if (request.name == "watch") return answer(guest, request.id, start_watch(guest, request.args));
   if (request.name == "watch_image") return answer(guest, request.id, start_pictures(guest, request.args));
   if (request.name == "unwatch") return answer(guest, request.id, end_watch(guest, request.args));
   answer(guest, request.id, Error{"request " + base::in_quotes(request.name) + ": is not known"});
-}
-
-void Studio::handle_drive(Guest& guest, const Request& request) {
-  const auto iface = text_of(request.args, "iface");
-  if (!iface) return answer(guest, request.id, iface.error());
-  const auto velocity = numbers_of(request.args, "velocity", 3, 6);
-  if (!velocity || (velocity->size() != 3 && velocity->size() != 6))
-    return answer(guest, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
-  std::vector<std::string> words = simctl_words(options_.server_id);
-  words.emplace_back("velocity");
-  std::vector<std::string> operands{*iface};
-  for (const double number : *velocity) operands.push_back(base::format_number(number));
-  const auto command = base::shell_line(base::command_words(std::move(words), operands));
-  if (request.is_dry) return answer(guest, request.id, Json::object(), command);
-  if (options_.is_read_only) return answer(guest, request.id, read_only(), command);
-  const auto done = drives_.drive(guest.viewer->id(), *iface, *velocity);
-  answer(guest, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), command);
-}
-
-void Studio::handle_release(Guest& guest, const Request& request) {
-  const auto iface = text_of(request.args, "iface");
-  if (!iface) return answer(guest, request.id, iface.error());
-  if (options_.is_read_only) return answer(guest, request.id, read_only());
-  drives_.release(guest.viewer->id(), *iface);
-  answer(guest, request.id, Json::object());
 }
 
 Result<Json> Studio::start_watch(const Guest& guest, const Json& args) {
@@ -229,82 +193,6 @@ void Studio::tell_picture(const WatchKey& key, std::string frame) {
   if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), binary_frame(std::move(frame)));
 }
 
-// ---- foxglove.websocket.v1
-
-void Studio::subscribe(Guest& guest, const Subscribe& message) {
-  for (const auto& [id, channel] : message.subscriptions) {
-    const auto known = static_cast<channels::ChannelId>(channel);
-    if (channel != known || !channels_->open_channels().contains(known)) {
-      guest.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
-    } else if (guest.subscriptions.size() >= most_subscriptions) {
-      guest.viewer->send(text_frame(status(2, "1024 subscriptions are there already")));
-    } else {
-      guest.subscriptions[id] = known;
-      channels_->want(known, true);
-    }
-  }
-}
-
-void Studio::unsubscribe(Guest& guest, const Unsubscribe& message) {
-  std::map<std::uint32_t, channels::ChannelId> gone;
-  for (const auto id : message.ids) {
-    if (auto node = guest.subscriptions.extract(id)) gone.insert(std::move(node));
-    guest.viewer->drop(channel_key(id));
-  }
-  want_channels(gone);
-}
-
-void Studio::see_graph(Guest& guest, bool is_wanted) {
-  guest.sees_graph = is_wanted;
-  if (graph_.is_null()) graph_ = connection_graph({}, {});  // no look at the system has ended yet
-  if (is_wanted) guest.viewer->send(text_frame(graph_update({}, graph_)));
-}
-
-void Studio::tell_graph() {
-  Json now = connection_graph(system_event_, book_.event());
-  if (now == graph_) return;
-  const Frame frame = text_frame(graph_update(graph_, now));
-  graph_ = std::move(now);
-  for (auto& [id, guest] : guests_) {
-    if (guest.sees_graph) guest.viewer->send(frame);
-  }
-}
-
-// Those that nobody has subscribed to any more.
-void Studio::want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed) {
-  for (const auto& [id, channel] : changed) {
-    const bool is_wanted = std::any_of(guests_.begin(), guests_.end(), [&, channel = channel](const auto& guest) {
-      const auto& all = guest.second.subscriptions;
-      return std::any_of(all.begin(), all.end(), [&](const auto& subscription) { return subscription.second == channel; });
-    });
-    if (!is_wanted) channels_->want(channel, false);
-  }
-}
-
-void Studio::tell_channel(channels::ChannelId id, const channels::Channel& channel) {
-  const Frame frame = text_frame(advertise(id, channel));
-  for (auto& [key, guest] : guests_) {
-    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
-  }
-}
-
-void Studio::tell_no_channel(channels::ChannelId id) {
-  const Frame frame = text_frame(to_text({{"op", "unadvertise"}, {"channelIds", Json::array({id})}}));
-  for (auto& [key, guest] : guests_) {
-    std::erase_if(guest.subscriptions, [&](const auto& subscription) { return subscription.second == id; });
-    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
-  }
-}
-
-void Studio::tell_sample(const channels::Sample& sample) {
-  for (auto& [key, guest] : guests_) {
-    for (const auto& [id, channel] : guest.subscriptions) {
-      if (channel == sample.channel)
-        guest.viewer->send_newest(channel_key(id), binary_frame(message_data(id, sample.log_time, sample.octets)));
-    }
-  }
-}
-
 void Studio::tell_values(const WatchKey& key, std::string event) {
   const auto found = guests_.find(key.viewer);
   if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), text_frame(std::move(event)));
@@ -313,12 +201,18 @@ void Studio::tell_values(const WatchKey& key, std::string event) {
 void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
   auto plan = act.plan(context_, request.args);
   if (!plan) return answer(guest, request.id, plan.error());
-  if (request.is_dry) return answer(guest, request.id, Json::object(), plan->command);
-  if (!act.is_reading && options_.is_read_only) return answer(guest, request.id, read_only(), plan->command);
-  if (guest.open_requests >= most_open_requests) return answer(guest, request.id, Error{"32 requests are not answered yet"}, plan->command);
-  // What is done to the same component or model is done in the order in which it was asked for: values are read, changed and written back.
-  const auto subject = act.is_reading ? std::string() : text_or(request.args, "path", text_or(request.args, "model", ""));
-  const auto work = [this, subject, viewer = guest.viewer->id(), id = request.id, plan = std::move(*plan)] {
+  const std::string command = plan->command;
+  if (request.is_dry) return answer(guest, request.id, Json::object(), command);
+  if (!act.is_reading && options_.is_read_only) return answer(guest, request.id, read_only(), command);
+  const auto started =
+      carry_out(guest, subject_of(act, request.args), std::move(*plan),
+                [this, id = request.id, command](Guest& one, const Result<Json>& result) { answer(one, id, result, command); });
+  if (!started) answer(guest, request.id, started.error(), command);
+}
+
+Result<void> Studio::carry_out(Guest& guest, const std::string& subject, Plan plan, Finish finish) {
+  if (guest.open_requests >= most_open_requests) return Error{"32 requests are not answered yet"};
+  const auto work = [this, subject, viewer = guest.viewer->id(), plan = std::move(plan), finish = std::move(finish)] {
     Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = plan.run();
@@ -327,12 +221,13 @@ void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
     } catch (const std::exception& e) {
       result = Error{e.what()};
     }
-    boost::asio::post(loop_, [this, subject, viewer, id, command = plan.command, touches = plan.touches, result = std::move(result)] {
-      finish_act(subject, viewer, id, command, touches, result);
+    boost::asio::post(loop_, [this, subject, viewer, touches = plan.touches, finish, result = std::move(result)] {
+      finish_act(subject, viewer, touches, finish, result);
     });
   };
-  if (!give(subject, work)) return answer(guest, request.id, Error{"too much is being done already; try again"});
+  if (!give(subject, work)) return Error{"too much is being done already; try again"};
   ++guest.open_requests;
+  return {};
 }
 
 // Behind what is under way about the same subject, which is given to the workers when that is done. False: too much waits.
@@ -361,15 +256,15 @@ void Studio::give_next(const std::string& subject) {
   }
 }
 
-void Studio::finish_act(const std::string& subject, std::uint64_t viewer, std::int64_t id, const std::string& command,
-                        Plan::Touches touches, const Result<Json>& result) {
+void Studio::finish_act(const std::string& subject, std::uint64_t viewer, Plan::Touches touches, const Finish& finish,
+                        const Result<Json>& result) {
   give_next(subject);
   if (touches == Plan::Touches::system) system_->look_now();
   if (touches == Plan::Touches::world) world_->look_now();
   const auto found = guests_.find(viewer);
   if (found == guests_.end()) return;
   if (found->second.open_requests > 0) --found->second.open_requests;  // 0: it has left and come back
-  answer(found->second, id, result, command);
+  finish(found->second, result);
 }
 
 void Studio::answer(Guest& guest, std::int64_t id, const Result<Json>& result, const std::string& command) {
@@ -465,6 +360,7 @@ void Studio::tend() {
     const bool is_asked =
         std::any_of(guests_.begin(), guests_.end(), [](const auto& guest) { return !guest.second.viewer->speaks_studio(); });
     is_asked ? channels_->tend() : channels_->rest();
+    look_at_parameters();
   }
   timer_.expires_after(tend_period);
   timer_.async_wait([this](boost::system::error_code code) {

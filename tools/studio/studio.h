@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,10 @@
 #include "studio/client_message.h"
 #include "studio/drives.h"
 #include "studio/log_book.h"
+#include "studio/parameters.h"
 #include "studio/pictures.h"
 #include "studio/pose_board.h"
+#include "studio/publications.h"
 #include "studio/signal_book.h"
 #include "studio/signals.h"
 #include "studio/system_watch.h"
@@ -49,6 +52,9 @@ class Studio {
     std::size_t open_requests = 0;
     std::map<std::uint32_t, channels::ChannelId> subscriptions;
     bool sees_graph = false;
+    bool sees_parameters = false;
+    std::set<std::string> parameters;  // none: all
+    Parameters seen_parameters;        // that were sent last
   };
   void join(std::shared_ptr<Viewer> viewer);
   void leave(Viewer& viewer);
@@ -56,14 +62,18 @@ class Studio {
   void handle(Guest& guest, const Request& request);
   void handle_here(Guest& guest, const Request& request);
   void handle_drive(Guest& guest, const Request& request);
+  void handle_joints(Guest& guest, const Request& request);
   void handle_release(Guest& guest, const Request& request);
   base::Result<Json> start_watch(const Guest& guest, const Json& args);
   base::Result<Json> start_pictures(const Guest& guest, const Json& args);
   base::Result<Json> end_watch(const Guest& guest, const Json& args);
   void start_act(Guest& guest, const Request& request, const Act& act);
+  using Finish = std::function<void(Guest&, const base::Result<Json>&)>;
+  // Runs the plan on a worker; `finish` on the loop, unless the viewer has left. Fails at once when too much is under way.
+  base::Result<void> carry_out(Guest& guest, const std::string& subject, Plan plan, Finish finish);
   bool give(const std::string& subject, std::function<void()> work);
   void give_next(const std::string& subject);
-  void finish_act(const std::string& subject, std::uint64_t guest, std::int64_t id, const std::string& command, Plan::Touches touches,
+  void finish_act(const std::string& subject, std::uint64_t guest, Plan::Touches touches, const Finish& finish,
                   const base::Result<Json>& result);
   void answer(Guest& guest, std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
   bool fetch(const std::string& path, const std::string& query, const Answer& answer);
@@ -73,6 +83,18 @@ class Studio {
   void tell_time(std::string text);
   void tell_system(SystemNews news);
   void tell_poses(std::shared_ptr<const Poses> poses);
+  void greet_foxglove(Guest& guest);
+  void hear_foxglove(Guest& guest, const ClientMessage& message);
+  void take_frame(Viewer& viewer, std::string_view octets);
+  void advertise(Guest& guest, const Advertise& message);
+  void unadvertise(Guest& guest, const Unadvertise& message);
+  void get_parameters(Guest& guest, const GetParameters& message);
+  void set_parameters(Guest& guest, const SetParameters& message);
+  void see_parameters(Guest& guest, const ParameterWish& message);
+  void look_at_parameters();
+  void tell_parameters(const Parameters& now);
+  void call_service(Guest& guest, const ServiceCall& call);
+  void warn(Guest& guest, const std::string& line);
   void subscribe(Guest& guest, const Subscribe& message);
   void unsubscribe(Guest& guest, const Unsubscribe& message);
   void see_graph(Guest& guest, bool is_wanted);
@@ -109,6 +131,8 @@ class Studio {
   std::unique_ptr<Pictures> pictures_;
   std::unique_ptr<ChannelBook> channels_;
   std::unique_ptr<LogBook> logs_;
+  std::unique_ptr<Publications> publications_;
+  bool looks_at_parameters_ = false;  // a worker reads them
 };
 
 }  // namespace studio

@@ -46,6 +46,7 @@ using Answer = std::function<void(Content)>;
 struct WebHandlers {
   std::function<void(std::shared_ptr<Viewer>)> joined;
   std::function<void(Viewer&, std::string_view)> said;  // a text frame of at most 1 MiB
+  std::function<void(Viewer&, std::string_view)> sent;  // a binary frame of at most 1 MiB
   std::function<void(Viewer&)> left;
   // What is made for each asker: a path like "/world.glb" and its query. False: there is no such path, and no answer comes.
   std::function<bool(const std::string& path, const std::string& query, Answer answer)> fetch;

@@ -86,12 +86,9 @@ class SocketViewer final : public Viewer, public std::enable_shared_from_this<So
 
   void have_read(Code code) {
     if (code || !is_open_) return finish();
-    if (socket_.got_text()) {
-      const auto data = buffer_.cdata();
-      shared_->handlers.said(*this, {static_cast<const char*>(data.data()), data.size()});
-    } else {
-      send(text_frame(status(2, "binary frames are not taken: this server does not let clients publish or call services")));
-    }
+    const auto data = buffer_.cdata();
+    const std::string_view octets{static_cast<const char*>(data.data()), data.size()};
+    socket_.got_text() ? shared_->handlers.said(*this, octets) : shared_->handlers.sent(*this, octets);
     buffer_.consume(buffer_.size());
     if (is_open_) read();
   }

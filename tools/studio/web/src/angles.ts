@@ -10,8 +10,13 @@ const in_array: { [type: string]: [RegExp, RegExp] } = {
   position2d: [/^position\[2\]$/, /^(velocity|command)\[2\]$/], position3d: [/^$/, /^(velocity|command)\[[345]\]$/], truth: [/^$/, /^velocity\[[345]\]$/],
 };
 
-// '°', '°/s', or nothing for what is no angle. `type`: of the iface, if it is one.
+// Of joints; a target may be a torque.
+const joint_angle = /^joints\[(\d+)\]\.(?:(position|lower|upper|rest)|velocity|max_velocity)$/;
+
+// '°', '°/s', or nothing for what is no angle. `type`: of the iface, if it is one; of joints with a letter for each: t turns, s slides.
 export function angle_unit(member: string, type = ''): '' | '°' | '°/s' {
+  const kinds = type.startsWith('joints') && joint_angle.exec(member);
+  if (kinds) return type.split(' ')[1]?.[Number(kinds[1])] === 't' ? (kinds[2] ? '°' : '°/s') : '';
   const [angles, rates] = in_array[type] ?? [];
   return turning.test(member) || rates?.test(member) ? '°/s' : angle.test(member) || angles?.test(member) ? '°' : '';
 }

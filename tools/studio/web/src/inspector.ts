@@ -6,14 +6,15 @@ import { connect_dialog } from './connect_dialog';
 import { short_type } from './diagram_parts';
 import { ask_text } from './dialog';
 import { pose_of } from './glb';
+import { Joints } from './joints';
 import { inject_dialog, join_dialog } from './rtse_dialogs';
-import { fixed, flatten, format, image_iface, iface_type, measure, polar, table } from './values';
+import { fixed, flatten, format, image_iface, iface_type, kind_of_iface, measure, polar, table } from './values';
 import { control, is_edited } from './widgets';
 import { state_class, state_mark, state_words } from './states';
 import {
-  act, changed, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
+  act, component, component_of_port, components_of, connection, connections_of, iface_id, is_selected, model_of, name_of_port, on, port_of, read_only, refresh_details, select, state_act, store, wire,
 } from './store';
-import { shell_line } from './shell';
+import { replay } from './replay';
 import { signal_of_port } from './signal_names';
 import { short_path, signal_name } from './tree';
 import type { ConfigValue, Context, Values } from './wire';
@@ -42,7 +43,10 @@ export class Inspector {
   private told = ''; // the model of the selection that the simulator has named
   private ask_again: (() => void) | null = null; // what was asked of a server that has gone, or was not there yet
 
+  private readonly joints: Joints;
+
   constructor(private readonly parts: Parts) {
+    this.joints = new Joints(parts.plot);
     on('selection', () => this.show());
     on(['system', 'details', 'world', 'signals', 'hello', 'status', 'states'], () => unless_pressed(this.element, () => this.show()));
     this.element.addEventListener('focusout', () => setTimeout(() => unless_pressed(this.element, () => this.show())));
@@ -60,6 +64,7 @@ export class Inspector {
     if (key !== this.shown) {
       this.stop?.();
       this.stop = null;
+      if (now?.kind !== 'model') this.joints.show('');
       if (now?.kind === 'component') refresh_details(now.id);
     }
     const is_same = key === this.shown;
@@ -134,6 +139,7 @@ export class Inspector {
       numbers.forEach((element, i) => { element.textContent = i < 3 ? `${fixed(values[i], 3)} m` : `${fixed((values[i] * 180) / Math.PI, 1)}°`; });
     };
     this.live();
+    this.joints.show(name);
     ['velocity', 'turning'].forEach((label, i) => pose.append(h('dt', null, label), this.moving[i]));
     const can = !read_only();
     return [
@@ -145,7 +151,7 @@ export class Inspector {
         can && !model?.is_static ? button('Push it', { label: 'Push …' }, () => this.push_model(name)) : null,
         can && !model?.is_static ? button('Set its velocity', { label: 'Set moving …' }, () => this.set_moving(name)) : null,
         can ? button('Delete the model', { label: 'Delete', class: 'danger' }, () => delete_model(name)) : null),
-      h('h3', null, 'Pose'), pose,
+      h('h3', null, 'Pose'), pose, this.joints.element,
       ifaces.length > 0 ? h('h3', null, 'Ifaces') : null,
       h('ul', { class: 'list' }, ifaces.map((i) => h('li', null, link_to(i.name.replace(`${name}::`, ''), { kind: 'iface', id: iface_id(i) }), h('span', { class: 'more' }, i.type)))),
       components_of(name).length > 0 ? h('h3', null, 'Components') : null,
@@ -214,7 +220,7 @@ export class Inspector {
             () => ({ text: `Switch the motors of ${iface.name} ${on ? 'off' : 'on'}`, name: 'set_motors', args: { iface: iface.name, on: !on } }))))] : null),
       values,
       iface.info && Object.keys(iface.info).length > 0 ? h('h3', null, 'Constants') : null,
-      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, measure(key, value, iface.type)])),
+      table(flatten(iface.info ?? {}).filter(([key]) => !['type', 'name', 'server', 'model'].includes(key)).map(([key, value]) => [key, measure(key, value, kind_of_iface(iface))])),
     ];
   }
 
@@ -297,7 +303,7 @@ export class Inspector {
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
         button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
-      store.hello?.recording ? h('div', { class: 'acts' }, button('Show the command that sends the recorded inputs to this component and compares its outputs', { label: 'Replay …', id: 'replay' }, () => show_replay(one.instance))) : null,
+      store.hello?.recording ? h('div', { class: 'acts' }, button('Send the recorded inputs to this component again and compare its outputs', { label: 'Replay', id: 'replay' }, () => replay(one.instance))) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
       one.ports.length > 0 ? h('h3', null, 'Ports') : null,
@@ -458,12 +464,6 @@ export function delete_model(name: string): void {
 }
 
 // Nothing runs beside a recording: what replays a component is a command, which the status line shows for copying.
-function show_replay(instance: string): void {
-  const file = store.world?.file || store.hello!.recording!.file;
-  store.acts.push({ text: `Replay ${instance} from the recording with:`, command: shell_line(['rtse', 'replay', file, '--into', instance, '--compare']) });
-  changed('acts');
-}
-
 export function disconnect_all(all: { id: string }[]): void {
   const group = {};
   for (const { id } of all) disconnect(id, group);

@@ -28,7 +28,16 @@ export function format(value: unknown): string {
 // With its unit where that is known.
 export const measure = (key: string, value: unknown, type: string): string => (typeof value === 'number' ? `${format(shown_value(key, value, type))}${angle_unit(key, type)}` : format(value));
 
-export const iface_type = (topic: string): string => store.signals.find((s) => s.topic === topic && s.kind === 'iface')?.type ?? '';
+// As angle_unit wants it.
+export function kind_of_iface({ type, info }: { type: string; info?: Record<string, unknown> }): string {
+  return type === 'joints' ? `joints ${((info?.joints ?? []) as { kind: number }[]).map(({ kind }) => (kind === 1 ? 't' : 's')).join('')}` : type;
+}
+
+export function iface_type(topic: string): string {
+  const signal = store.signals.find((s) => s.topic === topic && s.kind === 'iface');
+  if (signal?.type !== 'joints') return signal?.type ?? '';
+  return kind_of_iface(store.world?.ifaces.find((i) => i.type === 'joints' && i.model === signal.model) ?? { type: 'joints' });
+}
 
 export function image_iface(topic: string): string | undefined {
   const found = store.world?.ifaces.find((i) => /camera|rgbd|depth/.test(i.type) && topic === `/sim/${i.type}/${i.name.replaceAll('::', '/')}`) ?? store.world?.ifaces.find((i) => topic.includes(`/${i.name.replaceAll('::', '/')}`) && /camera|rgbd|depth/.test(i.type));
