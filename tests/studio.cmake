@@ -1,5 +1,5 @@
 # rtm-studio: its parts, and the program before browsers, other viewers and people with bad intentions.
-rtmsim_test(studio_test studio/studio_test.cpp LIBRARIES studio)
+rtmsim_test(studio_test studio/studio_test.cpp studio/door_test.cpp studio/shown_picture_test.cpp LIBRARIES studio)
 rtmsim_test(page_test page/failure_marks_test.cpp LIBRARIES run_page)
 foreach(case doors two_ways garbage crowd world system read_only comes_back slow_viewer same_hash foreign controls joints pictures recording hints opens started)
   add_test(NAME studio.${case}

@@ -117,7 +117,7 @@ void Camera::show_sample() {
   if (!image || image->pixels.size() > room) {
     if (!std::exchange(has_complained_, true))
       base::log(base::Level::warn, "player-gateway", "camera {}: {}", iface().name(),
-                image ? "its pictures are larger than the 8 MiB that Player can send" : "its format is none of Player's");
+                image ? "its images are larger than the 8 MiB that Player can send" : "Player has no such image format");
     return;
   }
   latest_ = player::encode(*image);

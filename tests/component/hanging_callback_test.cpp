@@ -50,6 +50,14 @@ class HangingCallbackTest : public testing::Test {
   HangingComponent* make(const std::string& name, const std::string& where = "onExecute") {
     return new HangingComponent(name, gate, alive, where);
   }
+  // Returns when the guest, a new member of the context, stands in its callback.
+  void hang_in(RTC::ExecutionContext_ptr context, HangingComponent& guest) {
+    ASSERT_EQ(guest.initialize(), RTC::RTC_OK);
+    const RTC::RTObject_var reference = guest.getObjRef();
+    ASSERT_EQ(context->add_component(reference), RTC::RTC_OK);
+    guest.activate(1000);
+    ASSERT_TRUE(gate.wait_for_visitors());
+  }
 
   std::atomic<int> alive{0};
   Gate gate;
@@ -80,16 +88,12 @@ TEST_F(HangingCallbackTest, a_component_that_hangs_in_the_context_of_another_is_
   ASSERT_EQ(host->initialize(), RTC::RTC_OK);
   ASSERT_EQ(host->activate(0), RTC::RTC_OK);
   HangingComponent* guest = make("Guest0");
-  ASSERT_EQ(guest->initialize(), RTC::RTC_OK);
   RTC::ExecutionContext_var context = first_context(*host);
-  RTC::RTObject_var reference = guest->getObjRef();
-  ASSERT_EQ(context->add_component(reference), RTC::RTC_OK);
-  guest->activate(1000);
-  ASSERT_TRUE(gate.wait_for_visitors());
+  ASSERT_NO_FATAL_FAILURE(hang_in(context, *guest));
   EXPECT_EQ(guest->exit(), RTC::RTC_OK);
   EXPECT_TRUE(RTC::RuntimeAccess::is_held_by_callback(*guest));
   EXPECT_TRUE(lines.speak_of("Guest0", "onExecute"));
-  EXPECT_EQ(context->get_component_state(reference), RTC::CREATED_STATE) << "it has left";
+  EXPECT_EQ(context->get_component_state(RTC::RTObject_var(guest->getObjRef())), RTC::CREATED_STATE) << "it has left";
   guest->_remove_ref();
   EXPECT_EQ(alive, 1);
   const int seen = host->count("onExecute");
@@ -103,12 +107,9 @@ TEST_F(HangingCallbackTest, remove_component_ends_in_time_and_frees_nothing) {
   host->getProperties()["exec_cxt.callback_timeout"] = "0.05";
   ASSERT_EQ(host->initialize(), RTC::RTC_OK);
   HangingComponent* guest = make("Guest1");
-  ASSERT_EQ(guest->initialize(), RTC::RTC_OK);
   RTC::ExecutionContext_var context = first_context(*host);
-  RTC::RTObject_var reference = guest->getObjRef();
-  ASSERT_EQ(context->add_component(reference), RTC::RTC_OK);
-  guest->activate(1000);
-  ASSERT_TRUE(gate.wait_for_visitors());
+  ASSERT_NO_FATAL_FAILURE(hang_in(context, *guest));
+  const RTC::RTObject_var reference = guest->getObjRef();
   EXPECT_EQ(context->remove_component(reference), RTC::RTC_OK);
   EXPECT_EQ(context->remove_component(reference), RTC::BAD_PARAMETER);
   EXPECT_TRUE(lines.speak_of("Guest1", "onExecute"));
@@ -125,12 +126,8 @@ TEST_F(HangingCallbackTest, the_owner_of_a_context_in_which_another_hangs_is_fre
   ASSERT_EQ(host->initialize(), RTC::RTC_OK);
   ASSERT_EQ(host->activate(0), RTC::RTC_OK);
   HangingComponent* guest = make("Guest2");
-  ASSERT_EQ(guest->initialize(), RTC::RTC_OK);
   RTC::ExecutionContext_var context = first_context(*host);
-  RTC::RTObject_var reference = guest->getObjRef();
-  ASSERT_EQ(context->add_component(reference), RTC::RTC_OK);
-  guest->activate(1000);
-  ASSERT_TRUE(gate.wait_for_visitors());
+  ASSERT_NO_FATAL_FAILURE(hang_in(context, *guest));
   EXPECT_EQ(host->exit(), RTC::RTC_OK);
   EXPECT_FALSE(RTC::RuntimeAccess::is_held_by_callback(*host));
   EXPECT_EQ(host->count("onFinalize"), 1);

@@ -198,7 +198,7 @@ def same_state():
 def faulty():
     # What a component of others does wrong is told by its name, and the run fails.
     with Run() as r:
-        for fault, why in (("fail@3", "Alien is Error"), ("throw@3", "Alien is Error"), ("die@3", "process of Alien"), ("hang@3", "Alien: did not finish its tick")):
+        for fault, why in (("fail@3", "Alien ended in the ERROR state"), ("throw@3", "Alien ended in the ERROR state"), ("die@3", "process of Alien"), ("hang@3", "Alien: did not finish its tick")):
             code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault", fault))
             assert code == 1 and why in err, (fault, code, err)
             if fault in ("fail@3", "throw@3"):
@@ -207,7 +207,7 @@ def faulty():
             if fault == "die@3":
                 assert "killed by signal 9" in err, err
         code, err, read, calls = r.run(start=r.start("--fault raise@3"))
-        assert code == 1 and re.search(r"Alien is Error \(onExecute at 0.2 s: .*UNKNOWN.*; ValueError: no scan\)", err), (code, err)
+        assert code == 1 and re.search(r"Alien ended in the ERROR state \(onExecute at 0.2 s: .*UNKNOWN.*; ValueError: no scan\)", err), (code, err)
         # Who is stopped is named.
         for fault in ("--fault stop@3", "--stop-at 3"):
             code, err, read, calls = r.run("--hang-timeout", "2", start=r.start(fault))

@@ -128,7 +128,7 @@ void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& r
   if (options_.strict) {
     const auto found = base::join(chances, "; ");
     result.verdicts.push_back(
-        {.expectation = "nothing depends on chance", .problem = found, .failure = found.empty() ? "" : "nondeterministic: " + found});
+        {.expectation = "no nondeterministic event", .problem = found, .failure = found.empty() ? "" : "nondeterministic: " + found});
   } else {
     for (const auto& chance : chances) result.notes.push_back("nondeterministic: " + chance);
   }
@@ -152,7 +152,8 @@ void RunJudge::check_states(RunResult& result) const {
     if (hooks_.script && hooks_.script->excuses(component)) continue;
     if (is_judged || (state != "Error" && state != "gone")) continue;
     if (first.empty()) first = component;
-    problem += (problem.empty() ? "" : ", ") + component + " is " + state + why_error(component);
+    problem +=
+        (problem.empty() ? "" : ", ") + component + (state == "Error" ? " ended in the ERROR state" : " exited") + why_error(component);
   }
   result.verdicts.push_back({.expectation = "no component ends in an error",
                              .problem = problem,

@@ -24,10 +24,9 @@
 #include "run/run_recorder.h"
 #include "run/run_script.h"
 #include "run/run_simulator.h"
+#include "run/run_wiring.h"
 #include "run/stepping.h"
 #include "run/stopped_process.h"
-#include "run/time_members.h"
-#include "system/remote.h"
 #include "system/reporter.h"
 #include "system/saved_system.h"
 
@@ -36,12 +35,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
-
-constexpr auto call_timeout = 5s;
-
-bool is_among(const std::vector<LockstepParticipant>& participants, const std::string& name) {
-  return std::ranges::any_of(participants, [&](const auto& one) { return one.name == name; });
-}
 
 // Everything of one run. Its end takes the processes down, the components before the simulator before the naming service.
 class Run final : public RunningSystem {
@@ -134,7 +127,7 @@ class Run final : public RunningSystem {
     return refused(RunResult::Refusal::expectations, judge_.check_models(has_spawner || !foreign_.empty() || hooks_.script != nullptr));
   }
 
-  Result<void> check_values() { return refused(RunResult::Refusal::expectations, judge_.check_values(*session_)); }
+  Result<void> check_values() { return refused(RunResult::Refusal::expectations, judge_.check_values(wiring_.session())); }
 
   Result<void> refused(RunResult::Refusal refusal, Result<void> checked) {
     if (!checked && !is_interrupted()) result_.refusal = refusal;
@@ -145,7 +138,6 @@ class Run final : public RunningSystem {
 
   using Seconds = std::chrono::duration<double>;
   Seconds start_limit() const { return Seconds(options_.start_timeout_s); }
-  std::chrono::milliseconds start_timeout() const { return std::chrono::duration_cast<std::chrono::milliseconds>(start_limit()); }
 
   // A problem that has a reason: what needs the naming service cannot be found without it.
   std::string with_naming(const std::string& problem) {
@@ -291,50 +283,14 @@ class Run final : public RunningSystem {
                 (why.empty() ? foreign_.about(missing) : why));
   }
 
-  // The profile as it is for this run: the simulator has an id of its own. Who joins or is activated may hang in it.
-  Result<void> wire() {
-    const OnInterrupt early([this] { foreign_.kill(), hosts_.kill(); });
-    for (auto& component : system_.components) {
-      for (auto& set : component.configuration_sets) {
-        if (set.is_hidden()) continue;
-        for (auto& [key, value] : set.values) {
-          if (key == "server_id") value = simulator_.id();
-        }
-      }
-    }
-    const auto file = place_.file("system.xml");
-    const auto links = foreign_.set_links(system_);
-    result_.notes.insert(result_.notes.end(), links.begin(), links.end());
-    if (const auto written = write_system(system_, file); !written) return written;
-    session_.emplace(orb_, naming_.address(), call_timeout, start_timeout());
-    if (const auto wired = check("wired and activated", load(*session_, system_)); !wired) return wired;
-    if (!foreign_.empty()) {
-      if (const auto joined = foreign_.join(*session_, system_, start_timeout()); !joined) return joined;
-      if (const auto written = write_system(system_, file); !written) return written;
-    }
-    if (const auto started = check("wired and activated", start(*session_, system_)); !started) return started;
-    return wait_for_participants();
-  }
-
-  // Reports warnings and failures. The first failure is the run's problem. A driver reports failures itself.
-  Result<void> check(const std::string& goal, const Changes& changes) {
-    for (const auto& warning : changes.warnings) reporter_.warn(warning);
-    if (changes.ok()) return {};
-    for (const auto& error : changes.errors) {
-      if (!hooks_.driver) reporter_.warn(error.message);
-    }
-    return fail("system " + options_.system + ": could not be " + goal + ": " + changes.errors.front().message);
-  }
+  Result<void> wire() { return wiring_.wire(result_.notes); }
 
   // Returns when lock step does not wait for its contexts any more.
   Result<void> kill_host(const std::string& instance) {
     const auto members = hosts_.kill(instance);
     if (!members) return members.error();
     ports_.forget(instances_of(*members));
-    return wait_until("end of the host of " + names_of(*members), [&] {
-      const auto there = simulator_.participants();
-      return std::ranges::none_of(*members, [&](const auto* member) { return is_among(there, member->instance); });
-    });
+    return wait_until("end of the host of " + names_of(*members), [&] { return !wiring_.has_participant_of(*members); });
   }
 
   Result<void> restart_host(const std::string& instance) {
@@ -342,79 +298,14 @@ class Run final : public RunningSystem {
     if (!members) return members.error();
     const auto back = wait_until("components of the host of " + instance, [&] {
       return std::ranges::all_of(*members, [&](const auto* member) {
-        const auto view = session_->component(member->instance + ".rtc", {.contexts = true});
+        const auto view = wiring_.session().component(member->instance + ".rtc", {.contexts = true});
         return view.ok() && view->problem.empty();
       });
     });
     if (!back) return back;
-    if (const auto wired = wire_again(*members); !wired) return wired;
-    if (const auto heard = ports_.listen_again(orb_, *session_, instances_of(*members)); !heard) return heard;
+    if (const auto wired = wiring_.wire_again(*members); !wired) return wired;
+    if (const auto heard = ports_.listen_again(orb_, wiring_.session(), instances_of(*members)); !heard) return heard;
     return recorder_.look_again(wait());
-  }
-
-  // Who is there is known before it cannot be asked.
-  void set_naming(bool is_there) {
-    auto names = is_there ? Result<NamingTree>(Error{}) : session_->tree();
-    names_ = names ? std::optional(std::move(*names)) : std::nullopt;
-    naming_.set_running(is_there);
-  }
-
-  Result<ComponentView> component(const std::string& instance, Detail detail) {
-    if (!names_) return session_->component(instance + ".rtc", detail);
-    const auto entry = names_->find_component({false, {instance + ".rtc"}, ""});
-    if (!entry) return entry.error();
-    const CallLimit limited(call_timeout);
-    auto view = read_component(**entry, detail);
-    return view.problem.empty() ? Result<ComponentView>(std::move(view)) : Error{"component " + instance + " " + view.problem};
-  }
-
-  // Connections that a dead process has left behind are made again, the others stand. Who is still away is left out.
-  Result<void> wire_again(const RunHosts::Members& members) {
-    const auto is_member = [&](const SavedComponent& component) { return std::ranges::find(members, &component) != members.end(); };
-    auto all = system_;
-    auto started = system_;
-    for (std::size_t i = 0; i < system_.components.size(); ++i) {
-      if (!is_member(system_.components[i])) all.components[i].configuration_sets.clear();
-      for (auto& context : all.components[i].contexts) context.state.clear();
-    }
-    std::erase_if(started.components, [&](const SavedComponent& component) {
-      return std::ranges::none_of(members, [&](const auto* member) { return member->instance == component.instance; });
-    });
-    std::erase_if(started.start_up, [&](const SavedTurn& turn) { return started.component(turn.instance) == nullptr; });
-    std::erase_if(all.components, [&](const SavedComponent& component) { return hosts_.is_killed(component.instance); });
-    const auto is_away = [&](const SavedTarget& end) { return hosts_.is_killed(end.instance); };
-    std::erase_if(all.connectors, [&](const SavedConnector& one) { return is_away(one.source) || is_away(one.target); });
-    if (const auto wired = check("wired and activated again", load(*session_, all)); !wired) return wired;
-    if (const auto begun = check("wired and activated again", start(*session_, started)); !begun) return begun;
-    return wait_for_participants();
-  }
-
-  // Every context on simulated time takes part before the first step, or the run would not be the same each time.
-  Result<void> wait_for_participants() {
-    auto expected = foreign_.names();
-    for (const auto& component : system_.components) {
-      if (!hosts_.has(component.instance)) continue;  // killed by a script
-      const auto view = session_->component(component.instance + ".rtc", {.contexts = true});
-      if (!view) return view.error();
-      for (const auto& context : view->contexts) {
-        if (context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext") {
-          expected.push_back(component.instance);
-          break;
-        }
-      }
-    }
-    std::string missing;
-    const auto waited = wait_until("simulated time", [&] {
-      const auto there = simulator_.participants();
-      missing.clear();
-      for (const auto& name : expected) {
-        if (!is_among(there, name)) missing = name;
-      }
-      return missing.empty();
-    });
-    if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
-    return fail("component " + missing + ": does not take part in simulated time after " + base::format_number(options_.start_timeout_s) +
-                " s");
   }
 
   // What can be seen only while everything still runs.
@@ -424,7 +315,7 @@ class Run final : public RunningSystem {
     if (const auto answer = naming_.ask(); !answer) return answer;
     auto chances = links_.chances();
     chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
-    return judge_.look(*session_, chances, result_);
+    return judge_.look(wiring_.session(), chances, result_);
   }
 
   Result<void> run_commands() {
@@ -457,21 +348,23 @@ class Run final : public RunningSystem {
   Result<void> listen() {
     if (hashes_.is_wanted() || tells_of_chance(options_)) {
       const auto part = hashes_.is_wanted() ? hashes_.links_part() : std::string();
-      const auto silent = links_.listen(orb_, *session_, system_, foreign_, simulator_.id(), part);
+      const auto silent = links_.listen(orb_, wiring_.session(), system_, foreign_, simulator_.id(), part);
       if (!silent) return silent.error();
       result_.notes.insert(result_.notes.end(), silent->begin(), silent->end());
     }
-    if (const auto listening = ports_.listen(orb_, *session_, judge_.expectations()); !listening || !hooks_.script) return listening;
-    return ports_.listen(orb_, *session_, hooks_.script->watched());
+    if (const auto listening = ports_.listen(orb_, wiring_.session(), judge_.expectations()); !listening || !hooks_.script)
+      return listening;
+    return ports_.listen(orb_, wiring_.session(), hooks_.script->watched());
   }
 
   Result<void> begin_script() {
     if (!hooks_.script) return {};
-    scene_.emplace(
-        RunScene{simulator_, place_, naming_.address(), system_, ports_, [this](const auto& instance) { return kill_host(instance); },
-                 [this](const auto& instance) { return restart_host(instance); },
-                 [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { set_naming(is_there); },
-                 [this](const auto& instance, Detail detail) { return component(instance, detail); }, session_->transition_timeout()});
+    scene_.emplace(RunScene{
+        simulator_, place_, naming_.address(), system_, ports_, [this](const auto& instance) { return kill_host(instance); },
+        [this](const auto& instance) { return restart_host(instance); },
+        [this](const auto& instance) { return hosts_.is_killed(instance); }, [this](bool is_there) { wiring_.set_naming(is_there); },
+        [this](const auto& instance, Detail detail) { return wiring_.component(instance, detail); },
+        wiring_.session().transition_timeout()});
     return hooks_.script->begin(*scene_);
   }
 
@@ -512,9 +405,9 @@ class Run final : public RunningSystem {
   // A member of others that is told to end gets no onDeactivated, as our own do. Where a tick hangs, or a process has gone, nobody could
   // be deactivated.
   void rest_foreign() {
-    if (foreign_.empty() || !session_ || is_interrupted() || !late_participants(simulator_).empty() || !naming_.ask()) return;
+    if (foreign_.empty() || !wiring_.has_session() || is_interrupted() || !late_participants(simulator_).empty() || !naming_.ask()) return;
     if (!lost_.check()) return;
-    for (const auto& problem : foreign_.rest(*session_, system_)) reporter_.warn(problem);
+    for (const auto& problem : foreign_.rest(wiring_.session(), system_)) reporter_.warn(problem);
   }
 
   // Ends components first, so that they can say good-bye to the naming service.
@@ -548,11 +441,12 @@ class Run final : public RunningSystem {
   Simulator& simulator_;
   RunHosts hosts_;
   ForeignProcesses foreign_;
-  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return session_.has_value(); },
-                    [this](const auto& instance) { return component(instance, {}).ok(); }};
+  LostMembers lost_{foreign_, hosts_, simulator_, [this] { return wiring_.has_session(); },
+                    [this](const auto& instance) { return wiring_.component(instance, {}).ok(); }};
   RunRecorder recorder_{place_};
-  std::optional<Session> session_;
-  std::optional<NamingTree> names_;  // while the naming service is stopped by a script
+  RunWiring wiring_{{orb_, options_, hooks_, reporter_, place_, naming_, simulator_, hosts_, foreign_, system_}, wait(), [this] {
+                      return check_children();
+                    }};
   RunJudge judge_{options_, hooks_, place_, system_, simulator_, hosts_, foreign_};
   PortValues ports_;
   ForeignLinks links_;

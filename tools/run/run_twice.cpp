@@ -9,7 +9,7 @@
 namespace editor {
 namespace {
 
-constexpr const char* verdict_name = "a second run is the same";
+constexpr const char* verdict_name = "the run is repeatable";
 
 Verdict compare(const std::string& first, const std::string& second) {
   const auto comparison = base::compare_hash_logs(first, second);

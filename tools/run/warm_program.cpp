@@ -104,8 +104,8 @@ Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
   int pid = 0;
   const int answers = poll(&event, 1, answer_limit);
   if (answers == 0 && !is_silent_->exchange(true))
-    reporter_->warn(std::filesystem::path(path_).filename().string() + " --warm: has not answered for " +
-                    std::to_string(answer_limit / 1000) + " s; what it should make is started without it");
+    reporter_->warn(std::filesystem::path(path_).filename().string() + ": the prefork server did not respond within " +
+                    std::to_string(answer_limit / 1000) + " s; processes are started directly");
   if (answers <= 0 || read(watched.number, &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
   ChildProcess made(pid, collects ? output.release() : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
   made.watched_ = watched.release();

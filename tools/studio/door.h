@@ -35,7 +35,7 @@ struct Caller {
 
 class Door {
  public:
-  // `hosts`: names besides localhost and numeric addresses that browsers may know us by; `origins`: of pages of others that may connect.
+  // `hosts`: names besides localhost and numeric addresses that browsers may know us by; `origins`: of third-party pages that may connect.
   Door(std::string token, std::vector<std::string> hosts, std::vector<std::string> origins);
 
   // A secret of 128 random bits in hexadecimal digits.

@@ -10,7 +10,7 @@
 namespace studio {
 namespace {
 
-constexpr std::chrono::milliseconds patience{500};
+constexpr std::chrono::milliseconds timeout{500};
 constexpr std::size_t most_handles = 256;
 
 // In the order of RTMSIM_JOINT_POSITION to RTMSIM_JOINT_BRAKE.
@@ -80,7 +80,7 @@ void Drives::release_all(std::uint64_t viewer) {
 
 void Drives::tend() {
   const auto now = Clock::now();
-  std::erase_if(handles_, [&](const auto& entry) { return now - entry.second.renewed > patience; });
+  std::erase_if(handles_, [&](const auto& entry) { return now - entry.second.renewed > timeout; });
 }
 
 }  // namespace studio

@@ -40,7 +40,7 @@ Json files_in(const fs::path& folder, const std::string& extension) {
        at.increment(problem)) {
     if (++looked_at > most_entries) break;
     if (at.depth() >= deepest_folder || at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
-    std::error_code ignored;  // it has gone meanwhile
+    std::error_code ignored;  // it was deleted meanwhile
     if (at->path().extension() != extension || !at->is_regular_file(ignored)) continue;
     const auto size = at->file_size(ignored);
     const auto time = at->last_write_time(ignored);
@@ -185,7 +185,7 @@ void Hall::open(const Viewer& viewer, const Request& request) {
   if (!reading_->give(work)) answer(viewer.id(), request.id, Error{"too much is being done already; try again"}, command);
 }
 
-// The answer comes before what is new, so that whoever has asked knows.
+// The answer comes before the news, so that the client that asked can tell them apart.
 void Hall::has_read(std::uint64_t viewer, std::int64_t id, const std::string& name, const Result<Facts>& facts) {
   const auto command = base::shell_line(base::command_words({"rtm-studio"}, {name}));
   if (!facts) return answer(viewer, id, facts.error(), command);

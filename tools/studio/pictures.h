@@ -17,7 +17,7 @@ namespace studio {
 
 struct PictureOrder {
   std::string iface;
-  double hz = 10;  // at most so many a second of the wall clock
+  double hz = 10;  // maximum rate [Hz of wall-clock time]
 };
 
 class Pictures {

@@ -14,7 +14,7 @@ struct SeriesOrder {
   std::string topic;
   std::vector<std::string> members;
   std::chrono::nanoseconds from{0}, to{0};
-  std::size_t points = 0;  // when there are more samples, only so many are given, evenly in time
+  std::size_t points = 0;  // maximum number of samples returned, evenly in time
 };
 
 // {"t":[s,...], "v":[[m1,m2,...],...], "until":s, "left_out":N}: `until` is where it stopped, since it takes no more than ten seconds;

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto shortest_pause = 500ms;
-constexpr int share = 4;  // of its time it looks at most one in so many: large systems are asked less often
+constexpr int share = 4;  // it spends at most this fraction, 1/N, of its time on queries: large systems are asked less often
 
 Json nothing(const std::string& problem) {
   return {{"op", "system"},           {"revision", 0}, {"problem", problem}, {"components", Json::array()}, {"connections", Json::array()},

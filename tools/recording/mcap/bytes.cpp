@@ -1,5 +1,8 @@
 #include "recording/mcap/bytes.h"
 
+#include <tuple>
+#include <type_traits>
+
 namespace mcap {
 
 namespace {
@@ -24,12 +27,6 @@ class Record {
   std::size_t start_ = 0;
 };
 
-template <class Value>
-std::optional<Value> if_whole(const Octets& in, Value value) {
-  if (!in.ok()) return std::nullopt;
-  return value;
-}
-
 template <class Pairs>
 void put_offsets(std::string& out, const Pairs& numbers) {
   put(out, static_cast<std::uint32_t>(numbers.size() * 10));
@@ -40,16 +37,70 @@ void put_offsets(std::string& out, const Pairs& numbers) {
 }
 
 template <class Pairs>
-Pairs take_offsets(Octets& in) {
-  Pairs numbers;
+void take_offsets(Octets& in, Pairs& numbers) {
   Octets part = in.part(in.number<std::uint32_t>());
   while (!part.is_empty()) {
     const auto id = part.number<std::uint16_t>();
     const auto number = part.number<std::uint64_t>();
     if (part.ok()) numbers.insert(numbers.end(), {id, number});
   }
-  return numbers;
 }
+
+template <class Member>
+void put_member(std::string& out, const Member& member) {
+  if constexpr (std::is_arithmetic_v<Member> || std::is_same_v<Member, Time>)
+    put(out, member);
+  else if constexpr (std::is_same_v<Member, std::string>)
+    put_text(out, member);
+  else if constexpr (std::is_same_v<Member, Texts>)
+    put_texts(out, member);
+  else
+    put_offsets(out, member);
+}
+
+template <class Member>
+void take_member(Octets& in, Member& member) {
+  if constexpr (std::is_arithmetic_v<Member>)
+    member = in.number<Member>();
+  else if constexpr (std::is_same_v<Member, Time>)
+    member = in.time();
+  else if constexpr (std::is_same_v<Member, std::string>)
+    member = in.text();
+  else if constexpr (std::is_same_v<Member, Texts>)
+    member = in.texts();
+  else
+    take_offsets(in, member);
+}
+
+// `members` returns those of a record in the order of the format.
+template <class Value, class Members>
+void put_members(std::string& out, Opcode opcode, const Value& value, Members members) {
+  const Record record(out, opcode);
+  std::apply([&](const auto&... each) { (put_member(out, each), ...); }, members(value));
+}
+
+template <class Value, class Members>
+std::optional<Value> take_members(std::string_view content, Members members) {
+  Octets in(content);
+  Value value;
+  std::apply([&](auto&... each) { (take_member(in, each), ...); }, members(value));
+  if (!in.ok()) return std::nullopt;
+  return value;
+}
+
+constexpr auto of_schema = [](auto& one) { return std::tie(one.id, one.name, one.encoding, one.data); };
+constexpr auto of_channel = [](auto& one) { return std::tie(one.id, one.schema, one.topic, one.encoding, one.metadata); };
+constexpr auto of_chunk_index = [](auto& one) {
+  return std::tie(one.first, one.last, one.start, one.length, one.index_offsets, one.index_length, one.compression, one.compressed,
+                  one.uncompressed);
+};
+constexpr auto of_attachment_index = [](auto& one) {
+  return std::tie(one.start, one.length, one.log_time, one.create_time, one.size, one.name, one.media_type);
+};
+constexpr auto of_metadata_index = [](auto& one) { return std::tie(one.start, one.length, one.name); };
+constexpr auto of_statistics = [](auto& one) {
+  return std::tie(one.messages, one.schemas, one.channels, one.attachments, one.metadata, one.chunks, one.first, one.last, one.messages_of);
+};
 
 }  // namespace
 
@@ -81,43 +132,11 @@ Texts Octets::texts() {
   return texts;
 }
 
-void put_schema(std::string& out, const Schema& schema) {
-  const Record record(out, Opcode::schema);
-  put(out, schema.id);
-  put_text(out, schema.name);
-  put_text(out, schema.encoding);
-  put_text(out, schema.data);
-}
+void put_schema(std::string& out, const Schema& schema) { put_members(out, Opcode::schema, schema, of_schema); }
+std::optional<Schema> take_schema(std::string_view content) { return take_members<Schema>(content, of_schema); }
 
-std::optional<Schema> take_schema(std::string_view content) {
-  Octets in(content);
-  Schema schema;
-  schema.id = in.number<std::uint16_t>();
-  schema.name = in.text();
-  schema.encoding = in.text();
-  schema.data = in.text();
-  return if_whole(in, std::move(schema));
-}
-
-void put_channel(std::string& out, const Channel& channel) {
-  const Record record(out, Opcode::channel);
-  put(out, channel.id);
-  put(out, channel.schema);
-  put_text(out, channel.topic);
-  put_text(out, channel.encoding);
-  put_texts(out, channel.metadata);
-}
-
-std::optional<Channel> take_channel(std::string_view content) {
-  Octets in(content);
-  Channel channel;
-  channel.id = in.number<std::uint16_t>();
-  channel.schema = in.number<std::uint16_t>();
-  channel.topic = in.text();
-  channel.encoding = in.text();
-  channel.metadata = in.texts();
-  return if_whole(in, std::move(channel));
-}
+void put_channel(std::string& out, const Channel& channel) { put_members(out, Opcode::channel, channel, of_channel); }
+std::optional<Channel> take_channel(std::string_view content) { return take_members<Channel>(content, of_channel); }
 
 std::optional<Message> take_message(std::string_view content) {
   Octets in(content);
@@ -127,36 +146,11 @@ std::optional<Message> take_message(std::string_view content) {
   message.log_time = in.time();
   message.publish_time = in.time();
   message.data = in.rest();
-  return if_whole(in, message);
+  return in.ok() ? std::optional(message) : std::nullopt;
 }
 
-void put_chunk_index(std::string& out, const ChunkEntry& entry) {
-  const Record record(out, Opcode::chunk_index);
-  put(out, entry.first);
-  put(out, entry.last);
-  put(out, entry.start);
-  put(out, entry.length);
-  put_offsets(out, entry.index_offsets);
-  put(out, entry.index_length);
-  put_text(out, entry.compression);
-  put(out, entry.compressed);
-  put(out, entry.uncompressed);
-}
-
-std::optional<ChunkEntry> take_chunk_index(std::string_view content) {
-  Octets in(content);
-  ChunkEntry entry;
-  entry.first = in.time();
-  entry.last = in.time();
-  entry.start = in.number<std::uint64_t>();
-  entry.length = in.number<std::uint64_t>();
-  entry.index_offsets = take_offsets<decltype(entry.index_offsets)>(in);
-  entry.index_length = in.number<std::uint64_t>();
-  entry.compression = in.text();
-  entry.compressed = in.number<std::uint64_t>();
-  entry.uncompressed = in.number<std::uint64_t>();
-  return if_whole(in, std::move(entry));
-}
+void put_chunk_index(std::string& out, const ChunkEntry& entry) { put_members(out, Opcode::chunk_index, entry, of_chunk_index); }
+std::optional<ChunkEntry> take_chunk_index(std::string_view content) { return take_members<ChunkEntry>(content, of_chunk_index); }
 
 std::optional<ChunkHead> take_chunk(std::string_view content) {
   Octets in(content);
@@ -167,75 +161,24 @@ std::optional<ChunkHead> take_chunk(std::string_view content) {
   head.crc = in.number<std::uint32_t>();
   head.compression = in.text();
   head.records = in.long_text();
-  return if_whole(in, head);
+  return in.ok() ? std::optional(head) : std::nullopt;
 }
 
 void put_attachment_index(std::string& out, const AttachmentPlace& place) {
-  const Record record(out, Opcode::attachment_index);
-  put(out, place.start);
-  put(out, place.length);
-  put(out, place.log_time);
-  put(out, place.create_time);
-  put(out, place.size);
-  put_text(out, place.name);
-  put_text(out, place.media_type);
+  put_members(out, Opcode::attachment_index, place, of_attachment_index);
 }
-
 std::optional<AttachmentPlace> take_attachment_index(std::string_view content) {
-  Octets in(content);
-  AttachmentPlace place;
-  place.start = in.number<std::uint64_t>();
-  place.length = in.number<std::uint64_t>();
-  place.log_time = in.time();
-  place.create_time = in.time();
-  place.size = in.number<std::uint64_t>();
-  place.name = in.text();
-  place.media_type = in.text();
-  return if_whole(in, std::move(place));
+  return take_members<AttachmentPlace>(content, of_attachment_index);
 }
 
 void put_metadata_index(std::string& out, const MetadataPlace& place) {
-  const Record record(out, Opcode::metadata_index);
-  put(out, place.start);
-  put(out, place.length);
-  put_text(out, place.name);
+  put_members(out, Opcode::metadata_index, place, of_metadata_index);
 }
-
 std::optional<MetadataPlace> take_metadata_index(std::string_view content) {
-  Octets in(content);
-  MetadataPlace place;
-  place.start = in.number<std::uint64_t>();
-  place.length = in.number<std::uint64_t>();
-  place.name = in.text();
-  return if_whole(in, std::move(place));
+  return take_members<MetadataPlace>(content, of_metadata_index);
 }
 
-void put_statistics(std::string& out, const Statistics& statistics) {
-  const Record record(out, Opcode::statistics);
-  put(out, statistics.messages);
-  put(out, statistics.schemas);
-  put(out, statistics.channels);
-  put(out, statistics.attachments);
-  put(out, statistics.metadata);
-  put(out, statistics.chunks);
-  put(out, statistics.first);
-  put(out, statistics.last);
-  put_offsets(out, statistics.messages_of);
-}
-
-std::optional<Statistics> take_statistics(std::string_view content) {
-  Octets in(content);
-  Statistics statistics;
-  statistics.messages = in.number<std::uint64_t>();
-  statistics.schemas = in.number<std::uint16_t>();
-  statistics.channels = in.number<std::uint32_t>();
-  statistics.attachments = in.number<std::uint32_t>();
-  statistics.metadata = in.number<std::uint32_t>();
-  statistics.chunks = in.number<std::uint32_t>();
-  statistics.first = in.time();
-  statistics.last = in.time();
-  statistics.messages_of = take_offsets<decltype(statistics.messages_of)>(in);
-  return if_whole(in, std::move(statistics));
-}
+void put_statistics(std::string& out, const Statistics& statistics) { put_members(out, Opcode::statistics, statistics, of_statistics); }
+std::optional<Statistics> take_statistics(std::string_view content) { return take_members<Statistics>(content, of_statistics); }
 
 }  // namespace mcap

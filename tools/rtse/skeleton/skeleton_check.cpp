@@ -108,7 +108,7 @@ Result<void> check_parameters(const NewComponent& component, Members& members) {
     if (const auto ok = members.add(parameter.name, "parameter " + base::in_quotes(parameter.name)); !ok) return ok;
     if (!is_type(parameter.type) || !is_parameter_type(parameter.type)) {
       return Error{what + "type " + base::in_quotes(parameter.type) +
-                   " is none that a parameter can have, expected int, double, bool, string, std::vector<double> or the like"};
+                   " is not allowed for a parameter, expected int, double, bool, string, std::vector<double> or the like"};
     }
     auto problem = type_problem(parameter.type, parameter.default_value);
     if (problem.empty()) problem = constraint_problem(parameter.constraint, parameter.default_value);
@@ -153,7 +153,7 @@ Result<void> check(const NewComponent& component) {
     return Error{"rate " + base::format_number(component.rate) + ": must be above 0 and at most 100000 Hz"};
   for (const auto& action : component.actions) {
     if (std::ranges::find(further_actions(), action) == further_actions().end())
-      return Error{"action " + base::in_quotes(action) + ": there is none, expected one of " + base::join(further_actions(), ", ")};
+      return Error{"action " + base::in_quotes(action) + ": unknown, expected one of " + base::join(further_actions(), ", ")};
   }
   Members members;
   std::set<std::string> data_ports;

@@ -31,7 +31,7 @@ export class Contacts {
     try {
       this.show((await wire.request('contacts', { model })).result.contacts ?? []);
     } catch {
-      this.show([]); // the model or the simulator has gone
+      this.show([]); // the model was deleted, or the simulator exited
     } finally {
       this.is_asked = false;
     }

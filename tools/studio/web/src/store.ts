@@ -182,7 +182,7 @@ export async function refresh_details(path: string): Promise<void> {
     answered_details.set(path, number);
     store.details.set(path, result);
     changed('details');
-  } catch { /* it has gone meanwhile; the next event of the system says so */ }
+  } catch { /* it exited meanwhile; the next event of the system says so */ }
 }
 
 // Others change parameters, too, and nobody tells of it: of the component that is looked at they are asked for.
