@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "asset-reader/dds.h"
+#include "asset-reader/elevation_file.h"
 #include "asset-reader/jobs.h"
 #include "render/mesh_arrays.h"
 #include "world/triangle_arrays.h"
@@ -94,10 +95,11 @@ base::Result<Image> decode_pgm(std::span<const std::uint8_t> bytes) {
 
 // Of a size as large as the picture, but for what most_heights_a_side leaves out. The corners stay where they are.
 base::Result<HeightLevels> decode_levels(std::span<const std::uint8_t> bytes) {
+  if (is_tiff(bytes)) return decode_elevations(bytes);
   PngReader reader;
   png_image& image = reader.image;
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0)
-    return bad(fmt::format("{} (expected a PNG image)", image.message));
+    return bad(fmt::format("{} (expected a PNG image or a GeoTIFF)", image.message));
   if (image.width < 2 || image.height < 2 || image.width > largest_height_map || image.height > largest_height_map)
     return bad(fmt::format("size {}x{} (expected 2..{})", image.width, image.height, largest_height_map));
   // 16-bit images stay linear; 8-bit ones would pass a gamma curve in linear format.
@@ -108,7 +110,7 @@ base::Result<HeightLevels> decode_levels(std::span<const std::uint8_t> bytes) {
   if (png_image_finish_read(&image, nullptr, is_deep ? static_cast<void*>(deep.data()) : flat.data(), 0, nullptr) == 0)
     return bad(image.message);
   constexpr std::uint32_t most = most_heights_a_side;
-  HeightLevels map{std::min(image.width, most), std::min(image.height, most), is_deep ? 65535U : 255U, {}};
+  HeightLevels map{std::min(image.width, most), std::min(image.height, most), 0, is_deep ? 65535.0 : 255.0, {}};
   map.levels.reserve(std::size_t{map.columns} * map.rows);
   for (std::size_t row = 0; row < map.rows; ++row) {
     for (std::size_t column = 0; column < map.columns; ++column) {

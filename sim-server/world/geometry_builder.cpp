@@ -1,5 +1,9 @@
 // <geometry> -> GeometryDef: all kinds of SDFormat.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "base/text.h"
@@ -51,6 +55,16 @@ HeightmapShape build_heightmap(pugi::xml_node node) {
   return shape;
 }
 
+// Those of a file of elevations begin where they are on the Earth, perhaps far above the models.
+void note_elevations(pugi::xml_node geometry, const HeightmapShape& shape, const HeightGrid& grid, BuildContext& context) {
+  const std::string kind = base::to_lower(std::filesystem::path(shape.path).extension().string());
+  const float lowest = *std::min_element(grid.heights.begin(), grid.heights.end());
+  if ((kind != ".tif" && kind != ".tiff") || lowest == 0 || std::string_view(geometry.parent().name()) != "collision") return;
+  context.complaints.note(geometry.child("heightmap"),
+                          fmt::format("the elevations of {} begin at {:g} m: the lowest place of {} is that far above its <pos>",
+                                      shape.path, lowest, describe_in_context(geometry.parent())));
+}
+
 // A height map that cannot be read becomes a flat ground: all that stands on it would else fall for ever.
 GeometryDef build_ground(pugi::xml_node geometry, BuildContext& context) {
   const pugi::xml_node node = geometry.child("heightmap");
@@ -58,7 +72,10 @@ GeometryDef build_ground(pugi::xml_node geometry, BuildContext& context) {
   const PlaneShape flat{{0, 0, 1}, shape.size.head<2>()};
   if (shape.path == missing_file) return flat;  // it has had its line
   const auto grid = context.triangles.heights(shape);
-  if (grid) return shape;
+  if (grid) {
+    note_elevations(geometry, shape, **grid, context);
+    return shape;
+  }
   context.complaints.drop(node, grid.error().message + "; a flat ground is taken for " + describe_in_context(geometry.parent()));
   return flat;
 }

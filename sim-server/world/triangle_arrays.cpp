@@ -46,6 +46,7 @@ bool take_triangles(ArrayReader& in, TriangleMesh& mesh) {
 void put(ArrayWriter& out, const HeightLevels& map) {
   out.number(map.columns);
   out.number(map.rows);
+  out.number(map.lowest);
   out.number(map.highest);
   out.array(map.levels);
 }
@@ -53,13 +54,15 @@ void put(ArrayWriter& out, const HeightLevels& map) {
 bool take_levels(ArrayReader& in, HeightLevels& map) {
   map.columns = in.number<std::uint32_t>();
   map.rows = in.number<std::uint32_t>();
-  map.highest = in.number<std::uint32_t>();
+  map.lowest = in.number<double>();
+  map.highest = in.number<double>();
   constexpr std::uint64_t most = most_heights_a_side;
-  map.levels = in.array<std::uint16_t>(most * most);
+  map.levels = in.array<float>(most * most);
   const bool has_size = map.columns >= 2 && map.rows >= 2 && map.columns <= most && map.rows <= most;
-  if (!in.ok() || !has_size || map.levels.size() != std::size_t{map.columns} * map.rows || (map.highest != 255 && map.highest != 65535))
-    return false;
-  return true;
+  const bool has_range = map.lowest <= map.highest && std::max(-map.lowest, map.highest) <= largest_coordinate;
+  if (!in.ok() || !has_size || !has_range || map.levels.size() != std::size_t{map.columns} * map.rows) return false;
+  const auto low = static_cast<float>(map.lowest), high = static_cast<float>(map.highest);
+  return std::all_of(map.levels.begin(), map.levels.end(), [&](float level) { return low <= level && level <= high; });
 }
 
 }  // namespace sim

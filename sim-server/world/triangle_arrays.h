@@ -22,11 +22,11 @@ void put(ArrayWriter& out, const TriangleMesh& mesh);
 // False when an index is out of range, a corner is not finite or too far away, or there is no triangle.
 bool take_triangles(ArrayReader& in, TriangleMesh& mesh);
 
-// What a picture says of heights, before it has a size.
+// What a file says of heights, before it has a size: levels of grey, or elevations [m].
 struct HeightLevels {
   std::uint32_t columns = 0, rows = 0;
-  std::uint32_t highest = 255;  // 65535 for deep pictures
-  std::vector<std::uint16_t> levels;
+  double lowest = 0, highest = 255;  // that can be (black and white of a picture), or that the file has
+  std::vector<float> levels;         // row by row; between them
 };
 void put(ArrayWriter& out, const HeightLevels& map);
 bool take_levels(ArrayReader& in, HeightLevels& map);

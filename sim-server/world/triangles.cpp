@@ -172,8 +172,10 @@ base::Result<HeightGrid> read_heights(const HeightmapShape& shape) {
   const HeightLevels& map = **found.value;
   HeightGrid grid{static_cast<int>(map.columns), static_cast<int>(map.rows), shape.size.x(), shape.size.y(), {}};
   grid.heights.reserve(map.levels.size());
-  for (const std::uint16_t level : map.levels)
-    grid.heights.push_back(static_cast<float>(level / static_cast<double>(map.highest) * shape.size.z()));
+  // The lowest elevation stays what it is, as in gz-sim; a picture's is 0.
+  const double range = map.highest > map.lowest ? map.highest - map.lowest : 1;
+  for (const float level : map.levels)
+    grid.heights.push_back(static_cast<float>(map.lowest + (static_cast<double>(level) - map.lowest) / range * shape.size.z()));
   return grid;
 }
 

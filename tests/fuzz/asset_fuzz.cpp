@@ -122,7 +122,7 @@ bool run(const std::string& file, const Options& options, Count& count) {
     has_result = has_result || result.ok();
     return result.ok();
   };
-  if (extension == ".png" || extension == ".jpg" || extension == ".dds") {
+  if (extension == ".png" || extension == ".jpg" || extension == ".dds" || extension == ".tif") {
     const auto image = sim::read_image(file);
     if (look(image)) require(image.value().rgba.size() == image.value().size_bytes(), "a picture has not its size");
     look(sim::TriangleCache().heights({file, {1, 1, 1}, {0, 0, 0}, 1, {}, {}}));

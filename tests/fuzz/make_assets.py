@@ -26,6 +26,11 @@ def write(name, content):
 colors = png(8, 8, 8, 6, lambda y: bytes((32 * x, 32 * y, 128, 255 - 8 * x) [c] for x in range(8) for c in range(4)))
 write("colors.png", colors)
 write("deep.png", png(9, 9, 16, 0, lambda y: b"".join(struct.pack(">H", 700 * x * y) for x in range(9))))
+# Elevations: 9 x 9 floating-point numbers in one strip, with a mark for those without a value.
+tags = [(256, 3, 1, 9), (257, 3, 1, 9), (258, 3, 1, 32), (259, 3, 1, 1), (262, 3, 1, 1), (273, 4, 1, 300), (277, 3, 1, 1), (278, 3, 1, 9), (279, 4, 1, 324), (339, 3, 1, 3)]
+entries = b"".join(struct.pack("<HHII", *tag) for tag in tags) + struct.pack("<HHI4s", 42113, 2, 3, b"-1\0")
+write("elevations.tif", (struct.pack("<4sIH", b"II*\0", 8, len(tags) + 1) + entries + bytes(4)).ljust(300, b"\0")
+      + b"".join(struct.pack("<f", 100 + x * y if x != y else -1) for y in range(9) for x in range(9)))
 write("packed.dds", struct.pack("<4s7I44x", b"DDS ", 124, 0x1007, 8, 8, 8, 0, 0) + struct.pack("<8I", 32, 4, 0x31545844, 0, 0, 0, 0, 0)
       + struct.pack("<5I", 0x1000, 0, 0, 0, 0) + bytes(range(32)))
 # 16 x 16 pixels as libjpeg-turbo writes them: sequential with halved colours, and in scans that refine each other.
