@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint32_t no_data_tag = 42113;                   // of GDAL: a number as text
 constexpr std::uint64_t most_block = std::uint64_t{1} << 30U;  // [byte] of a strip or tile
 
-base::Error bad(std::string why) { return base::Error{std::move(why)}; }
+base::Error bad_tiff(std::string why) { return base::Error{std::move(why)}; }
 
 // What libtiff reads from, and the first that it complains of.
 struct Source {
@@ -76,33 +76,33 @@ Tiff open(Source& source) {
           TIFFClose};
 }
 
-struct Layout {
+struct TiffLayout {
   std::uint32_t width = 0, height = 0;
   std::uint16_t bands = 1, bits = 1, format = SAMPLEFORMAT_UINT;
   std::uint32_t block_width = 0, block_height = 0;  // of a tile, or of a strip
   bool has_tiles = false;
 };
 
-base::Result<Layout> layout_of(TIFF* file) {
-  Layout layout;
+base::Result<TiffLayout> layout_of(TIFF* file) {
+  TiffLayout layout;
   TIFFGetField(file, TIFFTAG_IMAGEWIDTH, &layout.width);
   TIFFGetField(file, TIFFTAG_IMAGELENGTH, &layout.height);
   TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLESPERPIXEL, &layout.bands);
   TIFFGetFieldDefaulted(file, TIFFTAG_BITSPERSAMPLE, &layout.bits);
   TIFFGetFieldDefaulted(file, TIFFTAG_SAMPLEFORMAT, &layout.format);
-  if (layout.bands != 1) return bad(fmt::format("{} bands (expected 1, of elevations)", layout.bands));
+  if (layout.bands != 1) return bad_tiff(fmt::format("{} bands (expected 1, of elevations)", layout.bands));
   constexpr std::uint32_t most = largest_height_map;
   if (layout.width < 2 || layout.height < 2 || layout.width > most || layout.height > most)
-    return bad(fmt::format("size {}x{} (expected 2..{})", layout.width, layout.height, most));
+    return bad_tiff(fmt::format("size {}x{} (expected 2..{})", layout.width, layout.height, most));
   const bool is_float = layout.format == SAMPLEFORMAT_IEEEFP;
   const bool is_whole = layout.format == SAMPLEFORMAT_UINT || layout.format == SAMPLEFORMAT_INT;
   const bool is_known = is_float ? layout.bits == 32 || layout.bits == 64 : layout.bits == 8 || layout.bits == 16 || layout.bits == 32;
   if ((!is_float && !is_whole) || !is_known)
-    return bad(fmt::format("{} of {} bits (expected whole numbers of 8, 16 or 32 bits, or floating-point numbers of 32 or 64)",
-                           is_float   ? "floating-point numbers"
-                           : is_whole ? "whole numbers"
-                                      : "numbers of another kind",
-                           layout.bits));
+    return bad_tiff(fmt::format("{} of {} bits (expected whole numbers of 8, 16 or 32 bits, or floating-point numbers of 32 or 64)",
+                                is_float   ? "floating-point numbers"
+                                : is_whole ? "whole numbers"
+                                           : "numbers of another kind",
+                                layout.bits));
   layout.has_tiles = TIFFIsTiled(file) != 0;
   if (layout.has_tiles) {
     TIFFGetField(file, TIFFTAG_TILEWIDTH, &layout.block_width);
@@ -113,7 +113,7 @@ base::Result<Layout> layout_of(TIFF* file) {
     layout.block_height = std::min(layout.block_height, layout.height);
   }
   const std::uint64_t bytes = std::uint64_t{layout.block_width} * layout.block_height * layout.bits / 8;
-  if (bytes == 0 || bytes > most_block) return bad(fmt::format("tiles of {}x{}", layout.block_width, layout.block_height));
+  if (bytes == 0 || bytes > most_block) return bad_tiff(fmt::format("tiles of {}x{}", layout.block_width, layout.block_height));
   return layout;
 }
 
@@ -124,7 +124,7 @@ double number_at(const std::uint8_t* at) {
   return static_cast<double>(value);
 }
 
-double sample(const Layout& layout, const std::uint8_t* at) {
+double sample(const TiffLayout& layout, const std::uint8_t* at) {
   if (layout.format == SAMPLEFORMAT_IEEEFP) return layout.bits == 32 ? number_at<float>(at) : number_at<double>(at);
   const bool has_sign = layout.format == SAMPLEFORMAT_INT;
   if (layout.bits == 8) return has_sign ? number_at<std::int8_t>(at) : number_at<std::uint8_t>(at);
@@ -133,7 +133,7 @@ double sample(const Layout& layout, const std::uint8_t* at) {
 }
 
 // All, row by row from the north; the reason otherwise.
-base::Result<std::vector<double>> samples(TIFF* file, const Layout& layout, const Source& source) {
+base::Result<std::vector<double>> samples(TIFF* file, const TiffLayout& layout, const Source& source) {
   std::vector<double> out(std::size_t{layout.width} * layout.height);
   const std::size_t each = layout.bits / 8U, row_bytes = layout.block_width * each;
   std::vector<std::uint8_t> block(row_bytes * layout.block_height);
@@ -145,7 +145,7 @@ base::Result<std::vector<double>> samples(TIFF* file, const Layout& layout, cons
       const auto wanted = static_cast<tmsize_t>(row_bytes * (layout.has_tiles ? layout.block_height : rows));
       const tmsize_t got = layout.has_tiles ? TIFFReadEncodedTile(file, TIFFComputeTile(file, left, top, 0, 0), block.data(), wanted)
                                             : TIFFReadEncodedStrip(file, TIFFComputeStrip(file, top, 0), block.data(), wanted);
-      if (got != wanted) return bad(source.fault.empty() ? "a TIFF that is cut off" : source.fault);
+      if (got != wanted) return bad_tiff(source.fault.empty() ? "a TIFF that is cut off" : source.fault);
       for (std::uint32_t y = 0; y < rows; ++y) {
         for (std::uint32_t x = 0; x < columns; ++x)
           out[std::size_t{top + y} * layout.width + left + x] = sample(layout, block.data() + y * row_bytes + x * each);
@@ -178,7 +178,7 @@ bool is_tiff(std::span<const std::uint8_t> bytes) {
 base::Result<HeightLevels> decode_elevations(std::span<const std::uint8_t> bytes) {
   Source source{bytes};
   const Tiff file = open(source);
-  if (!file) return bad(source.fault.empty() ? "a damaged TIFF" : source.fault);
+  if (!file) return bad_tiff(source.fault.empty() ? "a damaged TIFF" : source.fault);
   const auto layout = layout_of(file.get());
   if (!layout) return layout.error();
   auto elevations = samples(file.get(), *layout, source);
@@ -192,7 +192,7 @@ base::Result<HeightLevels> decode_elevations(std::span<const std::uint8_t> bytes
   for (const double e : *elevations) {
     if (has_value(e)) map.lowest = std::min(map.lowest, e), map.highest = std::max(map.highest, e);
   }
-  if (map.lowest > map.highest) return bad("no elevation, only marks that there is none");
+  if (map.lowest > map.highest) return bad_tiff("no elevation, only marks that there is none");
   const std::uint32_t side = std::max(layout->width, layout->height);
   map.columns = map.rows = std::min<std::uint32_t>(side, most_heights_a_side);
   map.levels.reserve(std::size_t{map.columns} * map.rows);

@@ -13,6 +13,7 @@
 namespace {
 
 using support::ComponentProcessTest;
+using support::Owned;
 
 const std::string megabyte(1 << 20, 'x');
 

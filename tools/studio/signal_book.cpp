@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "studio/client_message.h"
+
 namespace studio {
 namespace {
 
@@ -9,12 +11,6 @@ namespace {
 std::string as_path(std::string name) {
   for (auto at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, "/");
   return name;
-}
-
-const Json& list_in(const Json& object, const char* key) {
-  static const Json nothing = Json::array();
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return object.is_object() && found != object.end() && found->is_array() ? *found : nothing;
 }
 
 }  // namespace
