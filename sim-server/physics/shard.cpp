@@ -143,7 +143,9 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   find_contacts(statics);
   for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
   groups_.keep_energies();
+  find_turning();
   solve(step_count);
+  free_rotation_.finish(physics_.step);
   tree_solver_.let_go();
   made_contacts_.clear();
   groups_.limit_energies();
@@ -153,6 +155,14 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   dJointGroupEmpty(contact_joints_.id());
   feedback_.clear();
   finish();
+}
+
+void Shard::find_turning() {
+  for (auto* model : active_) {
+    for (std::uint32_t i = 0; i < model->body_count(); ++i) {
+      if (model->body(i) != nullptr) free_rotation_.add(model->body(i));
+    }
+  }
 }
 
 void Shard::find_contacts(const std::vector<ShapeInstance*>& statics) {

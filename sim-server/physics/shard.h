@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "physics/contact_groups.h"
+#include "physics/free_rotation.h"
 #include "physics/model_instance.h"
 #include "physics/ode.h"
 #include "physics/tree_solver.h"
@@ -32,6 +33,7 @@ class Shard {
 
  private:
   void find_active();
+  void find_turning();
   void find_contacts(const std::vector<ShapeInstance*>& statics);
   void solve(std::uint64_t step_count);
   void solve_trees();
@@ -59,6 +61,7 @@ class Shard {
   std::deque<Feedback> feedback_;
   ContactGroups groups_;
   TreeSolver tree_solver_;
+  FreeRotation free_rotation_;
   bool has_many_joints_ = false;            // one of the active models
   bool has_muddle_ = false;                 // in this step some that are too deep in each other do not count
   std::vector<MadeContact> made_contacts_;  // of the step, while it has
