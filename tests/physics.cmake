@@ -6,6 +6,7 @@ rtmsim_test(crowd_test physics/crowd_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(tree_solver_test physics/tree_solver_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(mesh_collision_test physics/mesh_collision_test.cpp LIBRARIES simserver png LABELS sim)
 rtmsim_test(free_rotation_test physics/free_rotation_test.cpp LIBRARIES simphysics LABELS sim)
+rtmsim_test(impacts_test physics/impacts_test.cpp LIBRARIES simphysics LABELS sim)
 # KDL is what it is compared with; no program uses it.
 find_package(orocos_kdl REQUIRED)
 rtmsim_test(joint_control_test physics/joint_control_test.cpp LIBRARIES simphysics LABELS sim)

@@ -20,9 +20,10 @@ constexpr std::uint32_t most_partners = 12;
 // contact, and only where one of both has few such partners: that lets a crowd in one place come apart, and costs little until it has.
 constexpr double too_deep = 0.25, least_too_deep = 1e-3;  // [m] the latter, for thin sheets
 constexpr std::uint32_t most_deep_partners = 4;
-constexpr double mesh_correction = 0.1;  // [m/s] at most between meshes that are in each other
-constexpr double hard_correction = 0.1;  // [m/s] at most out of contacts without stiffness and restitution
-constexpr double fastest_impact = 25;    // [m/s]: what is deeper than such a step came there by no impact
+constexpr double mesh_correction = 0.1;     // [m/s] at most between meshes that are in each other
+constexpr double hard_correction = 0.1;     // [m/s] at most out of contacts without stiffness and restitution
+constexpr double bounce_correction = 2e-3;  // [m/s] likewise with restitution, between bodies that move
+constexpr double fastest_impact = 25;       // [m/s]: what is deeper than such a step came there by no impact
 
 // ODE's mesh and height field colliders work in global buffers.
 base::Turn<>& shared_collider() {
@@ -54,10 +55,7 @@ bool may_touch_itself(const ModelInstance& model, const ShapeInstance& a, const 
   return !are_joined(model, a.assembly, b.assembly);
 }
 
-bool can_be_pushed(dGeomID geom) {
-  const dBodyID body = dGeomGetBody(geom);
-  return body != nullptr && dBodyIsKinematic(body) == 0;
-}
+bool can_be_pushed(dGeomID geom) { return is_pushable(dGeomGetBody(geom)); }
 
 bool is_too_deep(const ShapeInstance& a, const ShapeInstance& b, const dContactGeom* found, int count) {
   const double size = std::min((a.box.high - a.box.low).minCoeff(), (b.box.high - b.box.low).minCoeff());
@@ -142,6 +140,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   }
   find_contacts(statics);
   for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
+  impacts_.settle();
   groups_.keep_energies();
   find_turning();
   solve(step_count);
@@ -370,9 +369,11 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   joint_contact.geom.depth = std::max(geometry.depth - allowed_depth(*a.surface, *b.surface, surface), 0.0);
   groups_.touch(model_a, model_b != &model_a ? model_b : nullptr, is_mesh(a) || is_mesh(b), joint_contact.geom.depth, surface);
   // What pushes out stays in the motion: a ball without restitution would leave the ground with a fifth of the depth in each step.
-  const bool is_hard = (surface.mode & (dContactSoftERP | dContactBounce)) == 0;
-  if (is_hard && joint_contact.geom.depth < fastest_impact * physics_.step)
-    joint_contact.geom.depth = std::min(joint_contact.geom.depth, hard_correction * physics_.step / erp_);
+  // What stops another one of a row in an impact would throw it back.
+  const bool has_stiffness = (surface.mode & dContactSoftERP) != 0, bounces = (surface.mode & dContactBounce) != 0;
+  const bool is_between_bodies = can_be_pushed(a.geom.id()) && can_be_pushed(b.geom.id());
+  if (!has_stiffness && (!bounces || is_between_bodies) && joint_contact.geom.depth < fastest_impact * physics_.step)
+    joint_contact.geom.depth = std::min(joint_contact.geom.depth, (bounces ? bounce_correction : hard_correction) * physics_.step / erp_);
   // What meshes are pushed apart with stays in their motion.
   if (is_mesh(a) && is_mesh(b)) joint_contact.geom.depth = std::min(joint_contact.geom.depth, mesh_correction * physics_.step / erp_);
   const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;
@@ -390,6 +391,7 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
     if (body != nullptr && is_ill_conditioned(compliance_at(body, geometry.pos), dWorldGetCFM(world_.id()) / physics_.step))
       groups_.note_ill_conditioned(model_a);
   }
+  if ((surface.mode & dContactBounce) != 0) impacts_.add(dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), joint_contact);
   const dJointID joint = dJointCreateContact(world_.id(), contact_joints_.id(), &joint_contact);
   dJointAttach(joint, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()));
   if (has_many_joints_) made_contacts_.push_back({joint, joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), &model_a});

@@ -11,6 +11,7 @@
 
 #include "physics/contact_groups.h"
 #include "physics/free_rotation.h"
+#include "physics/impacts.h"
 #include "physics/model_instance.h"
 #include "physics/ode.h"
 #include "physics/tree_solver.h"
@@ -62,6 +63,7 @@ class Shard {
   ContactGroups groups_;
   TreeSolver tree_solver_;
   FreeRotation free_rotation_;
+  Impacts impacts_;
   bool has_many_joints_ = false;            // one of the active models
   bool has_muddle_ = false;                 // in this step some that are too deep in each other do not count
   std::vector<MadeContact> made_contacts_;  // of the step, while it has
