@@ -22,7 +22,10 @@ void ContactGroups::add(ModelInstance& model) {
   member.size = {.bodies = model.moving_body_count(),
                  .joint_rows = model.joint_rows(),
                  .has_many_joints = model.is_for_tree(),
-                 .has_trees_only = model.tree().is_one};
+                 .has_trees_only = model.tree().is_one,
+                 .lightest = model.mass(),
+                 .heaviest = model.mass(),
+                 .mass = model.mass()};
   members_.push_back(member);
 }
 
@@ -121,6 +124,13 @@ void ContactGroups::settle() {
   }
   for (std::uint32_t i = 0; i < members_.size(); ++i) {
     if (members_[root(i)].may_sleep) members_[i].model->sleep();
+  }
+}
+
+void ContactGroups::note_loads() {
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    const GroupSize& group = members_[root(i)].size;
+    members_[i].model->load_near = group.is_uneven() ? group.mass : 0;
   }
 }
 

@@ -36,6 +36,8 @@ class ContactGroups {
   // Between them the world makes its step. Forces of the step are on the bodies before.
   void keep_energies();
   void limit_energies();
+  // What the contacts of the next step may have to carry (ModelInstance::load_near).
+  void note_loads();
   // Groups that lie still fall asleep.
   void settle();
   void clear();

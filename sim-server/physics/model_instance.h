@@ -109,6 +109,7 @@ class ModelInstance {
   // Owned by the world around it.
   int shard = -1;
   bool is_active = false;                  // takes part in this step: it is awake, or near what is
+  double load_near = 0;                    // [kg] of its group in the last step, if that is uneven
   bool may_be_awake = true;                // false: certainly not
   std::uint32_t group_place = 0;           // among those that take part
   bool is_iterative = false;               // the solver of this step

@@ -21,6 +21,7 @@ constexpr std::uint32_t most_partners = 12;
 constexpr double too_deep = 0.25, least_too_deep = 1e-3;  // [m] the latter, for thin sheets
 constexpr std::uint32_t most_deep_partners = 4;
 constexpr double mesh_correction = 0.1;     // [m/s] at most between meshes that are in each other
+constexpr double most_sag = 100;            // times what a body sags by its own weight
 constexpr double hard_correction = 0.1;     // [m/s] at most out of contacts without stiffness and restitution
 constexpr double bounce_correction = 2e-3;  // [m/s] likewise with restitution, between bodies that move
 constexpr double fastest_impact = 25;       // [m/s]: what is deeper than such a step came there by no impact
@@ -148,6 +149,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   tree_solver_.let_go();
   made_contacts_.clear();
   groups_.limit_energies();
+  groups_.note_loads();
   groups_.settle();
   groups_.clear();
   read_forces();
@@ -383,7 +385,9 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   }
   const double weight_a = can_be_pushed(a.geom.id()) ? model_a.mass() * gravity_ : 0;
   const double weight_b = model_b != nullptr && can_be_pushed(b.geom.id()) ? model_b->mass() * gravity_ : 0;
-  soften(joint_contact, std::max(weight_a, weight_b), erp_, physics_.step);
+  // A plate sags by its own weight; below a thousand tons it would sink through the floor.
+  const double carried = std::max(model_a.load_near, model_b != nullptr ? model_b->load_near : 0) * gravity_ / most_sag;
+  soften(joint_contact, std::max({weight_a, weight_b, carried}), erp_, physics_.step);
   const double lighter = weight_a > 0 && weight_b > 0 ? std::min(weight_a, weight_b) : std::max(weight_a, weight_b);
   const auto usual_contacts = static_cast<double>(std::max<std::size_t>(model_a.previous_contacts.size(), 1));
   resist_sliding(joint_contact, dGeomGetBody(a.geom.id()), dGeomGetBody(b.geom.id()), lighter / usual_contacts);

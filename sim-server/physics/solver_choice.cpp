@@ -36,7 +36,8 @@ SolverChoice choose_solver(const PhysicsDef& physics, const GroupSize& group) {
   if (physics.solver == Solver::iterative || group.is_ill_conditioned) return {.is_iterative = true};
   const double joints = group.joint_rows, contacts = group.contact_rows;
   const double most = worth * iterative_work(joints + contacts, std::clamp(physics.iterations, 1, 10000));
-  const bool is_heap = group.moving_contacts >= stacked_contacts || dense_work(joints, contacts) > most;
+  const bool has_stack = group.moving_contacts >= stacked_contacts && !group.is_uneven();
+  const bool is_heap = has_stack || dense_work(joints, contacts) > most;
   return {.is_iterative = physics.solver == Solver::automatic && is_heap,
           .is_tree_solved = group.has_many_joints && group.has_trees_only && tree_work(group.bodies, contacts) <= most};
 }
