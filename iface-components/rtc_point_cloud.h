@@ -2,7 +2,7 @@
 // and `cloud` (PointCloudTypes::PointCloud), each only when connected. Points in the sensor's frame: x forward, y left, z up [m]; layer by
 // layer from the lowest, in each from right to left. Service port `point_cloud` (RTC::PointCloudServices).
 // Configuration: server_id, device_id; organised: 1 keeps rays that hit nothing as NaN, so that `cloud` has a row for each layer; fields of
-// `cloud`: xyz (12 octets a point) or all (with intensity and ring, 20 octets).
+// `cloud`: xyz (12 bytes a point) or all (with intensity and ring, 20 bytes).
 #pragma once
 
 #include <rtm/ext/PointCloudServicesSkel.h>

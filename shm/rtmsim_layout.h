@@ -504,16 +504,16 @@ enum {
                                  links, values 0 = version of the scene, another one after models have come or gone */
   RTMSIM_REQUEST_POSES = 22,  /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the
                                  world, in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
-  RTMSIM_REQUEST_FAULT = 23,  /* inject a fault into a sensor or drive from now on. name = iface; text = kind (see simctl fault --help);
-                                 flags 1:  values 0 = amount, else the usual one; values 1 = simulated seconds, 0 = until it is ended. One of
-                                 its kind  that is on gives way */
+  RTMSIM_REQUEST_FAULT = 23,  /* inject a fault into a sensor, drive or joint from now on. name = iface, or IFACE::JOINT; text = kind (see
+                                 simctl fault --help); flags 1: values 0 = amount, else the usual one; values 1 = simulated seconds, 0 =
+                                 until it is ended. One of its kind that is on gives way */
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
   RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
-  RTMSIM_REQUEST_SHOW = 28,       /* while time stands still: sensors with subscribers publish the present moment, as after a reset or
-                                     SET_POSE. Changes nothing that comes later */
+  RTMSIM_REQUEST_SHOW = 28,       /* while time stands still: subscribed sensors publish the present moment; nothing later changes */
   RTMSIM_REQUEST_POSE_LOG = 27    /* the first one starts the pose log (shm/pose_log.h). count = first byte wanted; earlier ones are
-                                     deleted. Reply count = end of the log [bytes]; text = bytes of it, at most 8 MiB */
+                                     deleted. text = joints MODEL::JOINT, a line each, whose positions are in the log from now on (empty:
+                                     as before). Reply count = end of the log [bytes]; text = bytes of it, at most 8 MiB */
 };
 
 /* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */

@@ -5,7 +5,7 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_contacts = 200;  // of a heap the solver knows better
+constexpr std::size_t largest_heap = 200;  // of a heap the solver knows better
 
 Eigen::Vector3d speed_at(dBodyID body, const Eigen::Vector3d& place) {
   if (body == nullptr) return Eigen::Vector3d::Zero();
@@ -72,7 +72,7 @@ bool Impacts::find_shares(Bouncing& contact) {
 }
 
 void Impacts::settle() {
-  const bool goes_on = contacts_.size() >= 2 && contacts_.size() <= most_contacts &&
+  const bool goes_on = contacts_.size() >= 2 && contacts_.size() <= largest_heap &&
                        std::any_of(contacts_.begin(), contacts_.end(), [&](const auto& c) { return c.is_hit() && passes_on(c); });
   if (goes_on) {
     std::erase_if(contacts_, [&](Bouncing& contact) { return !contact.is_between_bodies() || !find_shares(contact); });

@@ -152,7 +152,8 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
     case JointMode::velocity:
       move_target(now, dt);
       row = spring(now, gravity, dt);
-      row.keeps_awake = reference_velocity_ != 0 || std::abs(reference_ - now.position) > hardly_any;
+      // The last: it has become too weak for what it held while the model slept.
+      row.keeps_awake = reference_velocity_ != 0 || std::abs(reference_ - now.position) > hardly_any || std::abs(effort_) > most_effort();
       break;
     case JointMode::effort:
       row.push = std::clamp(order_.value + order_.effort + gravity, -motor_effort(), motor_effort());

@@ -180,7 +180,7 @@ def warm_killed():
     for name in ("sim-server", "rtcd"):
         sweep_with_signal(p, name, signal.SIGKILL, True, f"{name}-killed.db")
         said = sweep_with_signal(p, name, signal.SIGSTOP, False, f"{name}-stopped.db")
-        assert said.count(f"{name} --warm: has not answered") == 1, said
+        assert said.count(f"{name}: the prefork server did not respond within") == 1, said
 
 
 # A folder with all programs but simctl, which no other one needs: conditions and events on models, pictures, a row that fails.

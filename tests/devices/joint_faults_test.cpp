@@ -71,7 +71,8 @@ struct FaultyArm : Rig {
     const auto added = f.simulation->add_fault({of, kind, 1, f.simulation->time()});
     return added ? "" : added.error().message;
   }
-  double true_position(std::uint32_t joint) const { return f.simulation->physics().joint_state({0, joint}).position; }
+  // The joint that welds the base to the world comes first.
+  double true_position(std::uint32_t joint) const { return f.simulation->physics().joint_state({0, joint + 1}).position; }
 };
 
 TEST(JointFaults, a_weak_joint_sinks_under_its_load_and_the_others_hold) {

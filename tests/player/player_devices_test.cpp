@@ -190,10 +190,10 @@ TEST(DeviceKinds, capabilities_follow_from_the_table_of_each_device) {
   EXPECT_EQ(find_kind(player::Interface::player), nullptr);
 }
 
-TEST(DeviceKinds, each_type_of_iface_but_truth_and_joints_reaches_a_client) {
+TEST(DeviceKinds, each_type_of_iface_but_truth_reaches_a_client) {
   for (std::uint32_t type = 1; shm::is_type(type); ++type) {
     const auto iface = static_cast<shm::IfaceType>(type);
-    EXPECT_EQ(interfaces_for(iface).empty(), iface == shm::IfaceType::truth || iface == shm::IfaceType::joints) << shm::to_text(iface);
+    EXPECT_EQ(interfaces_for(iface).empty(), iface == shm::IfaceType::truth) << shm::to_text(iface);
   }
 }
 

@@ -344,7 +344,7 @@ def lives():
     changed = next(s for s in changes if s["value"]["values"].get("speed_gain") == "0.002")
     assert 2 < changed["time"] <= 2.1 and changed["value"]["is_in_tick"], changed
     seen = [{one["name"]: (one["message"], {v["key"]: v["value"] for v in one["values"]}) for one in status} for status in said(ours, "/diagnostics", "status")]
-    assert len(seen) >= 5 and seen[2]["RTCLaser0"] == ("Active", {"range [Hz]": "10"}), seen
+    assert len(seen) >= 5 and seen[2]["RTCLaser0"] == ("Active", {"intensities [Hz]": "10", "range [Hz]": "10"}), seen
     assert any(one["LaserObstacleAvoid0"][0] == "Inactive" for one in seen), seen
     done = json.loads(rig.rtse("--json", "replay", file, "--into", "LaserObstacleAvoid0", "--compare"))
     assert done["changes"] >= 3 and done["outputs"][0]["different"] == 0 and done["outputs"][0]["recorded"] > 40, done
@@ -490,7 +490,7 @@ def bad_input():
         done = subprocess.run([rig.path("alone/bin/rtse"), *words], text=True, capture_output=True, timeout=30)
         assert done.returncode == 1 and done.stderr.endswith("rtse-recorder: cannot be started; expected it beside rtse\n"), done
     up()
-    refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 4 OutPorts")
+    refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 5 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
     refused("record", "-o", "/no/such/folder/x.mcap", "RTCLaser0:range", says="cannot be written")
     refused("recording", "info", "/no/such/file", says='"/no/such/file": no such file; there is no folder "/no/such"')

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -96,6 +97,15 @@ Answer deliver(const Message& message, bool is_awake) {
   return Answer::reached;
 }
 
+bool have_all(const RTC::ConnectorProfile& profile) {
+  for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
+    limit_calls(profile.ports[i], port_call_timeout());
+    const RTC::ConnectorProfile_var own = profile.ports[i]->get_connector_profile(profile.connector_id);
+    if (std::string_view(own->connector_id) != profile.connector_id.in()) return false;
+  }
+  return true;
+}
+
 // False: it did not work, and may work later.
 bool connect_again(const RTC::ConnectorProfile& profile) {
   const std::string name = profile.name.in();
@@ -104,8 +114,8 @@ bool connect_again(const RTC::ConnectorProfile& profile) {
     limit_calls(again.ports[0], port_call_timeout() * static_cast<int>(again.ports.length()));
     const RTC::ReturnCode_t code = again.ports[0]->connect(again);
     if (code == RTC::RTC_OK) base::log(base::Level::info, "port", "connection {} is back", base::in_quotes(name));
-    // PRECONDITION_NOT_MET: somebody was faster.
-    return code == RTC::RTC_OK || code == RTC::PRECONDITION_NOT_MET;
+    // PRECONDITION_NOT_MET: somebody was faster, or a port that has just woken is still ending the connection that was.
+    return code == RTC::RTC_OK || (code == RTC::PRECONDITION_NOT_MET && have_all(again));
   } catch (const CORBA::OBJECT_NOT_EXIST&) {
     base::log(base::Level::info, "port", "connection {} is not restored: a port was deleted", base::in_quotes(name));
     return true;

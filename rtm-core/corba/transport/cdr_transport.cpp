@@ -389,7 +389,9 @@ rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line
   } else {
     base::log(base::Level::warn, line.port, "connection {}{}{} {}", line.connection, lost_mark,
               is_unreachable ? "the peer does not answer:" : "the peer throws", why);
-    if (!is_unreachable) refusals().lock()->insert(line.connector_id);
+    // A peer that has ended the connection refuses nothing: a sample may be on its way when it is told to.
+    const bool is_ended = dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&problem) != nullptr;
+    if (!is_unreachable && !is_ended) refusals().lock()->insert(line.connector_id);
   }
   return is_about_the_sample ? rt::PortStatus::error : rt::PortStatus::connection_lost;
 }
