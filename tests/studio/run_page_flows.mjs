@@ -81,7 +81,7 @@ const flows = [
     await page.context().close();
   }],
   ['a failed run opens at the time of the first violation with its object', async (shared) => {
-    const page = await failed_page(shared, 'violated', '- stay: {model: pioneer2dx, region: [-4.55, -4.55, -4.45, -4.45]}\n- value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, max: 0.1}\n');
+    const page = await failed_page(shared, 'violated', '- value: {port: "LaserObstacleAvoid0:velocity", member: data.vx, max: 0.1}\n- stay: {model: pioneer2dx, region: [-4.55, -4.55, -4.45, -4.45]}\n');
     const marks = await page.evaluate(() => window.studio.store.hello.page.marks.map(({ time, kind, subject }) => [time, kind, subject]));
     same(marks.map(([, kind]) => kind), ['failure', 'failure'], 'marks');
     check(marks.every(([time]) => time < 4), `times ${JSON.stringify(marks)}`);
