@@ -1,5 +1,6 @@
 #include "joint_component.h"
 
+#include <chrono>
 #include <utility>
 
 namespace iface {
@@ -31,8 +32,12 @@ void JointComponent::choose(bool has_sample) {
   const auto done = part_.choose(*iface, chosen_names_);
   if (!done) part_.clear();
   note(done);
-  // Services can command before the next sample comes.
+  // Services can command before the next sample comes. A simulator that waits for participants publishes the first one soon; whether it is
+  // there already must not matter, so it is waited for and gives places alone, no time.
+  constexpr auto first_limit = std::chrono::milliseconds(500);
+  if (!has_sample && done && iface->sequence() == 0) static_cast<void>(iface->wait(0, first_limit));
   if (done && (has_sample || iface->read()) && iface->sample<shm::Stamp>().valid != 0) part_.read(*iface);
+  if (!has_sample) part_.start_anew();
   std::vector<shm::Joint> joints;
   for (std::size_t i = 0; i < part_.size(); ++i) joints.push_back(part_.joint(i));
   shared_.lock()->joints = std::move(joints);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/text.h"
 
@@ -64,7 +65,8 @@ base::Result<void> JointPart::choose(const Iface& iface, std::string_view names)
 void JointPart::read(const Iface& iface) {
   const auto& stamp = iface.sample<JointsSample>().stamp;
   const auto* states = reinterpret_cast<const JointState*>(iface.sample_followers(0));
-  const bool is_first = time_ns_ < 0, is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
+  const bool is_first = time_ns_ < 0 || std::exchange(starts_anew_, false),
+             is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
   const double dt = dt_ = is_first || is_reset ? 0 : static_cast<double>(stamp.sim_time_ns - time_ns_) * 1e-9;
   time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets, was_reset_ = is_reset;
   for (Member& member : members_) {

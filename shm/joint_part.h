@@ -29,6 +29,8 @@ class JointPart {
   const JointState& state(std::size_t i) const { return members_[i].state; }
 
   bool has_states() const { return time_ns_ >= 0; }
+  // No time passes until the next sample: dt() is 0 with it. States stay.
+  void start_anew() { starts_anew_ = true; }
   // [s] of simulated time between the last two samples.
   double dt() const { return dt_; }
   // Whether the world was reset between them.
@@ -72,6 +74,7 @@ class JointPart {
   double dt_ = 0;
   bool was_reset_ = false;
   std::int64_t time_ns_ = -1;
+  bool starts_anew_ = false;
   std::uint32_t resets_ = 0;
 };
 
