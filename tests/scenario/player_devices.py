@@ -228,8 +228,8 @@ def actarray():
         client.read_until(ACTARRAY, good=lambda p: abs(Actuators(p).all[5][1] - 0.5) < 0.02)
         client.command(ACTARRAY, 0, 4, numbers((0, 0, 0, 0, 0, -0.5)))
         client.read_until(ACTARRAY, good=lambda p: abs(Actuators(p).all[5][1] + 0.5) < 0.02)
-        client.command(ACTARRAY, 0, 6, struct.pack(">if", 5, 2.0))
-        client.read_until(ACTARRAY, good=lambda p: abs(Actuators(p).all[5][3] - 2.0) < 1e-6)
+        client.command(ACTARRAY, 0, 6, struct.pack(">if", 5, 0.01))
+        client.read_until(ACTARRAY, good=lambda p: abs(Actuators(p).all[5][3] - 0.01) < 1e-6)
         client.command(ACTARRAY, 0, 5, struct.pack(">i", -1))
         positions(client, (0, 0, 1.75, 0, 1.3916, 0))
 
