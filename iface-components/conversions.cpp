@@ -73,7 +73,7 @@ RTC::RangerConfig ranger_config(const shm::SonarInfo& info) { return {0, 0, info
 
 namespace {
 
-// The values of one layer; none when there is no such layer.
+// The values of one layer; empty if there is no such layer.
 std::span<const float> layer_of(const shm::LaserInfo& info, std::span<const float> values, std::uint32_t layer) {
   const auto first = static_cast<std::size_t>(layer) * info.beams;
   return first < values.size() ? values.subspan(first, std::min<std::size_t>(info.beams, values.size() - first)) : std::span<const float>{};

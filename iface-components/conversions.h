@@ -17,7 +17,7 @@ RTC::Point3D to_point(const shm::Pose& pose);
 // Roll, pitch, yaw about the fixed x, y, z axes, in this order.
 RTC::Orientation3D to_orientation(const shm::Pose& pose);
 RTC::Pose3D to_pose(const shm::Pose& pose);
-// Of a device whose size nobody knows, or with its length, width and height [m].
+// Without a size, or with length, width and height [m].
 RTC::Geometry3D to_geometry(const shm::Pose& pose, const double* size = nullptr);
 RTC::Geometry2D to_geometry_2d(const shm::Pose& pose, const double* size);
 

@@ -57,9 +57,13 @@ RTC::ReturnCode_t IfaceComponent::onActivated(RTC::UniqueId) { return attach() ?
 
 RTC::ReturnCode_t IfaceComponent::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
+  publish_newest();
+  return RTC::RTC_OK;
+}
+
+void IfaceComponent::publish_newest() {
   const auto* device = link_.fresh(wait_limit());
   if (device != nullptr && device->sample<shm::Stamp>().valid != 0) publish(*device);
-  return RTC::RTC_OK;
 }
 
 RTC::ReturnCode_t IfaceComponent::onDeactivated(RTC::UniqueId) {

@@ -42,6 +42,8 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   // Carries the sample to the ports. Not called for samples that a fault has made invalid.
   virtual void publish(const shm::Iface&) {}
   Say say();
+  // The newest sample, after follow_configuration().
+  void publish_newest();
 
  private:
   Device configured() const { return {server_id_, device_id_}; }

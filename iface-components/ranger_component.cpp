@@ -110,18 +110,20 @@ void RangerComponent::addRangerPort() {
   addPort(service_port_);
 }
 
-RTC::ReturnCode_t RangerComponent::onExecute(RTC::UniqueId ec_id) {
+RTC::ReturnCode_t RangerComponent::onExecute(RTC::UniqueId) {
   if (!follow_configuration()) return RTC::RTC_ERROR;
   auto* device = link().live();
-  if (device == nullptr) return IfaceComponent::onExecute(ec_id);
-  if (!service_.is_on()) {
+  if (device != nullptr && !service_.is_on()) {
     device->unsubscribe();
     return RTC::RTC_OK;
   }
-  if (!device->is_subscribed()) {
-    if (const auto done = device->subscribe(); !done) RTC_WARN(("%s", done.error().message.c_str()));
+  if (device != nullptr && !device->is_subscribed()) {
+    const auto done = device->subscribe();
+    if (!done && !has_failed_) RTC_WARN(("%s", done.error().message.c_str()));
+    has_failed_ = !done;
   }
-  return IfaceComponent::onExecute(ec_id);
+  publish_newest();
+  return RTC::RTC_OK;
 }
 
 }  // namespace iface

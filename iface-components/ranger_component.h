@@ -63,6 +63,7 @@ class RangerComponent : public IfaceComponent {
  private:
   RTC::CorbaPort service_port_;
   RangerService service_;
+  bool has_failed_ = false;  // to subscribe; logged once
 };
 
 }  // namespace iface

@@ -23,6 +23,7 @@ RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
         shm::ResetOdometryRequest request;
         request.x = pose.position.x, request.y = pose.position.y, request.a = pose.heading;
         set_odometry(std::move(request));
+        was_odometry_set_.store(true, std::memory_order_release);  // pairs with go_on
       }) {}
 
 RTC::ReturnCode_t RTCPosition2d::onInitialize() {
@@ -55,6 +56,12 @@ void RTCPosition2d::command(const shm::PlanarPose& velocity) {
   if (iface::in_simulated_time()) commander().drive(values);
 }
 
+void RTCPosition2d::give_up() {
+  if (std::holds_alternative<std::monostate>(goal_)) return;
+  goal_ = {};
+  commander().stop();
+}
+
 // Values that are no numbers are ignored with a line: the robot goes on as before.
 void RTCPosition2d::read_goals() {
   bool has_pose = false, has_heading = false;
@@ -84,7 +91,8 @@ void RTCPosition2d::read_goals() {
 }
 
 void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample) {
-  if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets) goal_ = {};  // the goal is no longer where it was
+  const bool was_set = was_odometry_set_.exchange(false, std::memory_order_acquire);  // pairs with SetOdometry
+  if (was_set || resets_.value_or(sample.stamp.resets) != sample.stamp.resets) give_up();
   resets_ = sample.stamp.resets;
   const shm::PlanarPose odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
   if (auto* way = std::get_if<shm::PoseControl>(&goal_)) {

@@ -10,6 +10,7 @@
 #include <rtm/DataOutPort.h>
 #include <shm/pose_control.h>
 
+#include <atomic>
 #include <optional>
 #include <variant>
 
@@ -33,10 +34,13 @@ class RTCPosition2d : public iface::DriveComponent<RTC::TimedVelocity2D> {
     double speed = 0, angle = 0;  // [m/s], [rad]
   };
   void command(const shm::PlanarPose& velocity);
+  // Of a goal that is no longer where it was. The robot stops.
+  void give_up();
   void go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample);
 
   std::variant<std::monostate, shm::PoseControl, Heading> goal_;
-  std::optional<std::uint32_t> resets_;  // of the world, when the goal was first pursued
+  std::atomic<bool> was_odometry_set_{false};  // by a service, in any thread
+  std::optional<std::uint32_t> resets_;        // of the world, when the goal was first pursued
   shm::Position2dInfo robot_{};
   RTC::TimedPose2D pose_;
   RTC::InPort<RTC::TimedPose2D> pose_in_;

@@ -17,7 +17,7 @@ Eigen::Vector3d across(const Eigen::Vector3d& axis) {
 }
 
 // One row that keeps both bodies' velocities along `line` at `place` apart by `rate`, whichever way the force must go: the friction of a
-// contact that pushes nobody, since its bodies may come near each other as fast as they like.
+// contact without a force, since its bodies may come near each other as fast as they like.
 void tie(dWorldID world, dJointGroupID group, dBodyID a, dBodyID b, const Eigen::Vector3d& place, const Eigen::Vector3d& line,
          double rate) {
   dContact contact{};

@@ -198,7 +198,7 @@ def inject(port, data):
 
 
 def goals():
-    up("RTCPosition2d")
+    up("RTCPosition2d", beside=("DeviceProbe",))
     at = lambda: (odometry := rig.robot()["odometry"])[:2] + [math.remainder(odometry[2], 2 * math.pi)]
     goal = [-0.8, 0.5, 2.0]
     inject("pose_control", {"position": {"x": goal[0], "y": goal[1]}, "heading": goal[2]})
@@ -212,6 +212,11 @@ def goals():
     await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)
     inject("velocity", {"vx": 0, "vy": 0, "va": 0})  # ends it
     await_("a robot that stands", lambda: abs(rig.robot()["velocity"][2]) < 0.01)
+    rig.rtse("con", "DeviceProbe0:drive", "RTCPosition2d0:drive")
+    inject("pose_control", {"position": {"x": -3, "y": -3}, "heading": 0})
+    await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)
+    call("odometry")  # the goal is no longer where it was
+    await_("a robot that stands where its odometry says", lambda: abs(at()[0] - 7) < 0.3 and max(map(abs, rig.robot()["velocity"])) < 0.01)
 
 
 # Each against what the simulator says of the same device.
