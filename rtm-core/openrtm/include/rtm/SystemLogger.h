@@ -106,13 +106,14 @@ class Logger {
   do {                                                                            \
     if (rtclog.isValid(LV)) rtclog.write(LV, ::RTC::detail::format_log_text fmt); \
   } while (false)
-#define RTC_LOG_STR(LV, stream)             \
-  do {                                      \
-    if (rtclog.isValid(LV)) {               \
-      std::ostringstream rtclog_text_;      \
-      rtclog_text_ << stream;               \
-      rtclog.write(LV, rtclog_text_.str()); \
-    }                                       \
+// `stream` is "a << b": parentheses would change it.
+#define RTC_LOG_STR(LV, stream)                                        \
+  do {                                                                 \
+    if (rtclog.isValid(LV)) {                                          \
+      std::ostringstream rtclog_text_;                                 \
+      rtclog_text_ << stream; /* NOLINT(bugprone-macro-parentheses) */ \
+      rtclog.write(LV, rtclog_text_.str());                            \
+    }                                                                  \
   } while (false)
 
 #define RTC_FATAL(fmt) RTC_LOG(::RTC::Logger::RTL_FATAL, fmt)
