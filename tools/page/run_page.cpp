@@ -27,7 +27,7 @@ using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
 // Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
-constexpr std::size_t part_size = 3U << 20U;
+constexpr std::size_t part_size = 3U << 19U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
 constexpr int growth = 4;                          // of the length from one part to the next, at most
 constexpr std::string_view marker = "<!--run-->";  // in the viewer: the place of the data

@@ -19,6 +19,9 @@ import { type Mover, Trails } from './trails';
 import type { Poses } from './wire';
 import { fetch_data } from './token';
 
+const wanted_cost = 10, least_share = 0.5; // [ms] of a picture while things move; the fewest pixels across
+const rest_after = 300; // [ms] without a change
+
 export class WorldView {
   readonly element = h('div', { class: 'world' });
   readonly canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': 'World: arrow keys turn, plus and minus zoom, click or Tab in the tree selects' });
@@ -44,10 +47,14 @@ export class WorldView {
   private failed_version = -1;
   private bounds = new Box3();
   private restored = false;
-  // Of a picture [ms], by a look now and then. Where it is dear (no GPU), pictures get fewer and shadows older, and the page stays quick.
-  private cost = 0;
+  // Of a picture with every pixel [ms], by a look now and then. Where it is dear (no GPU), pictures get fewer and shadows older, and the page stays quick.
+  private full_cost = 0;
   private next_draw = 0;
   private shadows_at = 0;
+  // Pixels of a picture across, as a share of all: fewer while things move where a picture is dear, all once they rest.
+  private share = 1;
+  private moving_share = least_share; // until the first picture was measured
+  private rests_at = 0;
 
   constructor() {
     this.element.append(this.canvas, this.labels.element, this.notice);
@@ -70,9 +77,15 @@ export class WorldView {
     const loop = () => {
       requestAnimationFrame(loop);
       const now = performance.now();
-      if (this.dirty && now >= this.next_draw && this.element.offsetParent !== null) {
+      if (this.element.offsetParent === null) return;
+      if (this.dirty && now >= this.next_draw) {
+        this.set_share(this.moving_share);
         this.draw();
         this.next_draw = now + 2 * this.cost;
+        this.rests_at = now + rest_after;
+      } else if (!this.dirty && this.share < 1 && now >= this.rests_at) {
+        this.set_share(1);
+        this.draw();
       }
     };
     requestAnimationFrame(loop);
@@ -323,16 +336,26 @@ export class WorldView {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width < 2 || height < 2 || !this.renderer) return;
+    this.share = 1;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.setSize(width, height, false);
     this.eye.resize(width, height);
     this.redraw();
   }
 
-  // At once; `is_whole`: with shadows as they are now.
+  private set_share(share: number): void {
+    if (share === this.share || !this.renderer) return;
+    this.share = share;
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio) * share);
+  }
+
+  // At once; `is_whole`: with shadows as they are now, and every pixel.
   draw(is_whole = false): void {
     this.dirty = false;
-    if (is_whole) this.shadows_at = -1e9;
+    if (is_whole) {
+      this.shadows_at = -1e9;
+      this.set_share(1);
+    }
     if (!this.renderer || !this.world) return;
     const { clientWidth: width, clientHeight: height } = this.element;
     this.world.root.updateMatrixWorld();
@@ -363,7 +386,14 @@ export class WorldView {
     const gl = this.renderer!.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the picture
     const cost = performance.now() - began;
-    this.cost = cost < 6 ? 0 : Math.min(cost, 500);
+    this.full_cost = cost / this.share ** 2;
+    const wanted = Math.sqrt(wanted_cost / this.full_cost);
+    this.moving_share = Math.min(1, Math.max(least_share, Math.round(wanted * 8) / 8));
+  }
+
+  private get cost(): number {
+    const cost = this.full_cost * this.share ** 2;
+    return cost < 6 ? 0 : Math.min(cost, 500);
   }
 
   // The eye as `simctl screenshot` has it: place and orientation of one that looks along x with z up, and its angle or, from above, its width.
