@@ -128,9 +128,11 @@ const flows = [
     for (const [axis, i] of [['Z', 2], ['Y', 1]]) {
       const [x, y] = await page.evaluate((a) => window.studio.world.hands.gizmo.handle(a), axis);
       const count = await page.evaluate(() => window.studio.store.acts.length);
+      await page.evaluate(() => { window.studio.world.next_draw = Infinity; }); // as where pictures are slow: none between the arrow's choice and the press
       await page.mouse.move(x, y, { steps: 2 });
       await until(`${axis} is under the mouse`, () => page.evaluate(() => window.studio.world.hands.gizmo.is_under_mouse()));
       await page.mouse.down();
+      await page.evaluate(() => { window.studio.world.next_draw = 0; });
       await page.mouse.move(x + (axis === 'Z' ? 0 : 30), y - 30, { steps: 4 });
       await page.mouse.up();
       await until('an act', () => page.evaluate((n) => window.studio.store.acts.length > n, count));

@@ -25,7 +25,11 @@ export class Gizmo {
       controls.setSpace('world');
       controls.setSize(size);
       controls.addEventListener('change', () => view.redraw());
-      controls.addEventListener('axis-changed' as never, () => { if (controls.axis === 'XYZ' || controls.axis === 'XYZE' || controls.axis === 'E') controls.axis = null; });
+      controls.addEventListener('axis-changed' as never, () => {
+        if (controls.axis === 'XYZ' || controls.axis === 'XYZE' || controls.axis === 'E') controls.axis = null;
+        // The plane of a drag is that of the axis at once: a press may come before the next picture, and a drag that begins off its plane moves the model from 0 0 0.
+        else controls.getHelper().updateMatrixWorld();
+      });
       controls.addEventListener('dragging-changed', (event) => (event.value ? this.begin() : this.end()));
       controls.addEventListener('objectChange', () => this.send());
       scene.add(controls.getHelper());
