@@ -5,6 +5,8 @@ import { place_lights, sky_material, suns_of } from './material';
 
 export class Daylight {
   private sun = new DirectionalLight();
+  private radius = 1;
+  private map_size = 512; // pixels across; at first coarse (set_fine)
   private sky: { mesh: Mesh; material: ShaderMaterial } | null = null;
 
   constructor(private readonly scene: Scene) {
@@ -24,7 +26,7 @@ export class Daylight {
     this.sun.castShadow = Boolean(sun?.extras.casts_shadow && world.look.shadows);
     if (!sun) return;
     const sphere = bounds.getBoundingSphere(new Sphere());
-    const radius = Math.min(60, sphere.radius);
+    const radius = this.radius = Math.min(60, sphere.radius);
     const direction = new Vector3(0, 0, -1).transformDirection(sun.node.matrixWorld);
     this.sun.target.position.copy(sphere.center);
     this.sun.position.copy(sphere.center).addScaledVector(direction, -radius * 2);
@@ -34,12 +36,23 @@ export class Daylight {
     camera.near = 0.1;
     camera.far = radius * 4;
     camera.updateProjectionMatrix();
-    this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.bias = -0.0002;
-    this.sun.shadow.normalBias = (3 * radius) / 2048;
     this.sun.shadow.radius = 1.5;
-    this.sun.shadow.map?.dispose();
-    this.sun.shadow.map = null;
+    this.renew_shadows();
+  }
+
+  // Fine shadows cost more than all else where there is no GPU. The next picture needs new ones.
+  set_fine(is_fine: boolean): void {
+    this.map_size = is_fine ? 2048 : 512;
+    this.renew_shadows();
+  }
+
+  private renew_shadows(): void {
+    const { shadow } = this.sun;
+    shadow.mapSize.set(this.map_size, this.map_size);
+    shadow.normalBias = (3 * this.radius) / this.map_size;
+    shadow.map?.dispose();
+    shadow.map = null;
   }
 
   private set_sky(world: WorldScene): void {

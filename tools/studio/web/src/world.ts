@@ -51,9 +51,9 @@ export class WorldView {
   private full_cost = 0;
   private next_draw = 0;
   private shadows_at = 0;
-  // Pixels of a picture across, as a share of all: fewer while things move where a picture is dear, all once they rest.
-  private share = 1;
-  private moving_share = least_share; // until the first picture was measured
+  // Pixels of a picture across, as a share of all: fewer, and coarse shadows, while things move where a picture is dear; all once they rest.
+  private share = least_share; // until the first picture was measured
+  private moving_share = least_share;
   private rests_at = 0;
 
   constructor() {
@@ -336,8 +336,7 @@ export class WorldView {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width < 2 || height < 2 || !this.renderer) return;
-    this.share = 1;
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio) * this.share);
     this.renderer.setSize(width, height, false);
     this.eye.resize(width, height);
     this.redraw();
@@ -345,6 +344,11 @@ export class WorldView {
 
   private set_share(share: number): void {
     if (share === this.share || !this.renderer) return;
+    if ((share === 1) !== (this.share === 1)) {
+      this.daylight.set_fine(share === 1);
+      this.shadows_dirty = true;
+      this.shadows_at = -1e9;
+    }
     this.share = share;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio) * share);
   }
@@ -375,7 +379,7 @@ export class WorldView {
       this.shadows_at = began;
     }
     this.renderer.render(this.scene, camera);
-    if (this.frames > 1 && this.frames % 16 === 2) this.measure_cost(began);
+    if (this.frames > 1 && (this.frames % 16 === 2 || this.cost > 30)) this.measure_cost(began); // the first ones are dear everywhere: shaders are compiled
     if (this.shadows_dirty) setTimeout(() => this.redraw(), 4 * this.cost);
     this.labels.draw(this.movers(), spots, camera, width, height);
     this.frames += 1;
