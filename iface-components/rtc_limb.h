@@ -1,9 +1,10 @@
 // RTCLimb: a chain of joints as a limb of the RT Component interface guidelines. InPort `pose` (RTC::TimedPose3D): where the tip has to go,
-// in the frame that carries the first joint; the newest counts. OutPort `state` (RTC::LimbState): orientation (y axis), approach (z axis)
-// and position of the tip [m]. Service port `limb` (RTC::Limb). Configuration: server_id, device_id; joints: from base to tip; tool: from
-// the last joint to the tip, along its z axis [m]; speed: of the tip [m/s].
+// in the frame that carries the first joint; the newest counts, also on the way (poses can be streamed). OutPort `state` (RTC::LimbState):
+// orientation (y axis), approach (z axis) and position of the tip [m]. Service port `limb` (RTC::Limb). Configuration: server_id,
+// device_id; joints: from base to tip; tool: from the last joint to the tip, along its z axis [m]; speed: of the tip [m/s].
 #pragma once
 
+#include <arms/limb.h>
 #include <rtm/ext/LimbSkel.h>
 #include <rtm/idl/ExtendedDataTypesSkel.h>
 
@@ -12,7 +13,6 @@
 #include <rtm/DataOutPort.h>
 
 #include "joint_component.h"
-#include "manipulator/manipulator.h"
 
 class RTCLimb;
 
@@ -46,16 +46,9 @@ class RTCLimb : public iface::JointComponent {
   void publish(const shm::Stamp& stamp) override;
 
  private:
-  iface::Manipulator::Feedback feedback() const;
-  bool is_held() const { return !is_powered_ || has_brakes_on_; }
-  void apply_brakes();
-  void go(const RTC::Pose3D& pose);
-  RTC::LimbStatus status() const;
-
   double tool_ = 0, speed_ = 0.25;
-  bool is_powered_ = true, has_brakes_on_ = false, is_out_of_reach_ = false;
-  iface::Manipulator arm_;
-  std::optional<Eigen::Isometry3d> goal_;  // of the motion; a pose that is sent again changes nothing
+  arms::Limb limb_;
+  std::string refusal_;  // of the last pose; logged once for each reason
   RTC::TimedPose3D pose_;
   RTC::InPort<RTC::TimedPose3D> pose_in_;
   RTC::LimbState state_;

@@ -25,9 +25,9 @@ static const iface::Specification specification{
     .inport_buffer = 1024,
 };
 
-using iface::FingerCommand;
-using iface::Manipulator;
-using iface::Reply;
+using arms::FingerCommand;
+using arms::Manipulator;
+using arms::Reply;
 
 RTCManipulator::RTCManipulator(RTC::Manager* manager)
     : JointComponent(manager, specification),
@@ -76,7 +76,7 @@ void RTCManipulator::chosen() {
     arm.push_back(part().joint(i));
     units.slides.push_back(arm.back().kind == RTMSIM_JOINT_SLIDES);
   }
-  const bool is_chain = iface::is_chain(arm);
+  const bool is_chain = arms::is_chain(arm);
   if (!is_chain && part().size() > 0)
     RTC_WARN(("joints must name a chain from base to tip, each joint carried by the one before; services answer NG"));
   was_servo_on_ = true;
@@ -95,7 +95,7 @@ void RTCManipulator::detaching() {
 
 Reply RTCManipulator::call(const Work& work) {
   auto shared = shared_.lock();
-  if (!shared->is_there) return {iface::Answer::fault, "the component has no arm; its log names the reason"};
+  if (!shared->is_there) return {arms::Answer::fault, "the component has no arm; its log names the reason"};
   return work(shared->arm, shared->units);
 }
 
@@ -111,7 +111,7 @@ Reply RTCManipulator::move(const Planned& plan) {
     return Reply{};
   });
   if (!state.is_ok()) return state;
-  iface::Plan made = plan(with.planner, with.from, units);
+  arms::Plan made = plan(with.planner, with.from, units);
   if (!made.motion) return made.reply;
   return call([&](Manipulator& arm, const auto&) { return arm.add(std::move(*made.motion), with.drops); });
 }

@@ -14,15 +14,15 @@
 #include <string>
 
 #include "joint_component.h"
-#include "manipulator/services.h"
+#include "manipulator_services.h"
 
 class RTCManipulator : public iface::JointComponent, public iface::ManipulatorOwner {
  public:
   explicit RTCManipulator(RTC::Manager* manager);
   RTC::ReturnCode_t onInitialize() override;
 
-  iface::Reply call(const Work& work) override;
-  iface::Reply move(const Planned& plan) override;
+  arms::Reply call(const Work& work) override;
+  arms::Reply move(const Planned& plan) override;
 
  protected:
   std::string all_names(const std::string& joints) const override;
@@ -35,14 +35,14 @@ class RTCManipulator : public iface::JointComponent, public iface::ManipulatorOw
  private:
   struct Shared {
     bool is_there = false;
-    iface::Manipulator arm;
+    arms::Manipulator arm;
     iface::ClientUnits units;
   };
   void addServices();
-  iface::Manipulator::Feedback feedback() const;
+  arms::Manipulator::Feedback feedback() const;
   double finger_ratio() const;
-  void command_fingers(const iface::FingerCommand& command);
-  void log_alarms(const std::vector<iface::Manipulator::Alarm>& alarms);
+  void command_fingers(const arms::FingerCommand& command);
+  void log_alarms(const std::vector<arms::Manipulator::Alarm>& alarms);
 
   std::string gripper_, units_ = "si";
   double force_ = 0;

@@ -1,6 +1,6 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
 rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/ranger_test.cpp LIBRARIES iface_link)
-rtmsim_test(manipulator_test iface-components/arm_kinematics_test.cpp iface-components/manipulator_test.cpp LIBRARIES manipulator)
+rtmsim_test(manipulator_test arms/arm_kinematics_test.cpp arms/limb_test.cpp arms/manipulator_test.cpp LIBRARIES arms)
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
 rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)

@@ -8,6 +8,7 @@
 #include "camera_device.h"
 #include "drive_devices.h"
 #include "joint_devices.h"
+#include "limb_device.h"
 #include "point_cloud_device.h"
 #include "range_devices.h"
 #include "sensor_devices.h"
@@ -34,6 +35,7 @@ constexpr std::array kinds{
     row<Sonar>(sonar),
     row<Camera>(camera),
     row<ActArray>(actarray),
+    row<LimbDevice>(limb),
     row<Gripper>(gripper),
     row<Ptz>(ptz),
     row<Gps>(gps),

@@ -82,6 +82,7 @@ void JointDevice::show_sample() {
   if (!is_for_newcomer() || !has_state_) {
     part_.read(iface());
     has_state_ = true;
+    step();
     for (const auto& one : std::exchange(waiting_, {})) obey(*one.client, one.subtype, one.payload);
     if (is_release_due_) release();
     if (commands_) send();
@@ -106,6 +107,7 @@ void JointDevice::forget(Client& client) {
   std::erase_if(waiting_, [&](const Waiting& one) { return one.client == &client; });
   if (commander_ != &client) return;
   commander_ = nullptr;
+  let_go();
   if (!source() || !commands_) return;
   for (std::size_t i = 0; i < part_.size(); ++i) {
     if (part_.is_commanded(i)) part_.brake(i);

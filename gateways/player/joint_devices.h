@@ -1,6 +1,7 @@
-// actarray, gripper and ptz: joints of a joints iface. The device commands through a handle of its own, so that devices of one iface do not
-// take each other's commands back. Its joints brake when the client that commanded them last lets go of the device or vanishes. What
-// cannot be obeyed (Player's commands have no answer) is a line in the log, once for each line. One thread at a time.
+// actarray, gripper and ptz, and the base of limb (limb_device.h): joints of a joints iface. The device commands through a handle of its
+// own, so that devices of one iface do not take each other's commands back. Its joints brake when the client that commanded them last lets
+// go of the device or vanishes. What cannot be obeyed (Player's commands have no answer) is a line in the log, once for each line. One
+// thread at a time.
 #pragma once
 
 #include <array>
@@ -31,6 +32,10 @@ class JointDevice : public Device {
   virtual void do_command(std::uint8_t subtype, const std::string& payload) = 0;
   // The joints have been chosen, or chosen again.
   virtual void begin() {}
+  // For each sample, after part() has read it.
+  virtual void step() {}
+  // Who commanded it is gone: the joints brake.
+  virtual void let_go() {}
   void note(const base::Result<void>& done);
   // Of one, or with -1 of all. Fails for a joint that there is not.
   base::Result<void> for_joint(std::int32_t joint, const std::function<base::Result<void>(std::size_t)>& work);

@@ -207,6 +207,7 @@ namespace {
 // What the simulator calls groups of joints.
 constexpr auto joint_groups = std::to_array<std::pair<std::string_view, player::Interface>>({
     {"array", player::Interface::actarray},
+    {"chain", player::Interface::limb},
     {"gripper", player::Interface::gripper},
     {"pan_tilt", player::Interface::ptz},
 });

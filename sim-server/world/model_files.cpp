@@ -9,6 +9,7 @@
 #include "world/floor_plan.h"
 #include "world/materials.h"
 #include "world/repairs.h"
+#include "world/ros_joints.h"
 #include "world/urdf.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
@@ -83,6 +84,8 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
     }
     robot->child("sdf").append_attribute(file_mark) = complaints_.add_file(file_name);
     for (const std::string& line : carry_mimics(written, robot->child("sdf"))) complaints_.warn(robot->child("sdf"), line);
+    carry_initial_positions(written, robot->child("sdf").child("model"), complaints_);
+    carry_mimic_plugins(robot->child("sdf").child("model"), complaints_);
     return robot;
   }
   if (!sdf) return wrong_root(first_element(*parsed), file_name);

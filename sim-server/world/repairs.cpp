@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "world/ros_joints.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -165,6 +166,7 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     mark_initial_position(child, complaints);
     take_mimic(child);
     repair(child, complaints);
+    if (name == "model") carry_initial_positions(child, child, complaints), carry_mimic_plugins(child, complaints);
   }
 }
 

@@ -353,16 +353,17 @@ TEST(List, that_cannot_be_read_is_an_error) {
 
 TEST(List, groups_of_joints_are_devices_and_joints_without_a_group_are_none) {
   const auto list = parse_list(R"({"ifaces": [
-    {"type": "joints", "name": "arm::joints", "model": "arm", "groups": [{"kind": "array", "joints": ["a", "b"]}, {"kind": "gripper", "joints": ["f"]},
+    {"type": "joints", "name": "arm::joints", "model": "arm", "groups": [{"kind": "array", "joints": ["a", "b"]}, {"kind": "chain", "joints": ["a", "b"]}, {"kind": "gripper", "joints": ["f"]},
       {"kind": "gripper", "joints": ["g"]}, {"kind": "tail", "joints": ["t"]}]},
     {"type": "joints", "name": "eye::joints", "model": "eye", "groups": [{"kind": "pan_tilt", "joints": ["p", "t"], "field_of_view": 1.25}]},
     {"type": "joints", "name": "door::joints", "model": "door", "groups": []}]})");
   ASSERT_TRUE(list);
   const auto plans = plan_by_world(*list, 7000);
   ASSERT_EQ(plans.size(), 2U) << "a door is no robot";
-  EXPECT_EQ(shown(plans[0]), "7000 arm: actarray:0=arm::joints gripper:0=arm::joints gripper:1=arm::joints simulation:0=world");
+  EXPECT_EQ(shown(plans[0]),
+            "7000 arm: actarray:0=arm::joints limb:0=arm::joints gripper:0=arm::joints gripper:1=arm::joints simulation:0=world");
   EXPECT_EQ(plans[0].devices[0].group.joints, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(plans[0].devices[2].group.joints, std::vector<std::string>{"g"});
+  EXPECT_EQ(plans[0].devices[3].group.joints, std::vector<std::string>{"g"});
   EXPECT_EQ(shown(plans[1]), "7001 eye: ptz:0=eye::joints simulation:0=world");
   EXPECT_EQ(plans[1].devices[0].group.field_of_view, 1.25);
 }

@@ -50,9 +50,10 @@ const std::vector<Layer> layers = {
     {"sim-server",
      {"devices", "server", "shm", "world", "physics", "rays", "render", "reader", "base"},
      {"Eigen", "JSON", "PNG", "spdlog"}},
-    {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"Eigen"}},
+    {"arms", {"arms", "shm", "base"}, {"Eigen"}},
+    {"iface-components", {"rtm", "coil", "arms", "shm", "base", "stubs"}, {"Eigen"}},
     {"gateways/player/protocol", {"protocol", "base"}},
-    {"gateways/player", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
+    {"gateways/player", {"protocol", "arms", "shm", "base"}, {"Eigen", "JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
     {"tools/channels/views", {"channels", "shm", "base"}, {"JSON"}},
     {"tools/channels", {"channels", "base", "stubs"}, {}, {"channels/views/"}},
@@ -97,6 +98,7 @@ std::string owner(const std::string& header) {
       {"devices/", "devices"},
       {"server/", "server"},
       {"shm/", "shm"},
+      {"arms/", "arms"},
       {"world/", "world"},
       {"physics/", "physics"},
       {"protocol/", "protocol"},
@@ -188,7 +190,7 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
+  for (const char* top : {"base", "shm", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

@@ -199,7 +199,7 @@ def arm_rig():
 def actarray():
     with arm_rig() as rig:
         assert [(name, words.split()[:-1]) for _, name, words in rig.lines()] == [
-            ("arm", ["actarray:0=arm::joints", "gripper:0=arm::joints"]), ("eye", ["camera:0=eye::camera", "actarray:0=eye::joints", "ptz:0=eye::joints"])], rig.lines()
+            ("arm", ["actarray:0=arm::joints", "limb:0=arm::joints", "gripper:0=arm::joints"]), ("eye", ["camera:0=eye::camera", "actarray:0=eye::joints", "ptz:0=eye::joints"])], rig.lines()
         client = Client(rig.ports[0])
         # Before anybody is subscribed, and with data always: clients do not see a refusal.
         fields = Fields(client.demand(ACTARRAY, 0, 3))
@@ -263,6 +263,64 @@ def actarray():
         client.read_until(ACTARRAY, good=lambda p: Actuators(p).all[0][1] > 0.4)
         client.close()
         other.read_until(ACTARRAY, good=lambda p: Actuators(p).all[0][4] == BRAKED and abs(Actuators(p).all[0][1]) < 1e-3)
+        rig.is_alive()
+
+
+# The tip goes to poses, places, along directions, home, and stops; power, brakes, speed; what cannot be done is a line.
+def limb():
+    with arm_rig() as rig:
+        client = Client(rig.ports[0])
+        assert abs(Fields(client.demand(LIMB, 0, 3)).take("3d")[2] - 0.1) < 0.06
+        client.subscribe(LIMB)
+        idle, braked, moving, out_of_reach = 1, 2, 3, 4
+        state = lambda p: struct.unpack(">9dI", p)
+        seen = lambda wanted: lambda p: state(p)[9] == wanted
+        at = lambda *place, tolerance=0.002: lambda p: state(p)[9] == idle and all(abs(a - b) < tolerance for a, b in zip(state(p), place))
+        first = state(client.read_until(LIMB, good=seen(idle)))
+        down = (0, 0, -1, 0, 1, 0)  # approach, then orientation
+        client.command(LIMB, 0, 3, struct.pack(">9d", 0.45, 0.1, 0.3, *down))
+        client.read_until(LIMB, good=seen(moving))
+        client.read_until(LIMB, good=at(0.45, 0.1, 0.3, *down))
+        client.command(LIMB, 0, 4, struct.pack(">3d", 0.45, -0.1, 0.3))
+        client.read_until(LIMB, good=at(0.45, -0.1, 0.3, *down))
+        client.command(LIMB, 0, 5, struct.pack(">3df", 0, 0, 5, 0.1))
+        client.read_until(LIMB, good=at(0.45, -0.1, 0.4, *down))
+        client.demand(LIMB, 0, 4, struct.pack(">f", 0.05))
+        client.command(LIMB, 0, 4, struct.pack(">3d", 0.45, 0.3, 0.4))
+        client.read_until(LIMB, good=lambda p: state(p)[1] > -0.05)
+        client.command(LIMB, 0, 2)
+        stopped = state(client.read_until(LIMB, good=seen(idle)))
+        assert -0.06 < stopped[1] < 0.1, stopped
+        client.demand(LIMB, 0, 4, struct.pack(">f", 0.5))
+        client.command(LIMB, 0, 1)
+        client.read_until(LIMB, good=at(*first[:9], tolerance=0.03))
+
+        client.command(LIMB, 0, 3, struct.pack(">9d", 3, 0, 0.3, *down))
+        client.read_until(LIMB, good=seen(out_of_reach))
+        for subtype, payload in ((3, struct.pack(">9d", math.nan, 0, 0.3, *down)), (3, struct.pack(">9d", 0.45, 0, 0.3, 0, 0, -1, 0, 0, 1)), (5, struct.pack(">3df", 0, 0, 0, 1))):
+            for _ in range(3):
+                client.command(LIMB, 0, subtype, payload)
+        lines = ("limb:0: the arm cannot reach the pose; the command is ignored", "limb:0: a pose must be finite, its axes orthonormal; the command is ignored",
+                 "limb:0: a direction must be finite and not zero; the command is ignored")
+        await_("a line for each", lambda: all(rig.log(rig.process).count(line) == 1 for line in lines))
+        for subtype, payload in ((4, struct.pack(">f", 0)), (4, struct.pack(">f", math.nan)), (4, b""), (3, b"ab"), (1, b""), (99, b"")):
+            client.refused(LIMB, 0, subtype, payload)
+        client.command(LIMB, 0, 3, b"short")
+
+        client.demand(LIMB, 0, 2, struct.pack(">I", 1))
+        client.read_until(LIMB, good=seen(braked))
+        client.command(LIMB, 0, 1)
+        await_("a refusal", lambda: "limb:0: the brakes are on; the command is ignored" in rig.log(rig.process))
+        client.demand(LIMB, 0, 1, struct.pack(">I", 0))
+        client.demand(LIMB, 0, 2, struct.pack(">I", 0))
+        client.read_until(LIMB, good=seen(braked))
+        client.demand(LIMB, 0, 1, struct.pack(">I", 1))
+        client.command(LIMB, 0, 4, struct.pack(">3d", 0.45, 0, 0.4))
+        client.read_until(LIMB, good=at(0.45, 0, 0.4))
+        client.close()
+        other = Client(rig.ports[0])
+        other.subscribe(ACTARRAY)
+        other.read_until(ACTARRAY, good=lambda p: Actuators(p).all[0][4] == BRAKED)
         rig.is_alive()
 
 
@@ -397,4 +455,4 @@ def storm():
         rig.is_alive()
 
 
-run(identity, configure, meters_and_depths, storm, actarray, gripper, ptz, joints_by_name)
+run(identity, configure, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)

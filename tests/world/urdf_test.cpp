@@ -74,5 +74,71 @@ TEST(Urdf, joints_mimic_others) {
   EXPECT_EQ(other->mimic->offset, 0.1);
 }
 
+constexpr const char* two_fingers =
+    "<joint name='one' type='prismatic'><parent link='palm'/><child link='left'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' "
+    "velocity='1'/></joint><joint name='other' type='prismatic'><parent link='palm'/><child link='right'/><axis xyz='0 0 -1'/><limit "
+    "lower='-1' upper='1' effort='1' velocity='1'/></joint>";
+
+TEST(Urdf, joints_start_where_ros2_control_says) {
+  const auto control = [](const std::string& joint, const std::string& content) {
+    return "<ros2_control name='s' type='system'><joint name='" + joint + "'>" + content + "</joint></ros2_control>";
+  };
+  const auto start = [&](const std::string& content, std::size_t findings = 0, const std::string& joint = "one") {
+    const auto loaded = load(link("palm") + link("left") + link("right") + two_fingers + control(joint, content));
+    if (!loaded) throw std::runtime_error(loaded.error().message);
+    EXPECT_EQ(loaded->findings.size(), findings) << content << (loaded->findings.empty() ? "" : "\n" + loaded->findings.front().text());
+    return loaded->model.joint("one")->axes[0].initial_position;
+  };
+  const auto state = [](const std::string& name, const std::string& value) {
+    return "<state_interface name='" + name + "'><param name='initial_value'>" + value + "</param></state_interface>";
+  };
+  EXPECT_EQ(start("<command_interface name='position'><param name='min'>-1</param></command_interface>" + state("position", " 0.25 ")),
+            0.25);
+  EXPECT_EQ(start(state("velocity", "3") + state("position", "-0.5")), -0.5);
+  EXPECT_EQ(start("<state_interface name='position'/><param name='initial_position'>0.75</param>"), 0.75) << "of simulated hardware";
+  EXPECT_EQ(start(state("velocity", "0.5")), 0);
+  EXPECT_EQ(start(state("position", "7"), 1), 1) << "the nearest limit";
+  EXPECT_EQ(start(state("position", "nan"), 1), 0);
+  EXPECT_EQ(start(state("position", "up"), 1), 0);
+  EXPECT_EQ(start(state("position", "0.5"), 1, "nobody"), 0);
+}
+
+TEST(Urdf, joints_mimic_others_by_the_plugin_of_gazebo) {
+  const auto load_with = [](const std::string& leader, const std::string& more = {}) {
+    return load(link("palm") + link("left") + link("right") + two_fingers +
+                "<gazebo><plugin filename='libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so' name='m'><joint>" + leader +
+                "</joint><mimicJoint>other</mimicJoint>" + more + "</plugin></gazebo>");
+  };
+  const auto loaded = load_with("one", "<multiplier>-2.0</multiplier><offset>0.1</offset>");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
+  const JointDef* other = loaded->model.joint("other");
+  ASSERT_TRUE(other != nullptr && other->mimic);
+  EXPECT_EQ(other->mimic->leader, "one");
+  EXPECT_EQ(other->mimic->multiplier, -2);
+  EXPECT_EQ(other->mimic->offset, 0.1);
+  const auto lost = load_with("nobody");
+  ASSERT_TRUE(lost && lost->findings.size() == 1);
+  EXPECT_NE(lost->findings[0].text().find("joint \"other\" does not mimic joint \"nobody\": one of them does not exist"), std::string::npos)
+      << lost->findings[0].text();
+  EXPECT_FALSE(lost->model.joint("other")->mimic);
+}
+
+TEST(Urdf, elements_of_ros_count_in_sdformat_too) {
+  const auto loaded = load_model(
+      "<sdf version='1.7'><model name='arm'><link name='a'/><link name='b'/><link name='c'/>"
+      "<joint name='waist' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint>"
+      "<joint name='elbow' type='revolute'><parent>b</parent><child>c</child><axis><xyz>0 0 1</xyz></axis></joint>"
+      "<ros2_control name='s' type='system'><joint name='waist'><state_interface name='position'><param "
+      "name='initial_value'>0.5</param></state_interface></joint></ros2_control>"
+      "<plugin filename='libgazebo_mimic_joint_plugin.so' "
+      "name='m'><joint>waist</joint><mimicJoint>elbow</mimicJoint></plugin></model></sdf>",
+      "", std::nullopt, ModelPath{});
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(loaded->model.joint("waist")->axes[0].initial_position, 0.5);
+  ASSERT_TRUE(loaded->model.joint("elbow")->mimic);
+  EXPECT_EQ(loaded->model.joint("elbow")->mimic->leader, "waist");
+}
+
 }  // namespace
 }  // namespace sim

@@ -10,6 +10,12 @@ void put(XdrWriter& out, const Point3d& point) {
   for (const double value : {point.x, point.y, point.z}) out.f64(value);
 }
 
+Point3d take_point(XdrReader& in) {
+  Point3d point;
+  for (double* value : {&point.x, &point.y, &point.z}) *value = in.f64();
+  return point;
+}
+
 }  // namespace
 
 // ---- actarray ----
@@ -57,6 +63,40 @@ std::optional<std::vector<float>> decode_joint_numbers(std::string_view payload)
     for (float& value : values) value = in.f32();
     return values;
   });
+}
+
+// ---- limb ----
+
+std::string encode(const LimbState& state) {
+  return written([&](XdrWriter& out) {
+    for (const Point3d& point : {state.pose.position, state.pose.approach, state.pose.orientation}) put(out, point);
+    out.u32(state.state);
+  });
+}
+
+std::string encode(const Point3d& point) {
+  return written([&](XdrWriter& out) { put(out, point); });
+}
+
+std::optional<LimbPose> decode_limb_pose(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    LimbPose pose;
+    for (Point3d* point : {&pose.position, &pose.approach, &pose.orientation}) *point = take_point(in);
+    return pose;
+  });
+}
+
+std::optional<Point3d> decode_point(std::string_view payload) { return whole(payload, take_point); }
+
+std::optional<VectorMove> decode_vector_move(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const Point3d direction = take_point(in);
+    return VectorMove{direction, in.f32()};
+  });
+}
+
+std::optional<float> decode_float(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) { return in.f32(); });
 }
 
 // ---- gripper ----

@@ -30,6 +30,7 @@ enum class Interface : std::uint16_t {
   simulation = 31,
   camera = 40,
   actarray = 53,
+  limb = 54,
   imu = 60,
   pointcloud3d = 61,
   ranger = 62,

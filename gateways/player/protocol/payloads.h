@@ -190,6 +190,25 @@ std::optional<JointNumber> decode_joint_number(std::string_view payload);
 std::optional<std::int32_t> decode_joint(std::string_view payload);
 std::optional<std::vector<float>> decode_joint_numbers(std::string_view payload);
 
+// ---- limb ----
+struct LimbPose {
+  Point3d position, approach, orientation;
+};
+struct LimbState {
+  LimbPose pose;
+  std::uint8_t state = 1;  // idle 1, braked 2, moving 3, out of reach 4, collision 5
+};
+std::string encode(const LimbState& state);
+std::string encode(const Point3d& point);
+std::optional<LimbPose> decode_limb_pose(std::string_view payload);
+std::optional<Point3d> decode_point(std::string_view payload);
+struct VectorMove {
+  Point3d direction;
+  float length = 0;
+};
+std::optional<VectorMove> decode_vector_move(std::string_view payload);
+std::optional<float> decode_float(std::string_view payload);
+
 // ---- gripper ----
 struct GripperState {
   std::uint8_t state = 1;  // open 1, closed 2, moving 3, error 4

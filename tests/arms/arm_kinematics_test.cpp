@@ -1,5 +1,5 @@
 // Kinematics of the arm behind RTCManipulator, against the worked numbers of UR5 and against its own inverse on ten random chains.
-#include "manipulator/arm_kinematics.h"
+#include "arms/arm_kinematics.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace {
 
-using iface::ArmKinematics;
+using arms::ArmKinematics;
 using std::numbers::pi;
 
 shm::Joint joint_at(const Eigen::Isometry3d& place, const Eigen::Vector3d& axis, bool slides, double low, double high) {
@@ -109,7 +109,7 @@ TEST(ArmKinematics, solves_poses_of_ten_random_chains_to_a_micrometre) {
         EXPECT_GE((*found)[i], joints[i].lower);
         EXPECT_LE((*found)[i], joints[i].upper);
       }
-      worst = std::max(worst, iface::difference(arm.tip(goal), arm.tip(*found)).norm());
+      worst = std::max(worst, arms::difference(arm.tip(goal), arm.tip(*found)).norm());
       EXPECT_EQ(arm.solve(arm.tip(goal), from), found) << "the same question has the same answer";
     }
   }

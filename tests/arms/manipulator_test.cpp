@@ -1,5 +1,5 @@
 // Answers and motions of a JARA manipulator, without the wire.
-#include "manipulator/manipulator.h"
+#include "arms/manipulator.h"
 
 #include <gtest/gtest.h>
 #include <shm/layout.h>
@@ -9,12 +9,12 @@
 
 namespace {
 
-using iface::Answer;
-using iface::FingerCommand;
-using iface::Manipulator;
-using iface::Plan;
-using iface::Planner;
-using iface::Reply;
+using arms::Answer;
+using arms::FingerCommand;
+using arms::Manipulator;
+using arms::Plan;
+using arms::Planner;
+using arms::Reply;
 using Positions = std::vector<double>;
 using Pose = Eigen::Isometry3d;
 
@@ -160,7 +160,7 @@ TEST(Manipulator, moves_the_control_point_along_a_line) {
     f.step();
     const Eigen::Vector3d way = f.arm.pose().translation() - start.translation();
     ASSERT_LT(way.cross(line).norm(), 1e-5);
-    ASSERT_LT(iface::difference(f.arm.pose(), start).tail<3>().norm(), 1e-4);
+    ASSERT_LT(arms::difference(f.arm.pose(), start).tail<3>().norm(), 1e-4);
   }
   EXPECT_LT((f.arm.pose().translation() - start.translation() - offset.translation()).norm(), 1e-6);
 }
@@ -198,7 +198,7 @@ TEST(Manipulator, reaches_poses_with_a_base_and_a_control_point) {
   goal.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   ASSERT_TRUE(f.pose(goal).is_ok());
   f.run();
-  EXPECT_LT(iface::difference(f.arm.pose(), goal).norm(), 1e-6);
+  EXPECT_LT(arms::difference(f.arm.pose(), goal).norm(), 1e-6);
 }
 
 TEST(Manipulator, queues_motions_and_says_when_the_queue_is_full) {

@@ -1,10 +1,10 @@
-#include "manipulator/manipulator.h"
+#include "arms/manipulator.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace iface {
+namespace arms {
 namespace {
 
 constexpr double overshoot = 0.02;        // [rad] or [m] beyond a soft limit that is not an alarm
@@ -390,4 +390,4 @@ Reply Manipulator::set_home(const std::vector<double>& home) {
   return {};
 }
 
-}  // namespace iface
+}  // namespace arms

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "manipulator/arm_kinematics.h"
-#include "manipulator/motion.h"
+#include "arms/arm_kinematics.h"
+#include "arms/motion.h"
 
-namespace iface {
+namespace arms {
 
 enum class Answer { ok = 0, fault = -1, wrong_state = -2, wrong_value = -3, servo_off = -4, queue_full = -5, not_implemented = -6 };
 
@@ -84,4 +84,4 @@ class Planner {
 bool is_rotation(const Eigen::Matrix3d& matrix);
 std::string number_text(double value);
 
-}  // namespace iface
+}  // namespace arms

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace iface {
+namespace arms {
 
 class ArmKinematics {
  public:
@@ -24,6 +24,9 @@ class ArmKinematics {
   std::optional<std::vector<double>> solve(const Eigen::Isometry3d& goal, std::span<const double> from) const;
   // The same without a search from other positions: for the next point of a path.
   std::optional<std::vector<double>> solve_near(const Eigen::Isometry3d& goal, std::span<const double> from) const;
+  // The same for a point of the last joint's frame alone, with any orientation.
+  std::optional<std::vector<double>> solve_place(const Eigen::Vector3d& place, const Eigen::Vector3d& point,
+                                                 std::span<const double> from) const;
 
  private:
   struct Joint {
@@ -35,6 +38,8 @@ class ArmKinematics {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   std::vector<Eigen::Isometry3d> frames(std::span<const double> positions) const;
   Eigen::VectorXd step_towards(const Vector6& error, const std::vector<Eigen::Isometry3d>& frames, const std::vector<bool>& is_fixed) const;
+  // From other positions than the usual ones, within the limits; 0 <= which < other_starts.
+  std::vector<double> other_start(std::size_t which) const;
   bool improve(const Eigen::Isometry3d& goal, std::vector<double>& positions) const;
 
   std::vector<Joint> joints_;
@@ -46,4 +51,4 @@ bool is_chain(std::span<const shm::Joint> joints);
 // From one pose to another: translation and rotation vector, in the frame of both.
 Eigen::Matrix<double, 6, 1> difference(const Eigen::Isometry3d& goal, const Eigen::Isometry3d& from);
 
-}  // namespace iface
+}  // namespace arms

@@ -13,9 +13,9 @@
 #include <variant>
 #include <vector>
 
-#include "manipulator/planner.h"
+#include "arms/planner.h"
 
-namespace iface {
+namespace arms {
 
 struct FingerCommand {
   enum class Kind { close, move, hold };
@@ -136,4 +136,4 @@ class Manipulator {
   std::optional<double> finger_time_;  // [s] since the first step of the queue was given to the fingers
 };
 
-}  // namespace iface
+}  // namespace arms

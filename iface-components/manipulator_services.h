@@ -3,6 +3,7 @@
 // path is computed in the call, on the caller's thread.
 #pragma once
 
+#include <arms/manipulator.h>
 #include <rtm/ext/ManipulatorCommonInterface_CommonSkel.h>
 #include <rtm/ext/ManipulatorCommonInterface_MiddleSkel.h>
 
@@ -10,9 +11,14 @@
 #include <functional>
 #include <vector>
 
-#include "manipulator/manipulator.h"
-
 namespace iface {
+
+using arms::FingerCommand;
+using arms::Manipulator;
+using arms::Plan;
+using arms::Planner;
+using arms::Range;
+using arms::Reply;
 
 // Between the units of clients and rad, m.
 struct ClientUnits {

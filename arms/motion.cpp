@@ -1,9 +1,9 @@
-#include "manipulator/motion.h"
+#include "arms/motion.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace iface {
+namespace arms {
 
 Trapezoid Trapezoid::of(double distance, double speed, double time) {
   const double d = std::abs(distance);
@@ -66,4 +66,4 @@ std::vector<double> Motion::speeds() const {
   return most;
 }
 
-}  // namespace iface
+}  // namespace arms

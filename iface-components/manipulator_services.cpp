@@ -1,4 +1,4 @@
-#include "manipulator/services.h"
+#include "manipulator_services.h"
 
 #include <string_view>
 

@@ -1,10 +1,12 @@
-#include "manipulator/arm_kinematics.h"
+#include "arms/arm_kinematics.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-namespace iface {
+namespace arms {
 namespace {
 
 constexpr double rotation_weight = 0.3;                  // [m/rad]
@@ -13,7 +15,8 @@ constexpr double longest_step = 0.1, widest_step = 0.3;  // [m], [rad] of error 
 constexpr double goal_error = 1e-9;                      // [m], [rad] at which the search ends
 constexpr double accepted_error = 1e-6;                  // [m], [rad] of a solution
 constexpr int most_steps = 200;
-constexpr double no_limit = 2 * M_PI;  // of starting positions for joints without limits
+constexpr double no_limit = 2 * M_PI;                         // of starting positions for joints without limits
+constexpr std::array other_parts{0.5, 0.35, 0.65, 0.2, 0.8};  // of the way between the limits, where the search starts again
 
 bool is_within(const Eigen::Matrix<double, 6, 1>& error, double most) {
   return error.head<3>().norm() < most && error.tail<3>().norm() < most;
@@ -131,17 +134,51 @@ std::optional<std::vector<double>> ArmKinematics::solve_near(const Eigen::Isomet
   return std::nullopt;
 }
 
+std::vector<double> ArmKinematics::other_start(std::size_t which) const {
+  const double part = other_parts[which];
+  std::vector<double> start;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const double low = std::max(joints_[i].low, -no_limit), high = std::min(joints_[i].high, no_limit);
+    start.push_back(low + (i % 2 == 0 ? part : 1 - part) * (high - low));
+  }
+  return start;
+}
+
 std::optional<std::vector<double>> ArmKinematics::solve(const Eigen::Isometry3d& goal, std::span<const double> from) const {
   if (auto found = solve_near(goal, from)) return found;
-  for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
-    std::vector<double> start;
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const double low = std::max(joints_[i].low, -no_limit), high = std::min(joints_[i].high, no_limit);
-      start.push_back(low + (i % 2 == 0 ? part : 1 - part) * (high - low));
-    }
-    if (auto found = solve_near(goal, start)) return found;
+  for (std::size_t i = 0; i < other_parts.size(); ++i) {
+    if (auto found = solve_near(goal, other_start(i))) return found;
   }
   return std::nullopt;
 }
 
-}  // namespace iface
+std::optional<std::vector<double>> ArmKinematics::solve_place(const Eigen::Vector3d& place, const Eigen::Vector3d& point,
+                                                              std::span<const double> from) const {
+  const auto search = [&](std::vector<double> positions) -> std::optional<std::vector<double>> {
+    constexpr double damping = 0.01;
+    for (int step = 0; step < most_steps && !joints_.empty(); ++step) {
+      const auto all = frames(positions);
+      const Eigen::Vector3d at = all.back() * point;
+      Eigen::Vector3d error = place - at;
+      if (error.norm() < accepted_error) return positions;
+      if (error.norm() > longest_step) error *= longest_step / error.norm();
+      Eigen::Matrix3Xd jacobian(3, joints_.size());
+      for (std::size_t i = 0; i < joints_.size(); ++i) {
+        const Eigen::Vector3d axis = all[i].linear() * joints_[i].axis;
+        jacobian.col(static_cast<Eigen::Index>(i)) = joints_[i].slides ? axis : axis.cross(at - all[i].translation());
+      }
+      const Eigen::Matrix3d squared = jacobian * jacobian.transpose() + damping * damping * Eigen::Matrix3d::Identity();
+      const Eigen::VectorXd change = jacobian.transpose() * squared.ldlt().solve(error);
+      for (std::size_t i = 0; i < joints_.size(); ++i)
+        positions[i] = std::clamp(positions[i] + change[static_cast<Eigen::Index>(i)], joints_[i].low, joints_[i].high);
+    }
+    return std::nullopt;
+  };
+  if (auto found = search({from.begin(), from.end()})) return found;
+  for (std::size_t i = 0; i < other_parts.size(); ++i) {
+    if (auto found = search(other_start(i))) return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace arms

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace iface {
+namespace arms {
 
 // Part of a way (0..1) by time, from rest to rest.
 struct Trapezoid {
@@ -35,4 +35,4 @@ class Motion {
   Trapezoid profile_;
 };
 
-}  // namespace iface
+}  // namespace arms

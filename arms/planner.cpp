@@ -1,11 +1,11 @@
-#include "manipulator/planner.h"
+#include "arms/planner.h"
 
 #include <base/text.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace iface {
+namespace arms {
 namespace {
 
 constexpr double point_every = 0.005;  // [s] of a Cartesian path
@@ -189,4 +189,4 @@ Plan Planner::along_arc(const std::vector<double>& from, const Eigen::Isometry3d
   return follow(from, way);
 }
 
-}  // namespace iface
+}  // namespace arms
