@@ -74,7 +74,7 @@ TEST(SystemTemplate, two_lists_make_all_combinations) {
 }
 
 TEST(SystemTemplate, lists_are_ranges_words_and_numbers) {
-  const auto values = [](const std::string& text) { return ForEach::parse(text)->values; };
+  const auto values = [](const std::string& text) { return base::NameList::parse(text)->values; };
   EXPECT_EQ(values("robot=r0..r2"), (std::vector<std::string>{"r0", "r1", "r2"}));
   EXPECT_EQ(values("robot=r08..r11"), (std::vector<std::string>{"r08", "r09", "r10", "r11"}));
   EXPECT_EQ(values("robot=9..11"), (std::vector<std::string>{"9", "10", "11"}));
@@ -95,8 +95,8 @@ TEST(SystemTemplate, a_bad_list_is_named_with_what_was_expected) {
                                                                                   {"robot=a,a", "twice"},
                                                                                   {"robot=a b", "part of a name"},
                                                                                   {"robot={x}", "part of a name"}}) {
-    expect_template_error(ForEach::parse(text), why);
-    expect_template_error(ForEach::parse(text), "expected NAME=LIST");
+    expect_template_error(base::NameList::parse(text), why);
+    expect_template_error(base::NameList::parse(text), "expected NAME=LIST");
   }
 }
 

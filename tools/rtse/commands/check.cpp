@@ -116,7 +116,7 @@ void add_check(base::Command& app, Chosen& chosen) {
   auto lists = std::make_shared<std::vector<std::string>>();
   auto state = std::make_shared<std::string>("any");
   check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
-  check->add_option("--for", *lists, for_each_help)->type_name("NAME=LIST")->allow_extra_args(false);
+  check->add_option("--for", *lists, base::name_list_help)->type_name("NAME=LIST")->allow_extra_args(false);
   check->add_option("-s,--state", *state, "Expected state of every component; saved: the state in FILE")
       ->capture_default_str()
       ->check(base::one_of({"created", "inactive", "active", "error", "any", "saved"}, base::Case::does_not_matter));

@@ -22,7 +22,7 @@ struct SystemFile {
 
   void add_to(base::Command& command) {
     command.add_option("FILE", name, "RTSProfile, XML or YAML; -: standard input")->required();
-    command.add_option("--for", lists, for_each_help)->type_name("NAME=LIST")->allow_extra_args(false);
+    command.add_option("--for", lists, base::name_list_help)->type_name("NAME=LIST")->allow_extra_args(false);
   }
 };
 

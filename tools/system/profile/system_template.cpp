@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
 #include <set>
 
 #include "base/text.h"
@@ -10,7 +9,6 @@
 namespace editor {
 namespace {
 
-constexpr std::size_t most_values = 100'000;
 constexpr std::size_t most_entries = 1'000'000;  // components, or connections
 
 // ---- all texts of an entry that a name can stand in ----
@@ -57,7 +55,7 @@ void each_text(std::string& text, const F& visit) {
 }
 
 template <class T>
-bool has_name(const T& entry, const ForEach& list) {
+bool has_name(const T& entry, const base::NameList& list) {
   bool found = false;
   auto copy = entry;
   each_text(copy, [&](const std::string& text) { found = found || list.is_in(text); });
@@ -73,7 +71,7 @@ void make_unique(T&, const T&, const std::string&) {}
 
 // Neighbours are repeated together: all of the first robot, all of the second. False: too many.
 template <class T>
-bool repeat(std::vector<T>& entries, const ForEach& list, bool& is_used) {
+bool repeat(std::vector<T>& entries, const base::NameList& list, bool& is_used) {
   std::vector<T> all;
   for (auto at = entries.begin(); at != entries.end();) {
     const auto end = std::find_if_not(at, entries.end(), [&](const T& entry) { return has_name(entry, list); });
@@ -125,84 +123,12 @@ base::Result<void> check_names(const SavedSystem& system, const std::string& fil
   return {};
 }
 
-struct Numbered {
-  std::string prefix, digits;
-};
-
-std::optional<Numbered> numbered(const std::string& text) {
-  const auto at = text.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
-  if (at == text.size() || text.size() - at > 9) return std::nullopt;
-  return Numbered{text.substr(0, at), text.substr(at)};
-}
-
-// "r0..r9" and "r00..r99"; false when it is none, or too long.
-bool append_range(const std::string& from, const std::string& to, std::vector<std::string>& values) {
-  const auto a = numbered(from), b = numbered(to);
-  if (!a || !b || a->prefix != b->prefix) return false;
-  const auto first = std::stoul(a->digits), last = std::stoul(b->digits);
-  if (first > last || last - first >= most_values) return false;
-  for (auto i = first; i <= last; ++i) {
-    auto number = std::to_string(i);
-    if (a->digits.size() > 1 && number.size() < a->digits.size()) number.insert(0, a->digits.size() - number.size(), '0');
-    values.push_back(a->prefix + number);
-  }
-  return true;
-}
-
 }  // namespace
-
-base::Result<ForEach> ForEach::parse(const std::string& text) {
-  const auto fail = [&](const std::string& why) {
-    return base::Error{"--for " + base::in_quotes(text) + ": " + why +
-                       "; expected NAME=LIST, for example robot=r0..r99, robot=a,b or robot=100"};
-  };
-  const auto equals = text.find('=');
-  ForEach list;
-  list.name = text.substr(0, equals);
-  if (equals == std::string::npos || !is_name(list.name)) return fail("has no name");
-  const auto words = base::split_list(text.substr(equals + 1));
-  if (words.size() == 1 && words[0].find_first_not_of("0123456789") == std::string::npos) {
-    const auto count = base::parse_integer(words[0]).value_or(-1);
-    if (count < 1 || count > static_cast<std::int64_t>(most_values)) return fail("has " + words[0] + " values, not 1 to 100000");
-    for (std::int64_t i = 0; i < count; ++i) list.values.push_back(list.name + std::to_string(i));
-    return list;
-  }
-  for (const auto& word : words) {
-    const auto dots = word.find("..");
-    if (dots == std::string::npos) {
-      list.values.push_back(word);
-    } else if (!append_range(word.substr(0, dots), word.substr(dots + 2), list.values)) {
-      return fail(base::in_quotes(word) + " is not a range of at most 100000 numbers");
-    }
-  }
-  if (list.values.empty()) return fail("has no values");
-  if (list.values.size() > most_values) return fail("has more than 100000 values");
-  std::set<std::string> seen;
-  for (const auto& value : list.values) {
-    if (value.find_first_of("{}=&?/ \t") != std::string::npos)
-      return fail("value " + base::in_quotes(value) + " cannot be a part of a name");
-    if (!seen.insert(value).second) return fail("has " + base::in_quotes(value) + " twice");
-  }
-  return list;
-}
-
-std::string ForEach::filled(std::string text, std::size_t number) const {
-  const auto replace = [&](const std::string& what, const std::string& by) {
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
-  };
-  replace("{" + name + "}", values[number]);
-  replace("{" + name + "#}", std::to_string(number));
-  return text;
-}
-
-bool ForEach::is_in(const std::string& text) const {
-  return text.find("{" + name + "}") != std::string::npos || text.find("{" + name + "#}") != std::string::npos;
-}
 
 base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::string>& lists, const std::string& file) {
   std::set<std::string> names;
   for (const auto& text : lists) {
-    const auto list = ForEach::parse(text);
+    const auto list = base::NameList::parse(text);
     if (!list) return list.error();
     if (!names.insert(list->name).second) return base::Error{"--for " + base::in_quotes(text) + ": " + list->name + " has a list already"};
     bool is_used = false;
@@ -218,7 +144,7 @@ base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::s
 
 base::Result<std::vector<std::string>> filled_in(std::vector<std::string> texts, const std::vector<std::string>& lists) {
   for (const auto& text : lists) {
-    const auto list = ForEach::parse(text);
+    const auto list = base::NameList::parse(text);
     if (!list) return list.error();
     bool is_used = false;  // need not be: the names of the system count
     if (!repeat(texts, *list, is_used)) return base::Error{"--for " + base::in_quotes(text) + ": makes more than 1000000 texts"};
