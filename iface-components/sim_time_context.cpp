@@ -42,6 +42,8 @@ void SimTimeContext::init(coil::Properties& properties) {
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
   turn_ = static_cast<std::uint32_t>(number("sim_time.turn", highest_turn, turn_));
   participant_as_ = properties.getProperty("sim_time.participant");
+  has_own_thread_ = base::parse_bool(properties.getProperty("sim_time.own_thread")).value_or(false) || turn_ != 0 ||
+                    !participant_as_.empty() || !properties.getProperty("stack_size").empty();
 }
 
 void SimTimeContext::say_once(const std::string& line) {
@@ -111,33 +113,52 @@ void SimTimeContext::run_tick(const shm::Tick& tick) {
   tick_.end([this] { return hash_of_states(); });
 }
 
-void SimTimeContext::run(shm::Participant& participant) {
+void SimTimeContext::run_requests() {
+  if (!simulator_time_->stands_still()) return;
+  tick_.begin({});
+  const base::ScopedTick scope(tick_);
+  invokeWorkerPreDo();
+}
+
+shm::Participant::State SimTimeContext::run_alone(shm::Participant& participant) {
   shm::Tick tick;
   while (threadRunning()) {
-    switch (participant.wait(tick, longest_wait)) {
-      case shm::Participant::State::tick:
-        run_tick(tick);
-        break;
-      case shm::Participant::State::timed_out:
-        if (simulator_time_->stands_still()) {
-          tick_.begin({});
-          const base::ScopedTick scope(tick_);
-          invokeWorkerPreDo();
-        }
-        break;
-      case shm::Participant::State::dropped:
-        return say_once("the simulator has dropped this context from the lock step; joining again");
-      case shm::Participant::State::closed:
-        is_waiting_ = true;
-        return say_once("the simulator has exited; waiting for it");
-    }
+    const auto state = participant.wait(tick, longest_wait);
+    if (state == shm::Participant::State::tick)
+      run_tick(tick);
+    else if (state == shm::Participant::State::timed_out)
+      run_requests();
+    else
+      return state;
   }
+  return shm::Participant::State::timed_out;
+}
+
+// Until the participant is lost, the rate changes, or the thread is to end.
+shm::Participant::State SimTimeContext::run_in_group(const std::shared_ptr<shm::Participant>& participant) {
+  const std::chrono::nanoseconds period = getPeriod();
+  iface::TickGroup::Place place({server_id_, phase_, period}, participant, *this);
+  *place_.lock() = &place;  // from here on the end and a new rate are reported to it
+  const bool is_right = threadRunning() && getPeriod() == period;
+  const auto state = is_right ? place.wait() : shm::Participant::State::timed_out;
+  *place_.lock() = nullptr;
+  return state;
+}
+
+void SimTimeContext::run(const std::shared_ptr<shm::Participant>& participant) {
+  auto state = shm::Participant::State::timed_out;
+  while (threadRunning() && state == shm::Participant::State::timed_out)
+    state = has_own_thread_ ? run_alone(*participant) : run_in_group(participant);
+  if (state == shm::Participant::State::dropped) say_once("the simulator has dropped this context from the lock step; joining again");
+  if (state != shm::Participant::State::closed) return;
+  is_waiting_ = true;
+  say_once("the simulator has exited; waiting for it");
 }
 
 int SimTimeContext::svc() {
   while (threadRunning()) {
     if (const auto participant = join()) {
-      run(*participant);
+      run(participant);
       participant_.lock()->reset();  // ours is the last one, but for who interrupts it right now
     } else {
       // Without a simulator time stands still, and a component can still be activated and deactivated.
@@ -150,7 +171,13 @@ int SimTimeContext::svc() {
 }
 
 void SimTimeContext::interrupt() {
-  if (const auto participant = participant_.snapshot()) participant->interrupt();
+  if (has_own_thread_) {
+    if (const auto participant = participant_.snapshot()) participant->interrupt();
+    return;
+  }
+  const bool ends = !threadRunning();
+  auto place = place_.lock();
+  if (*place != nullptr) ends ? (*place)->leave() : (*place)->wake();
 }
 
 void SimTimeContext::onWakeUp() {
@@ -160,6 +187,7 @@ void SimTimeContext::onWakeUp() {
 
 RTC::ReturnCode_t SimTimeContext::onSetRate(double) {
   if (const auto participant = participant_.snapshot()) participant->set_period(getPeriod());
+  if (auto place = place_.lock(); *place != nullptr) (*place)->leave();  // its group is that of another period
   return RTC::RTC_OK;
 }
 

@@ -8,6 +8,8 @@
 //                                 components, which see input immediately (shm/lockstep.h)
 //   exec_cxt.sim_time.participant name of the lock-step participant; default: that of its owner
 //   exec_cxt.sim_time.hash_log    folder: a hash log of what the components read and write (base/hash_log.h) goes into a new file there
+//   exec_cxt.sim_time.own_thread  YES: a thread of its own. Default NO: the contexts of a process with equal phase and rate share one that
+//                                 calls them one after another (tick_group.h). Those with `turn`, `participant` or `stack_size` have one
 //   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
 //                                 without end, since its error would be part of the run
 //
@@ -19,7 +21,7 @@
 // or `periodic` is sent at the end of their tick.
 //
 // Transitions happen in a tick, so that they are repeatable; while time stands still (paused, or waiting for participants) at once.
-// Threads: the context's own thread ticks; everything else may be called from any thread.
+// Threads: the context's own thread joins the lock step, and ticks, or lets the group tick; everything else may be called from any thread.
 #pragma once
 
 #include <base/guarded.h>
@@ -33,8 +35,9 @@
 #include "sim_clock.h"
 #include "sim_tick.h"
 #include "simulator_time.h"
+#include "tick_group.h"
 
-class SimTimeContext : public RTC::PeriodicExecutionContext {
+class SimTimeContext : public RTC::PeriodicExecutionContext, private iface::TickGroup::Ticked {
  public:
   explicit SimTimeContext(const std::string& name = "SimTimeContext");
   ~SimTimeContext() override;
@@ -50,8 +53,11 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
 
  private:
   std::shared_ptr<shm::Participant> join();
-  void run(shm::Participant& participant);
-  void run_tick(const shm::Tick& tick);
+  void run(const std::shared_ptr<shm::Participant>& participant);
+  shm::Participant::State run_alone(shm::Participant& participant);
+  shm::Participant::State run_in_group(const std::shared_ptr<shm::Participant>& participant);
+  void run_tick(const shm::Tick& tick) override;
+  void run_requests() override;
   std::uint64_t hash_of_states() const;
   void interrupt();
   void say_once(const std::string& line);
@@ -63,11 +69,13 @@ class SimTimeContext : public RTC::PeriodicExecutionContext {
   std::uint32_t phase_ = 1, turn_ = 0;
   std::string participant_as_;     // empty: the owner's name
   bool waits_for_members_ = true;  // in lock step, for ever; false: the option member_timeout says how long
-  SimTick tick_;                   // svc() only
+  bool has_own_thread_ = false;    // else it is ticked by a group
+  SimTick tick_;                   // of the thread that ticks
   std::string hash_log_;           // where it is still to be made
   std::string said_;               // the last line, not to be said again
   bool is_waiting_ = false;        // and has said so
   base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::context> participant_;
+  base::Guarded<iface::TickGroup::Place*, base::Rank::context> place_;  // in the group, while there is one
 };
 
 extern "C" {

@@ -174,6 +174,8 @@ bool Barrier::State::remove_if_gone(Member& member) {
 
 void Barrier::State::scan() {
   std::erase_if(members, [this](Member& member) { return remove_if_gone(member); });
+  std::vector<bool> is_member(slot_count(segment), false);
+  for (const Member& member : members) is_member[member.index] = true;
   for (std::size_t i = 0; i < slot_count(segment); ++i) {
     ParticipantSlot& slot = slot_at(segment, i);
     const std::uint64_t owner = load(slot.owner);
@@ -181,7 +183,7 @@ void Barrier::State::scan() {
     const std::uint32_t state = load(slot.state);  // pairs with the release in Participant::join
     if (state == RTMSIM_PARTICIPANT_JOINING) {
       take_in(i);
-    } else if (std::none_of(members.begin(), members.end(), [i](const Member& member) { return member.index == i; })) {
+    } else if (!is_member[i]) {
       // Taken but never asked to join, dropped, or scribbled over: only of interest when its process is dead.
       if (load(slot.start_time) != 0 && !is_alive(mark_of(slot))) free_slot(slot, owner);
     }

@@ -144,6 +144,11 @@ class Participant {
   enum class State { tick, timed_out, dropped, closed };
   // Says that the last tick is done, if there was one, and waits for the next. After dropped or closed: join again.
   State wait(Tick& tick, std::chrono::nanoseconds timeout);
+  // The halves of wait(), for a thread that serves several participants (iface-components/tick_group.h). await() is wait(), but a tick that
+  // it reports begins with begin(). look() says without waiting whether there is one; timed_out: none.
+  State await(std::chrono::nanoseconds timeout);
+  State look() const;
+  Tick begin();
   // The tick is done; for those who have other things to do before they wait again.
   void finish();
   void set_period(std::chrono::nanoseconds period);

@@ -218,6 +218,34 @@ void Participant::Impl::look_for_tick(nanoseconds limit) const {
 void Participant::finish() { impl_->finish(steady_clock::now()); }
 
 Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
+  const State state = await(timeout);
+  if (state == State::tick) tick = begin();
+  return state;
+}
+
+Participant::State Participant::look() const {
+  const Impl& impl = *impl_;
+  if (load(impl.simulation.segment().header().state) != RTMSIM_STATE_LIVE) return State::closed;
+  const std::uint32_t state = load(impl.slot().state);
+  if (!impl.is_ours() || state == RTMSIM_PARTICIPANT_DROPPED) return State::dropped;
+  const bool is_called = load(impl.slot().go, std::memory_order_seq_cst) != impl.last_go && state == RTMSIM_PARTICIPANT_ACTIVE;
+  return is_called ? State::tick : State::timed_out;
+}
+
+Tick Participant::begin() {
+  Impl& impl = *impl_;
+  const ParticipantSlot& mine = impl.slot();
+  constexpr auto relaxed = std::memory_order_relaxed;
+  impl.last_go = load(mine.go, std::memory_order_seq_cst);  // pairs with the store in Barrier's release
+  const Tick tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
+                     load(mine.resets, relaxed), moment_of(impl.simulation.segment())};
+  impl.moment = tick.moment;
+  impl.is_in_tick = true;
+  impl.tick_start = steady_clock::now();
+  return tick;
+}
+
+Participant::State Participant::await(nanoseconds timeout) {
   Impl& impl = *impl_;
   const Segment& segment = impl.simulation.segment();
   ParticipantSlot& mine = impl.slot();
@@ -237,21 +265,10 @@ Participant::State Participant::wait(Tick& tick, nanoseconds timeout) {
     if (impl.is_interrupted.load(std::memory_order_relaxed) && impl.is_interrupted.exchange(false)) return State::timed_out;
     store(mine.sleeping, asleep, std::memory_order_seq_cst);  // pairs with the load in Barrier's wake
     const std::uint32_t seen = load(shared, std::memory_order_seq_cst);
-    const std::uint32_t go = load(mine.go, std::memory_order_seq_cst);
-    if (go != impl.last_go && load(mine.state) == RTMSIM_PARTICIPANT_ACTIVE) {
-      constexpr auto relaxed = std::memory_order_relaxed;
-      store(mine.sleeping, awake, relaxed);
-      tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
-              load(mine.resets, relaxed), moment_of(segment)};
-      impl.last_go = go;
-      impl.moment = tick.moment;
-      impl.is_in_tick = true;
-      impl.tick_start = now;
-      return State::tick;
-    }
-    if (now >= deadline) {
+    const bool is_called_now = look() == State::tick;
+    if (is_called_now || now >= deadline) {
       store(mine.sleeping, awake, std::memory_order_relaxed);
-      return State::timed_out;
+      return is_called_now ? State::tick : State::timed_out;
     }
     if (now >= impl.check_at) {
       impl.check_at = now + client_slice;

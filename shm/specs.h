@@ -30,7 +30,7 @@ IfaceSpec iface_spec(IfaceType type, const std::string& name, const Info& info) 
 }
 
 // Places in the lock step: a hundred robots with ten contexts each.
-inline constexpr std::uint32_t most_participants = 1024;
+inline constexpr std::uint32_t most_participants = 4096;
 
 // Those that are more than a copy of their info.
 IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = most_participants);

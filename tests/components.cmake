@@ -4,6 +4,7 @@ rtmsim_test(manipulator_test arms/arm_kinematics_test.cpp arms/limb_test.cpp arm
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
 rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
+rtmsim_test(tick_group_test iface-components/tick_group_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/tick_group.cpp LIBRARIES iface_link)
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)

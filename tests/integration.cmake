@@ -33,7 +33,7 @@ foreach(case kinds joints_and_grips unknown_names not_a_number crash sudden_ends
   set_tests_properties(run.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case wrong_usage optional_components misunderstood_values wrong_places suggestions closed_pipe hung_is_not_gone disconnect_from_one_that_hangs connections_come_back a_silent_port_is_named managers_of_one_machine bad_values_in_files name_servers delete_names disconnect_own_ports stopped_context why_not simulation_that_is_gone converted_types names_of_others)
+foreach(case wrong_usage optional_components misunderstood_values wrong_places suggestions closed_pipe hung_is_not_gone disconnect_from_one_that_hangs connections_come_back a_silent_port_is_named managers_of_one_machine bad_values_in_files name_servers delete_names disconnect_own_ports stopped_context why_not simulation_that_is_gone converted_types names_of_others fleets)
   add_test(NAME editor.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/editor.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(editor.${case} PROPERTIES LABELS integration TIMEOUT 300 SKIP_RETURN_CODE 77)

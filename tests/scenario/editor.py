@@ -37,6 +37,49 @@ def wrong_usage():
     refused("--json", "bogus", "x", code=2, says='unknown command "bogus"')
 
 
+# A system file is a template: {robot} stands for each value of --for. Many components are activated, waited for and listed by one call.
+def fleets():
+    count = 12
+    up("SourceAll", "SinkAll")
+    rig.host(*[f"{kind}?instance_name={kind}_r{i}" for i in range(count) for kind in ("SourceAll", "SinkAll")])
+    names = [f"{kind}_r{i}" for i in range(count) for kind in ("SourceAll", "SinkAll")]
+    rig.rtse("wait", *names, "--state", "any", "--timeout", "30")
+    rig.rtse("con", "SourceAll0:long", "SinkAll0:long", "-i", "wire")
+    rig.rtse("save", rig.path("one.xml"))
+    template = rig.path("fleet.xml")
+    with open(template, "w") as file:
+        text = open(rig.path("one.xml")).read()
+        # Only the first robot of the saved system, as a person would write a template.
+        parts = text.split("    <rts:Components ")
+        parts = [parts[0]] + [part for part in parts[1:] if "_r" not in part.split("instanceName=")[1].split(" ")[0]]
+        rest = text.split("    <rts:DataPortConnectors ", 1)[1]
+        text = "    <rts:Components ".join(parts).split("    <rts:DataPortConnectors ")[0] + "    <rts:DataPortConnectors " + rest
+        file.write(text.replace("SourceAll0", "SourceAll_{robot}").replace("SinkAll0", "SinkAll_{robot}"))
+    lists = ["--for", f"robot=r0..r{count - 1}"]
+    refused("load", template, says="component SourceAll_{robot} is a template; expected --for robot=LIST")
+    refused("load", template, *lists, "--for", "side=l,r", says="does not contain {side}")
+    refused("load", template, "--for", "robot=r9..r0", says="is not a range")
+    dry = rig.rtse("load", template, *lists, "--dry-run")
+    assert dry.count("connect ") == count, dry
+    rig.rtse("load", template, *lists)
+    rig.rtse("check", template, *lists)
+    rig.rtse("start", template, *lists)
+    rig.rtse("check", template, *lists, "--state", "active")
+    rig.rtse("wait", *names, "--state", "active", "--timeout", "10")
+    rig.rtse("deact", *names)
+    rig.rtse("wait", *names, "--state", "inactive", "--timeout", "10")
+    rig.rtse("act", *names)
+    rig.rtse("stop", template, *lists)
+    rig.rtse("wait", *names, "--state", "inactive", "--timeout", "10")
+    # Those that are there are activated, and each of the others has its line.
+    done = refused("act", "SourceAll_r0", "Nobody", "SourceAll_r1", "SourceAll_r2:long", says="Nobody: no such name; there are")
+    assert done.stderr.count("\n") <= 2, done.stderr
+    rig.rtse("wait", "SourceAll_r0", "SourceAll_r1", "--state", "active", "--timeout", "10")
+    assert "Nobody" in refused("wait", "SourceAll_r0", "Nobody", "--state", "any", "--timeout", "0.2").stderr
+    rig.rtse("teardown", template, *lists)
+    assert rig.rtse("save").count("DataPortConnectors ") == 1
+
+
 # What a profile does not require may be missing: a line each, and the rest is done.
 def optional_components():
     up("SourceAll", "SinkAll")

@@ -9,7 +9,7 @@
 
 #include "base/command.h"
 #include "base/text.h"
-#include "system/profile/rts_profile.h"
+#include "system/profile/system_template.h"
 
 namespace editor {
 namespace {
@@ -239,11 +239,13 @@ Result<std::vector<ComponentProperty>> check_against(const RunOptions& options, 
                               check_folders("resource", options.resource_paths)}) {
     if (!checked) return checked.error();
   }
+  const auto texts = filled_in(options.properties, options.lists);
+  if (!texts) return texts.error();
   std::vector<ComponentProperty> properties;
-  for (const auto& text : options.properties) {
+  for (const auto& text : *texts) {
     auto property = parse_property(text);
     if (!property) return property.error();
-    if (std::ranges::none_of(system.components, [&](const auto& component) { return component.instance == property->instance; }))
+    if (system.component(property->instance) == nullptr)
       return Error{"property " + base::in_quotes(text) + ": the system has no component " + property->instance};
     properties.push_back(std::move(*property));
   }

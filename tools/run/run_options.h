@@ -28,10 +28,12 @@ struct RunOptions {
   std::string expectations;        // YAML; empty: only that everything runs
   std::uint64_t seed = 0;          // of the world's noise
   bool one_process_each = false;   // a host for every component, instead of one for all
+  std::uint64_t hosts = 1;         // that the components are distributed over, neighbours of the profile together
   bool in_real_time = false;       // else as fast as possible
   std::vector<std::string> start;  // commands that start third-party components
   std::string start_folder;        // working directory of these commands; empty: that of rtse
   std::string run_file;            // YAML, see run_file.h
+  std::vector<std::string> lists;  // of a system that is a template, "robot=r0..r9" (system_template.h)
   std::vector<std::string> module_paths, resource_paths;
   std::vector<std::string> properties;  // "INSTANCE:KEY=VALUE", of the component when it is created
   double hang_timeout_s = 30;           // of real time, for one tick
@@ -92,7 +94,16 @@ inline constexpr auto run_option_rows = [] {
        .member = &O::one_process_each,
        .help = "A process for every component instead of one for all",
        .repeats_run = true},
+      {.name = "hosts",
+       .member = &O::hosts,
+       .help = "Number of component hosts; components that follow one another in SYSTEM share one",
+       .low = 1,
+       .high = 1000,
+       .repeats_run = true},
       {.name = "realtime", .member = &O::in_real_time, .help = "Run in real time"},
+      {.name = "for",
+       .member = &O::lists,
+       .help = "NAME=LIST: repeat what contains {NAME} for each value: robot=r0..r99, robot=a,b, robot=100"},
       {.name = "start",
        .member = &O::start,
        .help = "Command that starts third-party components (those without a module)",

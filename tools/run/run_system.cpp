@@ -27,6 +27,7 @@
 #include "run/run_wiring.h"
 #include "run/stepping.h"
 #include "run/stopped_process.h"
+#include "system/profile/system_template.h"
 #include "system/reporter.h"
 #include "system/saved_system.h"
 
@@ -105,7 +106,7 @@ class Run final : public RunningSystem {
   }
 
   Result<void> read_all() {
-    auto system = read_system(options_.system);
+    auto system = read_system(options_.system, options_.lists);
     if (!system) return system.error();
     system_ = std::move(*system);
     auto properties = check_against(options_, system_);
@@ -250,12 +251,11 @@ class Run final : public RunningSystem {
     }
     if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
     if (const auto started = start_time_host(); !started) return started;
-    if (!options_.one_process_each) {
-      if (const auto started = all.empty() ? Result<void>() : hosts_.start(all); !started) return started;
-    } else {
-      for (const auto* component : all) {
-        if (const auto started = hosts_.start(RunHosts::Members{component}); !started) return started;
-      }
+    const auto count = std::min(all.size(), options_.one_process_each ? all.size() : static_cast<std::size_t>(options_.hosts));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto begin = static_cast<std::ptrdiff_t>(i * all.size() / count),
+                 end = static_cast<std::ptrdiff_t>((i + 1) * all.size() / count);
+      if (const auto started = hosts_.start(RunHosts::Members(all.begin() + begin, all.begin() + end)); !started) return started;
     }
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
@@ -269,9 +269,13 @@ class Run final : public RunningSystem {
       const auto names = NamingTree::read(orb_, naming_.address(), 1000ms);
       naming_.answered(names.ok());
       if (!names) return false;
+      std::set<std::string> there;
+      for (const auto* entry : names->objects()) {
+        if (entry->kind == EntryKind::component && entry->health == Health::alive) there.insert(entry->id);
+      }
       missing.clear();
       for (const auto& name : expected) {
-        if (!names->find_component({false, {name + ".rtc"}, ""})) missing = name;
+        if (!there.contains(name)) missing = name;
       }
       return missing.empty();
     };

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/name_list.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/whole_file.h"
@@ -146,22 +147,58 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
   await_end(control, *iface, *simulation, duration);
 }
 
+namespace {
+
+// Number `number` in a square grid whose first is at `first`.
+shm::Pose in_grid(shm::Pose first, std::size_t number, std::size_t count, double spacing) {
+  const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  first.x += spacing * static_cast<double>(number % columns);
+  first.y += spacing * static_cast<double>(number / columns);
+  return first;
+}
+
+std::optional<std::string> spawn_one(Control& control, const shm::Iface& simulation, const SpawnOptions& options,
+                                     const std::optional<shm::Pose>& pose) {
+  auto request = shm::spawn_request(options.file, simulation.segment().is_shared());
+  if (!request) return control.fail(request.error().message), std::nullopt;
+  request->name = options.name;
+  request->has_pose = pose.has_value();
+  if (pose) request->pose = *pose;
+  const auto reply = control.ask(*request);
+  return reply ? std::optional(reply->message) : std::nullopt;
+}
+
+}  // namespace
+
 void spawn(Control& control, const SpawnOptions& options) {
   const auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
-  auto request = shm::spawn_request(options.file, simulation->segment().is_shared());
-  if (!request) return control.fail(request.error().message);
-  request->name = options.name;
-  request->has_pose = !options.pose.empty();
-  if (request->has_pose) {
-    const auto pose = shm::pose_of(options.pose);
-    if (!pose) return control.fail(pose.error().message);
-    request->pose = *pose;
+  std::optional<shm::Pose> pose;
+  if (!options.pose.empty()) {
+    const auto given = shm::pose_of(options.pose);
+    if (!given) return control.fail(given.error().message);
+    pose = *given;
   }
-  const auto reply = control.ask(*request);
-  if (!reply) return;
-  if (control.json()) return control.print({{"name", reply->message}});
-  std::cout << reply->message << '\n';
+  if (options.list.empty()) {
+    const auto name = spawn_one(control, *simulation, options, pose);
+    if (name && control.json()) return control.print({{"name", *name}});
+    if (name) std::cout << *name << '\n';
+    return;
+  }
+  const auto list = base::NameList::parse(options.list);
+  if (!list) return control.fail(list.error().message);
+  Json names = Json::array();
+  for (std::size_t i = 0; i < list->values.size() && !is_interrupted(); ++i) {
+    SpawnOptions one = options;
+    one.file = list->filled(options.file, i);
+    one.name = options.name.empty() ? list->values[i] : list->filled(options.name, i);
+    const auto name =
+        spawn_one(control, *simulation, one, in_grid(pose.value_or(shm::identity_pose), i, list->values.size(), options.spacing));
+    if (!name) return;  // the others would fail as well
+    names.push_back(*name);
+    if (!control.json()) std::cout << *name << '\n';
+  }
+  if (control.json()) control.print({{"names", names}});
 }
 
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {

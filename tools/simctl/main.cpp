@@ -188,6 +188,12 @@ void add_control(base::Command& app, Work& work) {
   spawn->add_option("--pose", options->pose, "X Y YAW, X Y Z YAW, or X Y Z ROLL PITCH YAW [m, rad], as separate words or one")
       ->expected(1, 6)
       ->delimiter(' ');
+  spawn->add_option("--for", options->list, "NAME=LIST: a model for each value, with {NAME} in FILE and --name filled in: robot=r0..r99")
+      ->type_name("NAME=LIST");
+  spawn->add_option("--spacing", options->spacing, "With --for: distance of the models in a square grid from --pose on [m]")
+      ->capture_default_str()
+      ->check(base::number_between(0.0, 1e6))
+      ->needs("--for");
   spawn->callback([&work, options] {
     if (const auto n = options->pose.size(); n == 1 || n == 2 || n == 5 || n > 6) {
       base::reject_command_line("--pose",

@@ -59,7 +59,9 @@ struct JointOptions {
 void joints(Control& control, const JointOptions& options);
 struct SpawnOptions {
   std::string file, name;
-  std::vector<double> pose;
+  std::vector<double> pose;  // of the first, if there are several
+  std::string list;          // "robot=r0..r9": a model for each value, with {robot} in file and name filled in; empty: one model
+  double spacing = 2;        // of several, in a square grid [m]
 };
 void spawn(Control& control, const SpawnOptions& options);
 struct ScreenshotOptions {

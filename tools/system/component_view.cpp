@@ -188,6 +188,28 @@ std::string absent_port(RTC::PortService_ptr port) {
   }
 }
 
+namespace {
+
+constexpr CORBA::ULong hash_limit = 0x7fffffff;
+
+}  // namespace
+
+PortIndex::PortIndex(const std::vector<ComponentView>& components) {
+  for (const auto& component : components) {
+    for (const auto& port : component.ports) {
+      if (!CORBA::is_nil(port.object)) owners_.emplace(port.object->_hash(hash_limit), PortOwner{&component, &port});
+    }
+  }
+}
+
+PortOwner PortIndex::owner_of(RTC::PortService_ptr port) const {
+  if (CORBA::is_nil(port)) return {};
+  for (auto [at, end] = owners_.equal_range(port->_hash(hash_limit)); at != end; ++at) {
+    if (at->second.port->object->_is_equivalent(port)) return at->second;
+  }
+  return {};
+}
+
 PortOwner owner_of(RTC::PortService_ptr port, const std::vector<ComponentView>& components) {
   for (const auto& component : components) {
     for (const auto& candidate : component.ports) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "system/naming_tree.h"
@@ -104,6 +105,15 @@ struct PortOwner {
   const PortView* port = nullptr;
 };
 PortOwner owner_of(RTC::PortService_ptr port, const std::vector<ComponentView>& components);
+// The same for many ports. The components must live as long.
+class PortIndex {
+ public:
+  explicit PortIndex(const std::vector<ComponentView>& components);
+  PortOwner owner_of(RTC::PortService_ptr port) const;
+
+ private:
+  std::unordered_multimap<CORBA::ULong, PortOwner> owners_;  // by the hash of the reference
+};
 // Whose a port is that none of them has, in words; it is asked whether it lives.
 std::string absent_port(RTC::PortService_ptr port);
 

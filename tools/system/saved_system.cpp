@@ -82,6 +82,7 @@ SavedConnector to_saved(const ConnectorView& connector, const PortOwner& source,
 // Every connection once, the OutPort or the provider's side first.
 void collect_connectors(const Session& session, const std::vector<ComponentView>& components, Snapshot& snapshot) {
   const CallLimit limited(session.call_timeout());
+  const PortIndex index(components);
   std::set<std::string> seen;
   for (const auto& component : components) {
     for (const auto& port : component.ports) {
@@ -90,7 +91,7 @@ void collect_connectors(const Session& session, const std::vector<ComponentView>
         std::vector<PortOwner> owners;
         std::string absent;
         for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
-          const auto owner = owner_of(connector.ports[i], components);
+          const auto owner = index.owner_of(connector.ports[i]);
           if (owner.port) owners.push_back(owner);
           if (!owner.port && absent.empty()) absent = absent_port(connector.ports[i]);
         }
@@ -275,10 +276,10 @@ std::vector<SavedTurn> turns(const SavedSystem& system, const std::vector<SavedT
     const auto* component = system.component(turn.instance);
     if (turn.path_uri.empty() && component) turn.path_uri = component->path_uri;
   }
+  std::set<std::string> named;
+  for (const auto& turn : listed) named.insert(turn.instance);
   for (const auto& component : system.components) {
-    const bool named =
-        std::any_of(listed.begin(), listed.end(), [&](const SavedTurn& turn) { return turn.instance == component.instance; });
-    if (named) continue;
+    if (named.contains(component.instance)) continue;
     for (const auto& context : component.contexts) all.push_back({component.instance, component.path_uri, component.id, context.id, 0});
     if (component.contexts.empty()) all.push_back({component.instance, component.path_uri, component.id, "0", 0});
   }

@@ -1,6 +1,7 @@
 #include "system/session.h"
 
 #include <algorithm>
+#include <optional>
 #include <ranges>
 #include <set>
 
@@ -70,6 +71,48 @@ Result<ComponentView> Session::component(const std::string& path, Detail detail)
   auto component = read_component(**entry, detail);
   if (!component.problem.empty()) return Error{"component " + component.path + " " + component.problem};
   return component;
+}
+
+std::vector<Result<ComponentView>> Session::components(const std::vector<std::string>& paths, Detail detail) const {
+  std::set<std::string> ids;
+  for (const auto& path : paths) {
+    const auto address = parse_address(path, working_path());
+    if (!address || address->segments.empty()) continue;
+    const auto& last = address->segments.back();
+    for (const auto& id : {split_kind(last).first, last, last.substr(0, last.rfind('.'))}) ids.insert(id);
+  }
+  const auto names = NamingTree::read(orb_, server_, call_timeout_, {.address = nullptr, .ids = &ids});
+  std::vector<std::optional<ComponentView>> views(paths.size());
+  if (names && paths.size() > 1) {
+    in_parallel(paths.size(), call_timeout_, [&](std::size_t i) {
+      const auto address = parse_address(paths[i], working_path());
+      const auto entry = address ? names->find_component(*address) : Result<const Entry*>(address.error());
+      if (!entry) return;
+      auto view = read_component(**entry, detail);
+      if (view.problem.empty()) views[i] = std::move(view);
+    });
+  }
+  std::optional<NamingTree> listed;  // all names, so that errors say what there is instead
+  std::vector<Result<ComponentView>> results;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (views[i]) {
+      results.emplace_back(std::move(*views[i]));
+      continue;
+    }
+    const auto address = parse_address(paths[i], working_path());
+    const bool is_here = names && address && !address->is_absolute && !address->segments.empty();
+    if (is_here && !listed) {
+      auto all = NamingTree::read(orb_, server_, call_timeout_, {.address = &*address, .ids = nullptr});
+      if (all) listed = std::move(*all);
+    }
+    const auto found = is_here && listed ? listed->candidates(*address) : Result<std::vector<const Entry*>>(Error{""});
+    if (found && found->empty()) {
+      results.emplace_back(listed->find_component(*address).error());
+    } else {
+      results.push_back(component(paths[i], detail));  // on another name server, ambiguous, or with a reason of its own
+    }
+  }
+  return results;
 }
 
 Result<Session::Port> Session::port(const std::string& path, bool with_connectors) const {

@@ -28,6 +28,8 @@ class Session {
   // The components at the other ends of its connections, and perhaps more: to say their names. `path`: of the component.
   Result<std::vector<ComponentView>> peers_of(const ComponentView& component, const std::string& path) const;
   Result<ComponentView> component(const std::string& path, Detail detail) const;
+  // Of each of these, in their order. One look at the name server is enough for those on the session's own.
+  std::vector<Result<ComponentView>> components(const std::vector<std::string>& paths, Detail detail) const;
   struct Port {
     ComponentView component;
     PortView port;

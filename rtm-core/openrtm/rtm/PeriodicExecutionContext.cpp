@@ -80,7 +80,7 @@ void PeriodicExecutionContext::init(coil::Properties& props) {
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
-  coil::Task::wait();
+  if (!isSteppingThread()) coil::Task::wait();  // a callback that has stopped its context starts it again: the thread goes on
   worker_->reset();
   m_svc = true;
   open(nullptr);

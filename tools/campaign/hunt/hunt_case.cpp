@@ -234,6 +234,7 @@ std::string plan_text(const Campaign& campaign, const HuntCase& tried) {
   add_list("faults", faults, false);
   add_list("never", never, false);
   add_list("eventually", eventually, false);
+  add_list("for", plan.run.lists, true);
   add_list("properties", plan.run.properties, true);
   std::vector<std::string> modules, resources;
   for (const auto& folder : plan.run.module_paths) modules.push_back(fs::absolute(folder).string());

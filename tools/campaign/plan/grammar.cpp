@@ -33,6 +33,7 @@ constexpr std::array plan_keys = {
     Key{"never", Form::maps, "condition", false, "Conditions that must never be true"},
     Key{"eventually", Form::maps, "condition", false, "Conditions that must become true"},
     Key{"hunt", Form::map, "hunt", false, "Faults and events that a hunt can try"},
+    Key{"for", Form::texts, {}, false, "Lists of a system that is a template: NAME=LIST, as --for of rtse run"},
     Key{"properties", Form::texts, {}, false, "Properties of components at their creation: INSTANCE:KEY=VALUE"},
     Key{"module_path", Form::texts, {}, false, "Folders with modules of components"},
     Key{"resource_path", Form::texts, {}, false, "Folders with models"},

@@ -265,6 +265,7 @@ Plan to_plan(const YAML::Node& root, const std::string& file) {
   read_deeds(root, plan);
   plan.hunt = to_hunt(root["hunt"], plan);
   plan.run.properties = words(root["properties"]);
+  plan.run.lists = words(root["for"]);
   for (const auto& path : words(root["module_path"])) plan.run.module_paths.push_back(in_folder(plan, path));
   for (const auto& path : words(root["resource_path"])) plan.run.resource_paths.push_back(in_folder(plan, path));
   plan.run.one_process_each = flag(root, "one_process_each", false);

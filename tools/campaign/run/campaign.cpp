@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "campaign/run/iface_faults.h"
 #include "campaign/run/subject_checks.h"
+#include "system/profile/system_template.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -137,8 +138,12 @@ Result<void> set_in_system(SavedSystem& system, const std::string& path, const s
   if (words.front() == "component") return set_component(system, path, words, value);
   if (words.front() == "connector") return set_connector(system, path, words, value);
   if (words.front() == "property") return check_property(system, path, words);
-  return Error{path + ": is no parameter; expected seed, component/..., property/..., connector/..., model/..., light/... or world/..."};
+  return Error{path +
+               ": is no parameter; expected seed, component/..., property/..., connector/..., model/..., light/..., world/... or for/..."};
 }
+
+// "for/robot": a list of a system that is a template.
+bool is_list_path(const std::string& path) { return path.starts_with("for/"); }
 
 // What a run loads: our programs and libraries, and every module of the plan.
 // The files that a row needs, in order: programs and libraries.
@@ -200,7 +205,7 @@ Result<Campaign> Campaign::prepare(Plan plan) {
   const auto spawned = spawned_models(plan);
   Campaign campaign(std::move(plan));
   if (const auto good = campaign.check_files(); !good) return good.error();
-  auto system = editor::read_system(campaign.plan().run.system);
+  auto system = campaign.read_system();
   if (!system) return system.error();
   campaign.system_ = std::move(*system);
   if (const auto done = campaign.survey_world(spawned); !done) return done.error();
@@ -214,6 +219,26 @@ Result<Campaign> Campaign::prepare(Plan plan) {
   if (!first) return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + first.error().message};
   if (const auto hashed = campaign.hash_everything(); !hashed) return hashed.error();
   return campaign;
+}
+
+// With the first value of each list that varies; the others are tried, too.
+Result<SavedSystem> Campaign::read_system() const {
+  const auto fail = [&](const Axis& axis, const std::string& why) {
+    return Error{"plan " + base::in_quotes(plan_->file) + ": vary: " + axis.path + ": " + why};
+  };
+  std::vector<const Axis*> lists;
+  for (const auto& axis : plan_->axes) {
+    if (is_list_path(axis.path)) lists.push_back(&axis);
+    if (is_list_path(axis.path) && axis.values.empty()) return fail(axis, "expected a list of values");
+  }
+  for (const auto* axis : lists) {
+    for (const auto& value : axis->values) {
+      Row row;
+      row.values.emplace_back(axis->path, value);
+      if (const auto tried = editor::read_system(plan_->run.system, lists_of(row)); !tried) return fail(*axis, tried.error().message);
+    }
+  }
+  return editor::read_system(plan_->run.system, lists_of({}));
 }
 
 Result<void> Campaign::survey_world(const std::vector<std::string>& spawned) {
@@ -250,6 +275,7 @@ Result<void> Campaign::check_files() const {
 Result<void> Campaign::check_axes() const {
   const auto fail = [&](const Error& error) { return Error{"plan " + base::in_quotes(plan_->file) + ": vary: " + error.message}; };
   for (const auto& axis : plan_->axes) {
+    if (is_list_path(axis.path)) continue;  // read_system() has tried them
     auto values = axis.values;
     if (axis.range && axis.range->kind == Range::Kind::normal) values = {base::format_number(axis.range->a)};
     if (axis.range && axis.range->kind != Range::Kind::normal)
@@ -307,6 +333,7 @@ void Campaign::hash_questions(base::ContentHash& hash) const {
   hash.add(base::format_number(plan_->run.duration_s) + (plan_->run.one_process_each ? " each" : "") +
            (plan_->checks_invariants ? " invariants" : ""));
   for (const auto& property : plan_->run.properties) hash.add(property);
+  for (const auto& list : plan_->run.lists) hash.add("for " + list);
   for (const auto& measure : plan_->measures) hash.add(measure.text);
   for (const auto& event : plan_->events) hash.add(event.text);
   for (const auto& fault : plan_->faults) hash.add(fault.text());
@@ -361,10 +388,20 @@ Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
 
 Result<void> Campaign::alter(editor::SavedSystem& system, const Row& row) const {
   for (const auto& [path, value] : row.values) {
-    if (is_world_path(path)) continue;
+    if (is_world_path(path) || is_list_path(path)) continue;
     if (const auto set = set_in_system(system, path, value); !set) return set;
   }
   return {};
+}
+
+std::vector<std::string> Campaign::lists_of(const Row& row) const {
+  auto lists = plan_->run.lists;
+  for (const auto& axis : plan_->axes) {
+    if (!is_list_path(axis.path)) continue;
+    const auto in_row = std::ranges::find(row.values, axis.path, &std::pair<std::string, std::string>::first);
+    lists.push_back(axis.path.substr(axis.path.find('/') + 1) + "=" + (in_row == row.values.end() ? axis.values.front() : in_row->second));
+  }
+  return lists;
 }
 
 std::vector<std::string> Campaign::properties_of(const Row& row) const {

@@ -38,6 +38,8 @@ class Campaign {
 
   // The world of a row; nothing when it is the plan's own.
   Result<std::optional<WorldFile>> world_of(const Row& row) const;
+  // "robot=r0..r9", those of the plan and of the row.
+  std::vector<std::string> lists_of(const Row& row) const;
   // Sets the row's values in the system.
   Result<void> alter(editor::SavedSystem& system, const Row& row) const;
   // "INSTANCE:KEY=VALUE", those of the plan and of the row.
@@ -47,6 +49,7 @@ class Campaign {
  private:
   explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}
   Result<void> check_files() const;
+  Result<editor::SavedSystem> read_system() const;
   Result<void> survey_world(const std::vector<std::string>& spawned);
   Result<void> check_axes() const;
   Result<void> hash_everything();

@@ -33,6 +33,7 @@ editor::RunOptions options_of(const Campaign& campaign, const Row& row, const Ro
   run.seed = row.seed;
   run.duration_s = options.duration_s.value_or(run.duration_s);
   run.properties = campaign.properties_of(row);
+  run.lists = campaign.lists_of(row);
   run.keep = options.folder;
   if (options.records || !options.page.empty()) run.record = recording_of(options);
   return run;

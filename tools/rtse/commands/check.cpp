@@ -6,6 +6,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "system/profile/matched_system.h"
+#include "system/profile/system_template.h"
 
 namespace editor {
 namespace {
@@ -93,8 +94,9 @@ void check_component(const Matched& matched, const SavedComponent& saved, const 
 }
 
 // State: that of every component; "any": not compared; "saved": as the file says.
-void check_system(const Session& session, Console& console, const std::string& file, const std::string& state) {
-  const auto system = read_system(file);
+void check_system(const Session& session, Console& console, const std::string& file, const std::vector<std::string>& lists,
+                  const std::string& state) {
+  const auto system = read_system(file, lists);
   if (!system) return console.fail(system.error());
   const auto matched = Matched::read(session, *system, {.contexts = true, .connectors = true, .configuration = true});
   if (!matched) return console.fail(matched.error());
@@ -111,13 +113,15 @@ void check_system(const Session& session, Console& console, const std::string& f
 void add_check(base::Command& app, Chosen& chosen) {
   auto* check = app.add_subcommand("check", "Compare the running system with a saved one; print a line per difference");
   auto file = std::make_shared<std::string>();
+  auto lists = std::make_shared<std::vector<std::string>>();
   auto state = std::make_shared<std::string>("any");
   check->add_option("FILE", *file, "RTSProfile, XML or YAML")->required();
+  check->add_option("--for", *lists, base::name_list_help)->type_name("NAME=LIST")->allow_extra_args(false);
   check->add_option("-s,--state", *state, "Expected state of every component; saved: the state in FILE")
       ->capture_default_str()
       ->check(base::one_of({"created", "inactive", "active", "error", "any", "saved"}, base::Case::does_not_matter));
-  check->callback([&chosen, file, state] {
-    chosen.work = [=](const Session& session, Console& console) { check_system(session, console, *file, *state); };
+  check->callback([&chosen, file, lists, state] {
+    chosen.work = [=](const Session& session, Console& console) { check_system(session, console, *file, *lists, *state); };
   });
 }
 

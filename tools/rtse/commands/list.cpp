@@ -5,6 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <unordered_map>
 
 #include "base/text.h"
 #include "rtse/command.h"
@@ -80,11 +81,17 @@ Json summary(const Entry& entry, const ComponentView* component) {
   return value;
 }
 
-const ComponentView* view_of(const Entry& entry, const std::vector<ComponentView>& components) {
-  for (const auto& component : components) {
-    if (component.path == entry.path()) return &component;
-  }
-  return nullptr;
+using Views = std::unordered_map<std::string, const ComponentView*>;  // by path
+
+Views by_path(const std::vector<ComponentView>& components) {
+  Views views;
+  for (const auto& component : components) views.emplace(component.path, &component);
+  return views;
+}
+
+const ComponentView* view_of(const Entry& entry, const Views& views) {
+  const auto found = views.find(entry.path());
+  return found == views.end() ? nullptr : found->second;
 }
 
 void print_row(std::string_view state, std::string_view rate, std::string_view ports_in_use, std::string_view name) {
@@ -107,8 +114,7 @@ void print_long(const Entry& entry, const ComponentView* component) {
   print_row(state, rate, counts, display(entry));
 }
 
-void list_level(Console& console, const Entry& entry, const ListOptions& options, const std::vector<ComponentView>& components,
-                Json& json) {
+void list_level(Console& console, const Entry& entry, const ListOptions& options, const Views& components, Json& json) {
   std::vector<const Entry*> shown;
   if (entry.kind == EntryKind::context) {
     for (const auto& child : entry.children) shown.push_back(&child);
@@ -135,7 +141,7 @@ void list_level(Console& console, const Entry& entry, const ListOptions& options
   }
 }
 
-void print_tree(const Entry& entry, const std::string& indent, const std::vector<ComponentView>& components) {
+void print_tree(const Entry& entry, const std::string& indent, const Views& components) {
   for (const auto& child : entry.children) {
     const bool last = &child == &entry.children.back();
     std::cout << indent << (last ? "`-- " : "|-- ") << display(child);
@@ -282,7 +288,7 @@ void list(const Session& session, Console& console, const ListOptions& options) 
   std::vector<ComponentView> components;
   if (options.is_long) components = read_components(*names, {.contexts = true, .connectors = true}, session.call_timeout());
   Json json = Json::array();
-  list_level(console, **entry, options, components, json);
+  list_level(console, **entry, options, by_path(components), json);
   if (console.json()) console.print(json);
 }
 
@@ -296,11 +302,11 @@ void tree(const Session& session, Console& console, const std::string& path) {
   const auto components = read_components(*names, {.contexts = true}, session.call_timeout());
   if (console.json()) {
     Json json = Json::array();
-    list_level(console, **entry, {.path = "", .is_long = true, .recurse = true}, components, json);
+    list_level(console, **entry, {.path = "", .is_long = true, .recurse = true}, by_path(components), json);
     return console.print(json);
   }
   std::cout << (*entry)->path() << '\n';
-  print_tree(**entry, "", components);
+  print_tree(**entry, "", by_path(components));
 }
 
 void cat(const Session& session, Console& console, const std::string& path, bool is_long) {

@@ -14,8 +14,7 @@ namespace editor {
 namespace {
 
 void change_state(const Session& session, Console& console, const std::vector<std::string>& paths, Transition transition, int context) {
-  for (const auto& path : paths) {
-    const auto component = session.component(path, {.contexts = true});
+  for (const auto& component : session.components(paths, {.contexts = true})) {
     if (!component) {
       console.fail(component.error());
       continue;
@@ -25,8 +24,7 @@ void change_state(const Session& session, Console& console, const std::vector<st
 }
 
 void exit_components(const Session& session, Console& console, const std::vector<std::string>& paths) {
-  for (const auto& path : paths) {
-    const auto component = session.component(path, {});
+  for (const auto& component : session.components(paths, {})) {
     if (!component) {
       console.fail(component.error());
       continue;
@@ -86,23 +84,26 @@ bool is_gone(const Session& session, const std::string& path) {
   return meant && std::ranges::all_of(*meant, [](const Entry* entry) { return entry->health == Health::zombie; });
 }
 
-void wait_for_state(const Session& session, Console& console, const std::vector<std::string>& paths, const std::string& state,
-                    double timeout_s) {
+void wait_for_state(const Session& session, Console& console, std::vector<std::string> paths, const std::string& state, double timeout_s) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
-  for (const auto& path : paths) {
-    while (true) {
-      const auto component = session.component(path, {.contexts = true});
+  while (true) {
+    const bool is_over = std::chrono::steady_clock::now() >= deadline;
+    const auto components = session.components(paths, {.contexts = true});
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const auto& component = components[i];
       const auto now = component ? state_text(component->state()) : std::string("not there or does not answer");
-      if (base::equal_ignoring_case(now, state) || (component && base::equal_ignoring_case(state, "any"))) break;
-      if (base::equal_ignoring_case(state, "gone") && !component && is_gone(session, path)) break;
-      if (std::chrono::steady_clock::now() >= deadline) {
-        console.fail({"component " + base::in_quotes(path) + ": is " + now + " after " + base::format_number(timeout_s) +
-                      " s, waited for " + state + (component ? "" : " (" + component.error().message + ")")});
-        break;
-      }
-      // A component that is not there yet can tell nobody that it has come: asking again is all that can be done.
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      if (base::equal_ignoring_case(now, state) || (component && base::equal_ignoring_case(state, "any"))) continue;
+      if (base::equal_ignoring_case(state, "gone") && !component && is_gone(session, paths[i])) continue;
+      missing.push_back(paths[i]);
+      if (!is_over) continue;
+      console.fail({"component " + base::in_quotes(paths[i]) + ": is " + now + " after " + base::format_number(timeout_s) +
+                    " s, waited for " + state + (component ? "" : " (" + component.error().message + ")")});
     }
+    if (missing.empty() || is_over) return;
+    paths = std::move(missing);
+    // A component that is not there yet can tell nobody that it has come: asking again is all that can be done.
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
-#include "system/profile/rts_profile.h"
+#include "system/profile/system_template.h"
 #include "system/saved_system.h"
 
 namespace editor {
@@ -15,8 +15,19 @@ struct SaveCall {
   SaveOptions system;
 };
 
+// A saved system, and the lists of its template.
+struct SystemFile {
+  std::string name;
+  std::vector<std::string> lists;
+
+  void add_to(base::Command& command) {
+    command.add_option("FILE", name, "RTSProfile, XML or YAML; -: standard input")->required();
+    command.add_option("--for", lists, base::name_list_help)->type_name("NAME=LIST")->allow_extra_args(false);
+  }
+};
+
 struct LoadCall {
-  std::string file;
+  SystemFile file;
   LoadOptions options;
 };
 
@@ -33,8 +44,8 @@ void save_system(const Session& session, Console& console, const SaveCall& call)
 
 // Reads the profile, changes the running system by it, and prints what failed; in a dry run, what would be done.
 template <class F>
-void change_system(Console& console, const std::string& file, bool dry_run, F change) {
-  const auto system = read_system(file);
+void change_system(Console& console, const SystemFile& file, bool dry_run, F change) {
+  const auto system = read_system(file.name, file.lists);
   if (!system) return console.fail(system.error());
   const Changes changes = change(*system);
   if (dry_run) {
@@ -60,9 +71,9 @@ void add_system(base::Command& app, Chosen& chosen) {
 
   const auto add = [&](const char* name, const char* help, Changes (*change)(const Session&, const SavedSystem&, bool)) {
     auto* command = app.add_subcommand(name, help);
-    auto file = std::make_shared<std::string>();
+    auto file = std::make_shared<SystemFile>();
     auto dry_run = std::make_shared<bool>(false);
-    command->add_option("FILE", *file, "RTSProfile, XML or YAML; -: standard input")->required();
+    file->add_to(*command);
     command->add_flag("--dry-run", *dry_run, "Print the actions without executing them");
     command->callback([&chosen, file, dry_run, change] {
       chosen.work = [=](const Session& session, Console& console) {
@@ -72,7 +83,7 @@ void add_system(base::Command& app, Chosen& chosen) {
   };
   auto* load = app.add_subcommand("load", "Restore connections and configuration of a saved system");
   auto load_call = std::make_shared<LoadCall>();
-  load->add_option("FILE", load_call->file, "RTSProfile, XML or YAML; -: standard input")->required();
+  load_call->file.add_to(*load);
   load->add_flag("--dry-run", load_call->options.dry_run, "Print the actions without executing them");
   load->add_flag("--states", load_call->options.with_states, "Also restore component states (activate, deactivate, reset)");
   load->add_flag("--force", load_call->options.force, "Also set values that violate the components' types and constraints");

@@ -43,6 +43,7 @@ bool same_connection(const ConnectorView& connector, const PortView& source, con
 }
 
 Matched::Matched(std::vector<ComponentView> components, const SavedSystem& system) : components_(std::move(components)) {
+  index();
   for (const auto& saved : system.components) {
     const auto* component = find(saved.path_uri, saved.instance);
     if (!saved.is_required) optional_.insert(saved.instance);
@@ -59,14 +60,24 @@ Result<Matched> Matched::read(const Session& session, const SavedSystem& system,
   return Matched(read_components(*names, detail, session.call_timeout()), system);
 }
 
-const ComponentView* Matched::find(const std::string& uri, const std::string& instance) const {
-  const ComponentView* by_name = nullptr;
-  for (const auto& component : components_) {
-    if (path_uri(component) == uri) return &component;
-    const bool same = component.instance == instance || component.segments.back() == instance + ".rtc";
-    if (same && (!by_name || !by_name->problem.empty())) by_name = &component;
+// Of several with one name the first that answers counts, else the first.
+void Matched::index() {
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    const auto& component = components_[i];
+    by_uri_.emplace(path_uri(component), i);
+    auto bound = component.segments.back();
+    if (bound.ends_with(".rtc")) bound.resize(bound.size() - std::string(".rtc").size());
+    for (const auto& name : {component.instance, bound}) {
+      const auto [at, is_new] = by_name_.emplace(name, i);
+      if (!is_new && !components_[at->second].problem.empty() && component.problem.empty()) at->second = i;
+    }
   }
-  return by_name;
+}
+
+const ComponentView* Matched::find(const std::string& uri, const std::string& instance) const {
+  if (const auto found = by_uri_.find(uri); found != by_uri_.end()) return &components_[found->second];
+  const auto found = by_name_.find(instance);
+  return found == by_name_.end() ? nullptr : &components_[found->second];
 }
 
 bool Matched::leaves_out(const SavedTarget& target) const {

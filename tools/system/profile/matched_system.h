@@ -3,6 +3,7 @@
 
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "system/profile/rts_profile.h"
@@ -41,7 +42,10 @@ class Matched {
   const std::vector<std::string>& absent() const { return absent_; }
 
  private:
+  void index();
+
   std::vector<ComponentView> components_;
+  std::unordered_map<std::string, std::size_t> by_uri_, by_name_;  // in components_
   std::vector<Error> missing_;
   std::vector<std::string> absent_;
   std::set<std::string> optional_;  // instances that the profile does not require
