@@ -95,12 +95,13 @@ base::Result<void> Iface::State::prepare() {
   const IfaceRow& row = row_of(segment.name().type);
   const auto fail = [&](const char* what) { return base::Error{"shared memory " + segment.name().text() + " " + what}; };
   const std::span<const std::byte> constants = segment.info();
-  if (constants.size() < row.info_size) return fail("has an info that is too small");
-  info.resize(round_up(constants.size(), 8) / 8);
+  if (constants.size() < (row.oldest_info_size > 0 ? row.oldest_info_size : row.info_size)) return fail("has an info that is too small");
+  info.assign(round_up(std::max(constants.size(), row.info_size), 8) / 8, 0);
   std::memcpy(info.data(), constants.data(), constants.size());
   const auto plausible = plausible_count(row, info.data());
   if (!plausible) return fail("has a count that can't be");
-  if (constants.size() < info_size(row, *plausible)) return fail("has an info that is too small for its count");
+  if (row.oldest_info_size == 0 && constants.size() < info_size(row, *plausible))
+    return fail("has an info that is too small for its count");
   if (row.sample_tail.arrays > 0) count = *plausible;
   const Area& cells = segment.area(AreaIndex::cells);
   const std::size_t room = cells.count > 0 ? cells.stride - 8 : 0;

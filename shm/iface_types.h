@@ -68,7 +68,9 @@ enum class IfaceType : std::uint32_t {
 struct IfaceRow {
   IfaceType type;
   std::string_view name, meaning;
-  std::size_t info_size, sample_size;  // fixed parts; a type without samples publishes frames
+  std::size_t info_size;             // fixed part
+  std::size_t oldest_info_size = 0;  // of older simulators, whose info ends earlier: the rest is 0; 0: as info_size
+  std::size_t sample_size = 0;       // fixed part; a type without samples publishes frames
   std::span<const Field> info, sample;
   std::uint32_t command_values = 0;  // of each command, for types whose ifaces have all as many; 0: no commands, or the iface says
   std::uint64_t (*count)(const void* info) = nullptr;  // elements of an array of its tails, or pixels of a frame
@@ -127,6 +129,8 @@ inline constexpr std::array position2d_info{field<&Position2dInfo::model>("model
                                             field<&Position2dInfo::max_yaw_acceleration>("max_yaw_acceleration", "rad/s^2"),
                                             field<&Position2dInfo::wheel_separation>("wheel_separation", "m"),
                                             field<&Position2dInfo::wheel_radius>("wheel_radius", "m"),
+                                            field<&Position2dInfo::wheel_base>("wheel_base", "m"),
+                                            field<&Position2dInfo::max_steering_angle>("max_steering_angle", "rad"),
                                             field<&Position2dInfo::rate>("rate", "Hz"),
                                             field<&Position2dInfo::pose>("pose")};
 inline constexpr std::array position2d_sample{field<&Position2dSample::stamp>("stamp"),
@@ -326,7 +330,8 @@ inline constexpr std::array iface_types{
     IfaceRow{.type = IfaceType::position2d,
              .name = "position2d",
              .meaning = "drive of a robot on wheels",
-             .info_size = detail::size<Position2dInfo, 272>(),
+             .info_size = detail::size<Position2dInfo, 288>(),
+             .oldest_info_size = 272,
              .sample_size = detail::size<Position2dSample, 200>(),
              .info = detail::position2d_info,
              .sample = detail::position2d_sample,

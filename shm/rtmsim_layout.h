@@ -106,9 +106,10 @@ typedef struct {
 enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one lease has it */
 
 /* What a client commands. header.command_values doubles follow it; what a client does not give is 0. Velocity: position2d vx vy va;
- * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Joints: for each joint of the iface
- * mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows the
- * commands of all its clients, each for its own joints. */
+ * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Car: position2d of a drive whose info
+ * gives a wheel base: speed [m/s] and steering angle [rad] of a wheel in the middle between the steered ones. Joints: for each joint of the
+ * iface mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows
+ * the commands of all its clients, each for its own joints. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
   int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
@@ -119,7 +120,7 @@ typedef struct {
 /* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had left. */
 enum { RTMSIM_COMMAND_TIMED = 1 };
 
-enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2, RTMSIM_COMMAND_JOINTS = 3 };
+enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2, RTMSIM_COMMAND_JOINTS = 3, RTMSIM_COMMAND_CAR = 4 };
 
 typedef struct {
   uint64_t owner;               /* [atomic] (pid << 32) | a number unique in that process; 0 = free */
@@ -232,6 +233,8 @@ typedef struct {
   double wheel_separation, wheel_radius;
   double rate;
   char model[128];
+  double wheel_base;         /* from the steered wheels to the axle that commands are of; 0: not steered, or an older simulator [m] */
+  double max_steering_angle; /* of a wheel in the middle between the steered ones [rad] */
 } rtmsim_position2d_info;
 
 typedef struct {
