@@ -39,6 +39,7 @@ const std::vector<Layer> layers = {
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
     {"shm", {"shm", "base"}, {"JSON"}},
+    {"ros", {"ros", "base"}},
     {"sim-server/reader", {"reader", "base"}},
     {"sim-server/asset-reader",
      {"asset-reader", "reader", "render", "world", "base"},
@@ -54,10 +55,10 @@ const std::vector<Layer> layers = {
     {"gateways/player/protocol", {"protocol", "base"}},
     {"gateways/player", {"protocol", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
-    {"tools/channels/views", {"channels", "shm", "base"}, {"JSON"}},
-    {"tools/channels", {"channels", "base", "stubs"}, {}, {"channels/views/"}},
+    {"tools/channels/views", {"channels", "ros", "shm", "base"}, {"JSON"}},
+    {"tools/channels", {"channels", "ros", "base", "stubs"}, {}, {"channels/views/"}},
     {"tools/recording/mcap", {"recording", "base"}, {"zstd", "lz4", "deflate"}},
-    {"tools/recording", {"recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG"}},
+    {"tools/recording", {"recording", "channels", "ros", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG"}},
     {"tools/run", {"run", "recording", "channels", "system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "YAML", "JSON"}},
     {"tools/campaign",
      {"campaign", "run", "recording", "system", "base", "stubs"},
@@ -100,6 +101,7 @@ std::string owner(const std::string& header) {
       {"world/", "world"},
       {"physics/", "physics"},
       {"protocol/", "protocol"},
+      {"ros/", "ros"},
       {"system/", "system"},
       {"channels/", "channels"},
       {"recording/", "recording"},
@@ -188,7 +190,7 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"base", "shm", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
+  for (const char* top : {"base", "shm", "ros", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

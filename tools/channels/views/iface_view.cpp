@@ -1,4 +1,5 @@
 #include "channels/views/iface_view.h"
+#include "channels/ros_schema.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ template <class Message>
 Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
   return {topic_of(iface.type(), iface.name()) + suffix,
           "cdr",
-          ros::schema<Message>(),
+          channels::schema_of<Message>(),
           {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
 }
 

@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "channels/channel.h"
 #include "channels/exchange.h"
-#include "channels/ros/messages.h"
+#include "ros/messages.h"
 #include "shm/client.h"
 
 namespace channels {

@@ -15,11 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include "channels/channel.h"
-
 namespace ros {
 
 static_assert(std::endian::native == std::endian::little, "the writer copies numbers as they lie in memory");
+
+// The four bytes before a message: plain CDR, little-endian, no options.
+inline constexpr std::array<char, 4> little_endian_head{0, 1, 0, 0};
 
 // A type of its own in definitions, an octet on the wire.
 enum class Byte : std::uint8_t {};
@@ -65,7 +66,7 @@ class Octets {
 template <class Out>
 class Encoder {
  public:
-  explicit Encoder(Out out) : out_(std::move(out)) { out_.append(channels::cdr_head(true).data(), head_size); }
+  explicit Encoder(Out out) : out_(std::move(out)) { out_.append(little_endian_head.data(), little_endian_head.size()); }
 
   template <class T>
   void operator()(std::string_view, const T& value) {
@@ -115,7 +116,7 @@ class Encoder {
     if (const auto rest = (out_.size() - head_size) & (size - 1); rest != 0) out_.fill(size - rest);  // sizes are powers of two
   }
 
-  static constexpr std::size_t head_size = 4;
+  static constexpr std::size_t head_size = little_endian_head.size();
   Out out_;
 };
 
@@ -218,11 +219,6 @@ std::vector<char> encode(const T& message) {
   std::vector<char> octets(encoded_size(message));
   encode(message, octets);
   return octets;
-}
-
-template <Message T>
-channels::Schema schema() {
-  return {std::string(T::name), "ros2msg", Definitions::of<T>()};
 }
 
 }  // namespace ros
