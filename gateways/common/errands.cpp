@@ -1,4 +1,4 @@
-#include "errands.h"
+#include "common/errands.h"
 
 #include <errno.h>
 #include <sys/eventfd.h>
