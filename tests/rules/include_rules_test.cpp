@@ -39,7 +39,7 @@ const std::vector<Layer> layers = {
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
     {"shm", {"shm", "base"}, {"JSON"}},
-    {"ros", {"ros", "base"}},
+    {"ros", {"ros", "shm", "base"}},
     {"sim-server/reader", {"reader", "base"}},
     {"sim-server/asset-reader",
      {"asset-reader", "reader", "render", "world", "base"},
