@@ -355,7 +355,7 @@ struct Range {
   static constexpr std::string_view constants = "uint8 ULTRASOUND=0\nuint8 INFRARED=1\n";
   Header header{};
   std::uint8_t radiation_type = 0;
-  float field_of_view = 0, min_range = 0, max_range = 0, range = 0;
+  float field_of_view = 0, min_range = 0, max_range = 0, range = 0, variance = 0;
   static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("radiation_type", m.radiation_type);
@@ -363,6 +363,7 @@ struct Range {
     visit("min_range", m.min_range);
     visit("max_range", m.max_range);
     visit("range", m.range);
+    visit("variance", m.variance);
   }
 };
 struct JointState {

@@ -160,7 +160,7 @@ bool is_everybodys(const std::string& header) {
   static const Names names = {
       "cxxabi.h", "dirent.h",    "dlfcn.h",   "elf.h",       "errno.h",  "execinfo.h", "fcntl.h",     "fnmatch.h", "getopt.h",
       "glob.h",   "grp.h",       "ifaddrs.h", "immintrin.h", "limits.h", "link.h",     "locale.h",    "malloc.h",  "math.h",
-      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h",    "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
+      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h", "regex.h", "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
       "stddef.h", "stdint.h",    "stdio.h",   "stdlib.h",    "string.h", "termios.h",  "time.h",      "unistd.h",  "xmmintrin.h",
   };
   return std::find(names.begin(), names.end(), header) != names.end();
