@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "errands.h"
+#include "common/errands.h"
+#include "common/source.h"
 #include "joint_group.h"
 #include "outbox.h"
 #include "protocol/message.h"
@@ -18,7 +19,6 @@
 #include "real_time.h"
 #include "served.h"
 #include "shm/iface_types.h"
-#include "source.h"
 #include "timeline.h"
 
 namespace gateway {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "alarm.h"
 #include "base/result.h"
+#include "common/alarm.h"
+#include "common/errands.h"
 #include "door.h"
-#include "errands.h"
 #include "listener.h"
 #include "mapping.h"
 #include "real_time.h"

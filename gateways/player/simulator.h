@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "errands.h"
+#include "common/errands.h"
+#include "common/source.h"
 #include "mapping.h"
 #include "real_time.h"
-#include "source.h"
 
 namespace gateway {
 

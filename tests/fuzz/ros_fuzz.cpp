@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "channels/ros/messages.h"
+#include "channels/ros_schema.h"
 #include "recording/expression.h"
 #include "recording/ros_text.h"
+#include "ros/messages.h"
 #include "support/usage.h"
 
 namespace {
@@ -43,7 +44,7 @@ struct Seed {
 template <class Message>
 Seed seed_of(const Message& message) {
   const auto octets = ros::encode(message);
-  return {ros::schema<Message>().text, {octets.begin(), octets.end()}};
+  return {channels::schema_of<Message>().text, {octets.begin(), octets.end()}};
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "alarm.h"
+#include "common/alarm.h"
 #include "shm/futex.h"
 #include "shm/shm_support.h"
 

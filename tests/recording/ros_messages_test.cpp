@@ -1,5 +1,6 @@
 // Messages of ROS 2: their definitions, their octets, and what is read back of both.
-#include "channels/ros/messages.h"
+#include "channels/ros_schema.h"
+#include "ros/messages.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 namespace {
 
 TEST(RosMessages, a_definition_brings_what_it_needs_once_and_in_order) {
-  const auto schema = ros::schema<ros::TFMessage>();
+  const auto schema = channels::schema_of<ros::TFMessage>();
   EXPECT_EQ(schema.name, "tf2_msgs/msg/TFMessage");
   EXPECT_EQ(schema.encoding, "ros2msg");
   const std::string line = std::string(80, '=') + "\n";
@@ -38,7 +39,7 @@ TEST(RosMessages, what_is_written_is_read_back) {
   const std::uint8_t pixels[] = {1, 2, 3, 4};
   const ros::Image image{
       .header = {{5, 6}, "camera"}, .height = 2, .width = 2, .encoding = "mono8", .is_bigendian = 0, .step = 2, .data = pixels};
-  const auto definition = recorder::RosDefinition::parse(ros::schema<ros::Image>().text);
+  const auto definition = recorder::RosDefinition::parse(channels::schema_of<ros::Image>().text);
   ASSERT_TRUE(definition) << definition.error().message;
   const auto octets = ros::encode(image);
   const auto json = definition->decode({octets.data(), octets.size()});
@@ -49,7 +50,7 @@ TEST(RosMessages, what_is_written_is_read_back) {
 }
 
 TEST(RosMessages, samples_that_are_cut_anywhere_are_refused) {
-  const auto definition = recorder::RosDefinition::parse(ros::schema<ros::DiagnosticArray>().text);
+  const auto definition = recorder::RosDefinition::parse(channels::schema_of<ros::DiagnosticArray>().text);
   ASSERT_TRUE(definition) << definition.error().message;
   const auto octets = ros::encode(ros::DiagnosticArray{{{1, 2}, "f"}, {{ros::Byte{1}, "laser", "late", "", {{"age", "2 s"}}}}});
   ASSERT_TRUE(definition->decode({octets.data(), octets.size()}));

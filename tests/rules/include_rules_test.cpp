@@ -39,6 +39,7 @@ const std::vector<Layer> layers = {
     {"rtm-core/openrtm", {"openrtm", "manager", "component", "rtm", "coil", "corba", "core", "base", "stubs"}, {"omniORB"}},
     {"rtm-core/rtcd", {"rtm", "coil", "corba", "core", "base", "stubs"}},
     {"shm", {"shm", "base"}, {"JSON"}},
+    {"ros", {"ros", "shm", "base"}},
     {"sim-server/reader", {"reader", "base"}},
     {"sim-server/asset-reader",
      {"asset-reader", "reader", "render", "world", "base"},
@@ -52,13 +53,14 @@ const std::vector<Layer> layers = {
      {"Eigen", "JSON", "PNG", "spdlog"}},
     {"arms", {"arms", "shm", "base"}, {"Eigen"}},
     {"iface-components", {"rtm", "coil", "arms", "shm", "base", "stubs"}, {"Eigen"}},
+    {"gateways/common", {"common", "shm", "base"}},
     {"gateways/player/protocol", {"protocol", "base"}},
-    {"gateways/player", {"protocol", "arms", "shm", "base"}, {"Eigen", "JSON", "YAML", "spdlog"}},
+    {"gateways/player", {"protocol", "common", "arms", "shm", "base"}, {"Eigen", "JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
-    {"tools/channels/views", {"channels", "shm", "base"}, {"JSON"}},
-    {"tools/channels", {"channels", "base", "stubs"}, {}, {"channels/views/"}},
+    {"tools/channels/views", {"channels", "ros", "shm", "base"}, {"JSON"}},
+    {"tools/channels", {"channels", "ros", "base", "stubs"}, {}, {"channels/views/"}},
     {"tools/recording/mcap", {"recording", "base"}, {"zstd", "lz4", "deflate"}},
-    {"tools/recording", {"recording", "channels", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG"}},
+    {"tools/recording", {"recording", "channels", "ros", "system", "shm", "base", "stubs"}, {"omniORB", "JSON", "PNG"}},
     {"tools/run", {"run", "recording", "channels", "system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "YAML", "JSON"}},
     {"tools/campaign",
      {"campaign", "run", "recording", "system", "base", "stubs"},
@@ -102,6 +104,8 @@ std::string owner(const std::string& header) {
       {"world/", "world"},
       {"physics/", "physics"},
       {"protocol/", "protocol"},
+      {"common/", "common"},
+      {"ros/", "ros"},
       {"system/", "system"},
       {"channels/", "channels"},
       {"recording/", "recording"},
@@ -158,7 +162,7 @@ bool is_everybodys(const std::string& header) {
   static const Names names = {
       "cxxabi.h", "dirent.h",    "dlfcn.h",   "elf.h",       "errno.h",  "execinfo.h", "fcntl.h",     "fnmatch.h", "getopt.h",
       "glob.h",   "grp.h",       "ifaddrs.h", "immintrin.h", "limits.h", "link.h",     "locale.h",    "malloc.h",  "math.h",
-      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h",    "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
+      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h", "regex.h", "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
       "stddef.h", "stdint.h",    "stdio.h",   "stdlib.h",    "string.h", "termios.h",  "time.h",      "unistd.h",  "xmmintrin.h",
   };
   return std::find(names.begin(), names.end(), header) != names.end();
@@ -190,7 +194,7 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"base", "shm", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
+  for (const char* top : {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/jpeg.h"
-#include "channels/ros/messages.h"
+#include "ros/messages.h"
 
 namespace {
 

@@ -7,8 +7,9 @@
 
 #include "base/guarded.h"
 #include "base/text.h"
-#include "channels/ros/messages.h"
+#include "channels/ros_schema.h"
 #include "recording/logger_service.h"
+#include "ros/messages.h"
 #include "system/remote.h"
 
 namespace recorder {
@@ -214,8 +215,9 @@ std::size_t ComponentSource::size() const { return state_->watched.size(); }
 base::Result<void> ComponentSource::add(const editor::ComponentView& component) {
   if (!state_->log) {
     // What depends on the machine is no difference between two runs.
-    const auto log = state_->exchange.open({"/log", "cdr", ros::schema<ros::Log>(), {{"compare", "no"}}});
-    const auto diagnostics = state_->exchange.open({"/diagnostics", "cdr", ros::schema<ros::DiagnosticArray>(), {{"compare", "no"}}});
+    const auto log = state_->exchange.open({"/log", "cdr", channels::schema_of<ros::Log>(), {{"compare", "no"}}});
+    const auto diagnostics =
+        state_->exchange.open({"/diagnostics", "cdr", channels::schema_of<ros::DiagnosticArray>(), {{"compare", "no"}}});
     if (!log || !diagnostics) return (log ? diagnostics : log).error();
     state_->log = *log;
     state_->diagnostics = *diagnostics;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/jpeg.h"
+#include "channels/ros_schema.h"
 
 namespace channels {
 
@@ -18,17 +19,9 @@ template <class Message>
 Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
   return {topic_of(iface.type(), iface.name()) + suffix,
           "cdr",
-          ros::schema<Message>(),
+          channels::schema_of<Message>(),
           {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
 }
-
-ros::Time time_of(const shm::Stamp& stamp) { return ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)); }
-
-ros::Vector3 vector_of(const double* v) { return {v[0], v[1], v[2]}; }
-
-std::array<double, 9> diagonal(double a, double b, double c) { return {a, 0, 0, 0, b, 0, 0, 0, c}; }
-
-shm::Pose pose_at(double x, double y, double z, double yaw) { return {x, y, z, std::cos(yaw / 2), 0, 0, std::sin(yaw / 2)}; }
 
 // A sensor on its model; its frame has the name of the iface.
 template <class Info>
@@ -45,44 +38,24 @@ IfaceView simple_view(const shm::Iface& iface, Say say) {
   view.channels = {channel<Message>(iface)};
   place<Info>(view, iface);
   view.tell = [say](shm::Iface& from, const shm::HeldFrame*, Said& said) {
-    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from));
+    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from, from.name()));
   };
   return view;
 }
 
 // ---- range finders ----
 
-// What is the same in each scan.
-ros::LaserScan empty_scan(const shm::Iface& iface) {
-  const auto& info = iface.info<shm::LaserInfo>();
-  const auto number = [](double value) { return static_cast<float>(value); };
-  return {.header = {{}, iface.name()},
-          .angle_min = number(info.min_angle),
-          .angle_max = number(info.max_angle),
-          .angle_increment = number(info.angle_step),
-          .scan_time = info.rate > 0 ? number(1 / info.rate) : 0,
-          .range_min = number(info.min_range),
-          .range_max = number(info.max_range)};
-}
-
-// Nearly always all octets are, which is found many times faster than by looking at each number.
-bool is_zero(std::span<const float> numbers) {
-  const auto octets = std::as_bytes(numbers);
-  if (octets.empty() || (octets[0] == std::byte{0} && std::memcmp(octets.data(), octets.data() + 1, octets.size() - 1) == 0)) return true;
-  return std::ranges::all_of(numbers, [](float one) { return one == 0; });
-}
-
 IfaceView flat_laser_view(const shm::Iface& iface) {
   IfaceView view;
   view.channels = {channel<ros::LaserScan>(iface)};
   place<shm::LaserInfo>(view, iface);
-  view.tell = [message = empty_scan(iface)](shm::Iface& from, const shm::HeldFrame*, Said& said) mutable {
+  view.tell = [message = ros::empty_scan(iface, iface.name())](shm::Iface& from, const shm::HeldFrame*, Said& said) mutable {
     const auto scan = from.laser_scan();
     if (scan.sample->stamp.valid == 0) return;
-    message.header.stamp = time_of(scan.sample->stamp);
+    message.header.stamp = ros::time_of(scan.sample->stamp);
     message.ranges = scan.ranges;
     // A world without reflecting surfaces has none, which the message says by leaving them out.
-    message.intensities = is_zero(scan.intensities) ? std::span<const float>() : scan.intensities;
+    message.intensities = ros::is_zero(scan.intensities) ? std::span<const float>() : scan.intensities;
     said.add(0, message);
   };
   return view;
@@ -184,14 +157,14 @@ IfaceView drive_view(const shm::Iface& iface, Pose pose_by_wheels, Velocity velo
     if (sample.stamp.valid == 0) return;
     const shm::Pose pose = pose_by_wheels(sample);
     if (said.is_wanted(0)) {
-      odometry.header.stamp = time_of(sample.stamp);
+      odometry.header.stamp = ros::time_of(sample.stamp);
       odometry.pose.pose = pose_of(pose);
       odometry.twist.twist = velocity(sample);
       said.add(0, odometry);
     }
     if (said.is_wanted(1)) {
       auto& transform = place.transforms[0];
-      transform.header.stamp = time_of(sample.stamp);
+      transform.header.stamp = ros::time_of(sample.stamp);
       transform.transform = transform_of({}, "", "", product(sample.true_pose, inverse(pose))).transform;
       said.add(1, place);
     }
@@ -201,7 +174,7 @@ IfaceView drive_view(const shm::Iface& iface, Pose pose_by_wheels, Velocity velo
 
 IfaceView position2d_view(const shm::Iface& iface) {
   return drive_view<shm::Position2dInfo, shm::Position2dSample>(
-      iface, [](const shm::Position2dSample& s) { return pose_at(s.odometry[0], s.odometry[1], 0, s.odometry[2]); },
+      iface, [](const shm::Position2dSample& s) { return ros::pose_at(s.odometry[0], s.odometry[1], 0, s.odometry[2]); },
       [](const shm::Position2dSample& s) {
         return ros::Twist{{s.velocity[0], s.velocity[1], 0}, {0, 0, s.velocity[2]}};
       });
@@ -211,7 +184,7 @@ IfaceView position3d_view(const shm::Iface& iface) {
   return drive_view<shm::Position3dInfo, shm::Position3dSample>(
       iface, [](const shm::Position3dSample& s) { return s.odometry; },
       [](const shm::Position3dSample& s) {
-        return ros::Twist{vector_of(s.velocity), vector_of(s.velocity + 3)};
+        return ros::Twist{ros::vector_of(s.velocity), ros::vector_of(s.velocity + 3)};
       });
 }
 
@@ -222,93 +195,10 @@ ros::TransformStamped optical_frame(const std::string& sensor) {
   return transform_of({}, sensor, sensor + "/optical", {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
 }
 
-}  // namespace
-
-std::string encoding_of(shm::Format format) {
-  using enum shm::Format;
-  switch (format) {
-    case rgb8:
-      return "rgb8";
-    case mono8:
-      return "mono8";
-    case depth_float:
-      return "32FC1";
-    case bgr8:
-      return "bgr8";
-    case rgba8:
-      return "rgba8";
-    case bgra8:
-      return "bgra8";
-    case mono16:
-      return "mono16";
-    case bayer_rggb8:
-      return "bayer_rggb8";
-    case bayer_bggr8:
-      return "bayer_bggr8";
-    case bayer_gbrg8:
-      return "bayer_gbrg8";
-    case bayer_grbg8:
-      return "bayer_grbg8";
-    case points_float:
-    case points_intensity_float:
-      break;
-  }
-  return "";
-}
-
-namespace {
-
-ros::CameraInfo camera_message(const shm::CameraInfo& info, const ros::Header& header) {
-  return {.header = header,
-          .height = info.height,
-          .width = info.width,
-          .distortion_model = "plumb_bob",
-          .d = {std::begin(info.distortion), std::end(info.distortion)},
-          .k = {info.fx, 0, info.cx, 0, info.fy, info.cy, 0, 0, 1},
-          .r = diagonal(1, 1, 1),
-          .p = {info.fx, 0, info.cx, 0, 0, info.fy, info.cy, 0, 0, 0, 1, 0}};
-}
-
-ros::Image image_message(const shm::HeldFrame& frame, const ros::Header& header) {
-  const auto& head = frame.head();
-  return {.header = header,
-          .height = head.height,
-          .width = head.width,
-          .encoding = encoding_of(static_cast<shm::Format>(head.format)),
-          .step = head.stride,
-          .data = {reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}};
-}
-
-// The images that a JPEG can hold; mosaics of colour filters, depth and 16 bits of grey stay as they are.
-std::optional<base::JpegPixels> jpeg_pixels(shm::Format format) {
-  switch (format) {
-    case shm::Format::rgb8:
-      return base::JpegPixels::rgb;
-    case shm::Format::bgr8:
-      return base::JpegPixels::bgr;
-    case shm::Format::rgba8:
-      return base::JpegPixels::rgba;
-    case shm::Format::bgra8:
-      return base::JpegPixels::bgra;
-    case shm::Format::mono8:
-      return base::JpegPixels::grey;
-    default:
-      return std::nullopt;
-  }
-}
-
-constexpr int jpeg_quality = 85;
-
-base::Result<std::span<const std::uint8_t>> encode(base::JpegEncoder& encoder, const shm::HeldFrame& frame, base::JpegPixels kind) {
-  const auto& head = frame.head();
-  return encoder.encode({reinterpret_cast<const std::uint8_t*>(frame.data().data()), frame.data().size()}, static_cast<int>(head.width),
-                        static_cast<int>(head.height), head.stride, kind, jpeg_quality);
-}
-
 IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
   IfaceView view;
   const auto format = static_cast<shm::Format>(iface.info<shm::CameraInfo>().format);
-  const auto kind = jpeg_pixels(format);
+  const auto kind = ros::jpeg_pixels(format);
   const bool is_jpeg = pictures == Pictures::jpeg && kind;
   view.channels = {is_jpeg ? channel<ros::CompressedImage>(iface, "/image") : channel<ros::Image>(iface, "/image"),
                    channel<ros::CameraInfo>(iface, "/camera_info")};
@@ -319,12 +209,12 @@ IfaceView camera_view(const shm::Iface& iface, Pictures pictures) {
     if (frame == nullptr || frame->head().stamp.valid == 0) return;
     const auto header = header_of(frame->head().stamp, from.name() + "/optical");
     if (said.is_wanted(0) && jpeg) {
-      const auto octets = encode(*jpeg, *frame, *kind);
+      const auto octets = ros::to_jpeg(*jpeg, *frame, *kind);
       if (octets) said.add(0, ros::CompressedImage{header, "jpeg", *octets});
     } else if (said.is_wanted(0)) {
-      said.add(0, image_message(*frame, header));
+      said.add(0, ros::image_message(*frame, header));
     }
-    said.add(1, camera_message(from.info<shm::CameraInfo>(), header));
+    said.add(1, ros::camera_message(from.info<shm::CameraInfo>(), header));
   };
   return view;
 }
@@ -345,70 +235,14 @@ IfaceView points_view(const shm::Iface& iface) {
 
 // ---- meters ----
 
-ros::Imu imu_message(const shm::Iface& iface) {
-  const auto& info = iface.info<shm::ImuInfo>();
-  const auto& sample = iface.sample<shm::ImuSample>();
-  const double turn = info.angular_velocity_noise * info.angular_velocity_noise;
-  const double push = info.acceleration_noise * info.acceleration_noise;
-  const double* q = sample.orientation;
-  return {.header = header_of(sample.stamp, iface.name()),
-          .orientation = {q[1], q[2], q[3], q[0]},
-          .angular_velocity = vector_of(sample.angular_velocity),
-          .angular_velocity_covariance = diagonal(turn, turn, turn),
-          .linear_acceleration = vector_of(sample.acceleration),
-          .linear_acceleration_covariance = diagonal(push, push, push)};
-}
-
-ros::JointState joints_message(const shm::Iface& iface) {
-  const auto* joints = reinterpret_cast<const shm::Joint*>(iface.info_followers(0));
-  const auto* states = reinterpret_cast<const shm::JointState*>(iface.sample_followers(0));
-  ros::JointState message{.header = header_of(iface.sample<shm::JointsSample>().stamp, "")};
-  for (std::size_t i = 0; i < iface.count(); ++i) {
-    message.names.push_back(text_of(joints[i].name));
-    message.position.push_back(states[i].position);
-    message.velocity.push_back(states[i].velocity);
-    message.effort.push_back(states[i].effort);
-  }
-  return message;
-}
-
 IfaceView joints_view(const shm::Iface& iface) {
   IfaceView view;
   view.channels = {channel<ros::JointState>(iface)};
   view.rate = iface.info<shm::JointsInfo>().rate;
   view.tell = [](shm::Iface& from, const shm::HeldFrame*, Said& said) {
-    if (from.sample<shm::JointsSample>().stamp.valid != 0) said.add(0, joints_message(from));
+    if (from.sample<shm::JointsSample>().stamp.valid != 0) said.add(0, ros::joints_message(from));
   };
   return view;
-}
-
-ros::NavSatFix fix_message(const shm::Iface& iface) {
-  const auto& info = iface.info<shm::GpsInfo>();
-  const auto& sample = iface.sample<shm::GpsSample>();
-  const double flat = info.position_noise * info.position_noise;
-  return {.header = header_of(sample.stamp, iface.name()),
-          .latitude = sample.latitude,
-          .longitude = sample.longitude,
-          .altitude = sample.altitude,
-          .position_covariance = diagonal(flat, flat, info.altitude_noise * info.altitude_noise),
-          .position_covariance_type = 2};
-}
-
-ros::WrenchStamped wrench_message(const shm::Iface& iface) {
-  const auto& sample = iface.sample<shm::ForceTorqueSample>();
-  return {header_of(sample.stamp, iface.name()), {vector_of(sample.force), vector_of(sample.torque)}};
-}
-
-ros::MagneticField field_message(const shm::Iface& iface) {
-  const auto& sample = iface.sample<shm::MagnetometerSample>();
-  const double noise = iface.info<shm::MeterInfo>().noise[0];
-  return {header_of(sample.stamp, iface.name()), vector_of(sample.field), diagonal(noise * noise, noise * noise, noise * noise)};
-}
-
-ros::FluidPressure pressure_message(const shm::Iface& iface) {
-  const auto& sample = iface.sample<shm::AirPressureSample>();
-  const double noise = iface.info<shm::MeterInfo>().noise[0];
-  return {header_of(sample.stamp, iface.name()), sample.pressure, noise * noise};
 }
 
 IfaceView altimeter_view(const shm::Iface& iface) {
@@ -425,7 +259,7 @@ IfaceView altimeter_view(const shm::Iface& iface) {
 }
 
 // An arrow for each contact, as long as the force of 100 N is a metre.
-ros::MarkerArray contacts_message(const shm::Iface& iface) {
+ros::MarkerArray contacts_message(const shm::Iface& iface, const std::string&) {
   constexpr double length = 0.01;  // [m/N]
   const auto view = iface.bumper();
   ros::MarkerArray array;
@@ -463,19 +297,19 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
     case points:
       return points_view(iface);
     case imu:
-      return simple_view<ros::Imu, shm::ImuInfo, shm::ImuSample>(iface, imu_message);
+      return simple_view<ros::Imu, shm::ImuInfo, shm::ImuSample>(iface, ros::imu_message);
     case gps:
-      return simple_view<ros::NavSatFix, shm::GpsInfo, shm::GpsSample>(iface, fix_message);
+      return simple_view<ros::NavSatFix, shm::GpsInfo, shm::GpsSample>(iface, ros::fix_message);
     case bumper:
       return simple_view<ros::MarkerArray, shm::BumperInfo, shm::BumperSample>(iface, contacts_message);
     case force_torque:
-      return simple_view<ros::WrenchStamped, MeterInfo, shm::ForceTorqueSample>(iface, wrench_message);
+      return simple_view<ros::WrenchStamped, MeterInfo, shm::ForceTorqueSample>(iface, ros::wrench_message);
     case altimeter:
       return altimeter_view(iface);
     case magnetometer:
-      return simple_view<ros::MagneticField, MeterInfo, shm::MagnetometerSample>(iface, field_message);
+      return simple_view<ros::MagneticField, MeterInfo, shm::MagnetometerSample>(iface, ros::field_message);
     case air_pressure:
-      return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, pressure_message);
+      return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, ros::pressure_message);
     case joints:
       return joints_view(iface);
     case simulation:
@@ -500,28 +334,6 @@ std::string topic_of(shm::IfaceType type, const std::string& name) {
 std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures) {
   auto view = make_view(iface, pictures);
   return view ? std::make_unique<IfaceView>(std::move(*view)) : nullptr;
-}
-
-ros::Header header_of(const shm::Stamp& stamp, const std::string& frame) { return {time_of(stamp), frame}; }
-
-shm::Pose inverse(const shm::Pose& p) {
-  const double w = p.qw, x = -p.qx, y = -p.qy, z = -p.qz;
-  const double tx = 2 * (y * p.z - z * p.y), ty = 2 * (z * p.x - x * p.z), tz = 2 * (x * p.y - y * p.x);
-  return {-(p.x + w * tx + (y * tz - z * ty)), -(p.y + w * ty + (z * tx - x * tz)), -(p.z + w * tz + (x * ty - y * tx)), w, x, y, z};
-}
-
-shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
-  const double tx = 2 * (a.qy * b.z - a.qz * b.y), ty = 2 * (a.qz * b.x - a.qx * b.z), tz = 2 * (a.qx * b.y - a.qy * b.x);
-  return {a.x + b.x + a.qw * tx + (a.qy * tz - a.qz * ty),       a.y + b.y + a.qw * ty + (a.qz * tx - a.qx * tz),
-          a.z + b.z + a.qw * tz + (a.qx * ty - a.qy * tx),       a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz,
-          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy, a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
-          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw};
-}
-
-ros::Pose pose_of(const shm::Pose& pose) { return {{pose.x, pose.y, pose.z}, {pose.qx, pose.qy, pose.qz, pose.qw}}; }
-
-ros::TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose) {
-  return {header_of(stamp, parent), child, {{pose.x, pose.y, pose.z}, {pose.qx, pose.qy, pose.qz, pose.qw}}};
 }
 
 }  // namespace channels

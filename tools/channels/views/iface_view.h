@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "channels/channel.h"
 #include "channels/exchange.h"
-#include "channels/ros/messages.h"
+#include "ros/from_iface.h"
 #include "shm/client.h"
 
 namespace channels {
@@ -56,18 +56,12 @@ std::unique_ptr<IfaceView> view_of(const shm::Iface& iface, Pictures pictures);
 
 inline constexpr const char* world_frame = "world";
 
-// The name that sensor_msgs/msg/Image has for it.
-std::string encoding_of(shm::Format format);
-ros::Header header_of(const shm::Stamp& stamp, const std::string& frame);
-ros::Pose pose_of(const shm::Pose& pose);
-// `second` is in the frame that `first` puts somewhere.
-shm::Pose product(const shm::Pose& first, const shm::Pose& second);
-shm::Pose inverse(const shm::Pose& pose);
-ros::TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose);
-// Of a fixed field of a segment, which need not end.
-template <std::size_t size>
-std::string text_of(const char (&field)[size]) {
-  return std::string(field, ::strnlen(field, size));
-}
+using ros::encoding_of;
+using ros::header_of;
+using ros::inverse;
+using ros::pose_of;
+using ros::product;
+using ros::text_of;
+using ros::transform_of;
 
 }  // namespace channels

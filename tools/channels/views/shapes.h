@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "channels/ros/messages.h"
+#include "ros/messages.h"
 
 namespace channels {
 

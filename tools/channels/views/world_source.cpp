@@ -1,4 +1,5 @@
 #include "channels/views/world_source.h"
+#include "channels/ros_schema.h"
 
 #include <fnmatch.h>
 #include <sys/resource.h>
@@ -30,10 +31,10 @@ bool WorldSource::State::is_excluded(const std::string& topic) const {
 }
 
 void WorldSource::State::open_common() {
-  clock = open_channel({"/clock", "cdr", ros::schema<ros::Clock>(), {}});
-  tf = open_channel({"/tf", "cdr", ros::schema<ros::TFMessage>(), {}});
-  tf_static = open_channel({"/tf_static", "cdr", ros::schema<ros::TFMessage>(), {{"latched", "yes"}}});
-  shapes = open_channel({"/sim/shapes", "cdr", ros::schema<ros::MarkerArray>(), {{"latched", "yes"}}});
+  clock = open_channel({"/clock", "cdr", channels::schema_of<ros::Clock>(), {}});
+  tf = open_channel({"/tf", "cdr", channels::schema_of<ros::TFMessage>(), {}});
+  tf_static = open_channel({"/tf_static", "cdr", channels::schema_of<ros::TFMessage>(), {{"latched", "yes"}}});
+  shapes = open_channel({"/sim/shapes", "cdr", channels::schema_of<ros::MarkerArray>(), {{"latched", "yes"}}});
 }
 
 // ---- what there is ----
@@ -79,7 +80,8 @@ void WorldSource::State::show_joints() {
     const auto [one, is_new] = joints.try_emplace(models[i].name);
     one->second.model = i;
     if (is_new)
-      one->second.id = open_channel({"/sim/joints/" + models[i].name, "cdr", ros::schema<ros::JointState>(), {{"model", models[i].name}}});
+      one->second.id =
+          open_channel({"/sim/joints/" + models[i].name, "cdr", channels::schema_of<ros::JointState>(), {{"model", models[i].name}}});
   }
 }
 

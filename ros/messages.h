@@ -1,4 +1,4 @@
-// The messages of ROS 2 that views of a simulation are made of. Members, their order and their types are those of ROS 2; units are m, rad,
+// Messages of ROS 2. Members, their order and their types are those of ROS 2; units are m, rad,
 // s; x forward, y left, z up. Values.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "channels/ros/cdr.h"
+#include "ros/cdr.h"
 
 namespace ros {
 
@@ -18,7 +18,7 @@ struct Time {
   static constexpr std::string_view name = "builtin_interfaces/msg/Time";
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
-  static void fields(const Time& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("sec", m.sec);
     visit("nanosec", m.nanosec);
   }
@@ -30,7 +30,7 @@ struct Duration {
   static constexpr std::string_view name = "builtin_interfaces/msg/Duration";
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
-  static void fields(const Duration& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("sec", m.sec);
     visit("nanosec", m.nanosec);
   }
@@ -40,7 +40,7 @@ struct Header {
   static constexpr std::string_view name = "std_msgs/msg/Header";
   Time stamp{};
   std::string frame_id{};
-  static void fields(const Header& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("stamp", m.stamp);
     visit("frame_id", m.frame_id);
   }
@@ -49,7 +49,7 @@ struct Header {
 struct ColorRGBA {
   static constexpr std::string_view name = "std_msgs/msg/ColorRGBA";
   float r = 0, g = 0, b = 0, a = 1;
-  static void fields(const ColorRGBA& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("r", m.r);
     visit("g", m.g);
     visit("b", m.b);
@@ -60,13 +60,13 @@ struct ColorRGBA {
 struct Float64 {
   static constexpr std::string_view name = "std_msgs/msg/Float64";
   double data = 0;
-  static void fields(const Float64& m, auto& visit) { visit("data", m.data); }
+  static void fields(auto& m, auto& visit) { visit("data", m.data); }
 };
 
 struct Text {
   static constexpr std::string_view name = "std_msgs/msg/String";
   std::string data{};
-  static void fields(const Text& m, auto& visit) { visit("data", m.data); }
+  static void fields(auto& m, auto& visit) { visit("data", m.data); }
 };
 
 // ---- geometry_msgs ----
@@ -74,7 +74,7 @@ struct Text {
 struct Vector3 {
   static constexpr std::string_view name = "geometry_msgs/msg/Vector3";
   double x = 0, y = 0, z = 0;
-  static void fields(const Vector3& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("x", m.x);
     visit("y", m.y);
     visit("z", m.z);
@@ -83,7 +83,7 @@ struct Vector3 {
 struct Point {
   static constexpr std::string_view name = "geometry_msgs/msg/Point";
   double x = 0, y = 0, z = 0;
-  static void fields(const Point& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("x", m.x);
     visit("y", m.y);
     visit("z", m.z);
@@ -92,7 +92,7 @@ struct Point {
 struct Quaternion {
   static constexpr std::string_view name = "geometry_msgs/msg/Quaternion";
   double x = 0, y = 0, z = 0, w = 1;
-  static void fields(const Quaternion& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("x", m.x);
     visit("y", m.y);
     visit("z", m.z);
@@ -103,7 +103,7 @@ struct Pose {
   static constexpr std::string_view name = "geometry_msgs/msg/Pose";
   Point position{};
   Quaternion orientation{};
-  static void fields(const Pose& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("position", m.position);
     visit("orientation", m.orientation);
   }
@@ -111,7 +111,7 @@ struct Pose {
 struct Twist {
   static constexpr std::string_view name = "geometry_msgs/msg/Twist";
   Vector3 linear{}, angular{};
-  static void fields(const Twist& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("linear", m.linear);
     visit("angular", m.angular);
   }
@@ -120,7 +120,7 @@ struct PoseWithCovariance {
   static constexpr std::string_view name = "geometry_msgs/msg/PoseWithCovariance";
   Pose pose{};
   std::array<double, 36> covariance{};
-  static void fields(const PoseWithCovariance& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("pose", m.pose);
     visit("covariance", m.covariance);
   }
@@ -129,7 +129,7 @@ struct TwistWithCovariance {
   static constexpr std::string_view name = "geometry_msgs/msg/TwistWithCovariance";
   Twist twist{};
   std::array<double, 36> covariance{};
-  static void fields(const TwistWithCovariance& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("twist", m.twist);
     visit("covariance", m.covariance);
   }
@@ -138,7 +138,7 @@ struct Transform {
   static constexpr std::string_view name = "geometry_msgs/msg/Transform";
   Vector3 translation{};
   Quaternion rotation{};
-  static void fields(const Transform& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("translation", m.translation);
     visit("rotation", m.rotation);
   }
@@ -148,7 +148,7 @@ struct TransformStamped {
   Header header{};  // the parent
   std::string child_frame_id{};
   Transform transform{};
-  static void fields(const TransformStamped& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("child_frame_id", m.child_frame_id);
     visit("transform", m.transform);
@@ -157,7 +157,7 @@ struct TransformStamped {
 struct Wrench {
   static constexpr std::string_view name = "geometry_msgs/msg/Wrench";
   Vector3 force{}, torque{};
-  static void fields(const Wrench& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("force", m.force);
     visit("torque", m.torque);
   }
@@ -166,7 +166,7 @@ struct WrenchStamped {
   static constexpr std::string_view name = "geometry_msgs/msg/WrenchStamped";
   Header header{};
   Wrench wrench{};
-  static void fields(const WrenchStamped& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("wrench", m.wrench);
   }
@@ -175,12 +175,12 @@ struct WrenchStamped {
 struct TFMessage {
   static constexpr std::string_view name = "tf2_msgs/msg/TFMessage";
   std::vector<TransformStamped> transforms{};
-  static void fields(const TFMessage& m, auto& visit) { visit("transforms", m.transforms); }
+  static void fields(auto& m, auto& visit) { visit("transforms", m.transforms); }
 };
 struct Clock {
   static constexpr std::string_view name = "rosgraph_msgs/msg/Clock";
   Time clock{};
-  static void fields(const Clock& m, auto& visit) { visit("clock", m.clock); }
+  static void fields(auto& m, auto& visit) { visit("clock", m.clock); }
 };
 
 // ---- sensor_msgs; octets and numbers of sensors stay where they are until they are encoded ----
@@ -190,7 +190,7 @@ struct LaserScan {
   Header header{};
   float angle_min = 0, angle_max = 0, angle_increment = 0, time_increment = 0, scan_time = 0, range_min = 0, range_max = 0;
   std::span<const float> ranges{}, intensities{};
-  static void fields(const LaserScan& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("angle_min", m.angle_min);
     visit("angle_max", m.angle_max);
@@ -211,7 +211,7 @@ struct Image {
   std::uint8_t is_bigendian = 0;
   std::uint32_t step = 0;
   std::span<const std::uint8_t> data{};
-  static void fields(const Image& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("height", m.height);
     visit("width", m.width);
@@ -226,7 +226,7 @@ struct CompressedImage {
   Header header{};
   std::string format{};  // "jpeg", "png"
   std::span<const std::uint8_t> data{};
-  static void fields(const CompressedImage& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("format", m.format);
     visit("data", m.data);
@@ -236,7 +236,7 @@ struct RegionOfInterest {
   static constexpr std::string_view name = "sensor_msgs/msg/RegionOfInterest";
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
   bool do_rectify = false;
-  static void fields(const RegionOfInterest& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("x_offset", m.x_offset);
     visit("y_offset", m.y_offset);
     visit("height", m.height);
@@ -254,7 +254,7 @@ struct CameraInfo {
   std::array<double, 12> p{};
   std::uint32_t binning_x = 0, binning_y = 0;
   RegionOfInterest roi{};
-  static void fields(const CameraInfo& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("height", m.height);
     visit("width", m.width);
@@ -277,7 +277,7 @@ struct Imu {
   std::array<double, 9> angular_velocity_covariance{};
   Vector3 linear_acceleration{};
   std::array<double, 9> linear_acceleration_covariance{};
-  static void fields(const Imu& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("orientation", m.orientation);
     visit("orientation_covariance", m.orientation_covariance);
@@ -292,7 +292,7 @@ struct NavSatStatus {
   static constexpr std::string_view constants = "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nuint16 SERVICE_GPS=1\n";
   std::int8_t status = 0;
   std::uint16_t service = 1;
-  static void fields(const NavSatStatus& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("status", m.status);
     visit("service", m.service);
   }
@@ -305,7 +305,7 @@ struct NavSatFix {
   double latitude = 0, longitude = 0, altitude = 0;  // [degree, degree, m]
   std::array<double, 9> position_covariance{};
   std::uint8_t position_covariance_type = 0;
-  static void fields(const NavSatFix& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("status", m.status);
     visit("latitude", m.latitude);
@@ -322,7 +322,7 @@ struct PointField {
   std::uint32_t offset = 0;
   std::uint8_t datatype = 7;
   std::uint32_t count = 1;
-  static void fields(const PointField& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("name", m.field);
     visit("offset", m.offset);
     visit("datatype", m.datatype);
@@ -338,7 +338,7 @@ struct PointCloud2 {
   std::uint32_t point_step = 0, row_step = 0;
   std::span<const std::uint8_t> data{};
   bool is_dense = false;
-  static void fields(const PointCloud2& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("height", m.height);
     visit("width", m.width);
@@ -355,14 +355,15 @@ struct Range {
   static constexpr std::string_view constants = "uint8 ULTRASOUND=0\nuint8 INFRARED=1\n";
   Header header{};
   std::uint8_t radiation_type = 0;
-  float field_of_view = 0, min_range = 0, max_range = 0, range = 0;
-  static void fields(const Range& m, auto& visit) {
+  float field_of_view = 0, min_range = 0, max_range = 0, range = 0, variance = 0;
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("radiation_type", m.radiation_type);
     visit("field_of_view", m.field_of_view);
     visit("min_range", m.min_range);
     visit("max_range", m.max_range);
     visit("range", m.range);
+    visit("variance", m.variance);
   }
 };
 struct JointState {
@@ -370,7 +371,7 @@ struct JointState {
   Header header{};
   std::vector<std::string> names{};
   std::vector<double> position{}, velocity{}, effort{};
-  static void fields(const JointState& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("name", m.names);
     visit("position", m.position);
@@ -383,7 +384,7 @@ struct MagneticField {
   Header header{};
   Vector3 magnetic_field{};  // [T]
   std::array<double, 9> magnetic_field_covariance{};
-  static void fields(const MagneticField& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("magnetic_field", m.magnetic_field);
     visit("magnetic_field_covariance", m.magnetic_field_covariance);
@@ -394,7 +395,7 @@ struct FluidPressure {
   Header header{};
   double fluid_pressure = 0;  // [Pa]
   double variance = 0;
-  static void fields(const FluidPressure& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("fluid_pressure", m.fluid_pressure);
     visit("variance", m.variance);
@@ -407,7 +408,7 @@ struct Odometry {
   std::string child_frame_id{};
   PoseWithCovariance pose{};
   TwistWithCovariance twist{};
-  static void fields(const Odometry& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("child_frame_id", m.child_frame_id);
     visit("pose", m.pose);
@@ -420,7 +421,7 @@ struct Odometry {
 struct UVCoordinate {
   static constexpr std::string_view name = "visualization_msgs/msg/UVCoordinate";
   float u = 0, v = 0;
-  static void fields(const UVCoordinate& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("u", m.u);
     visit("v", m.v);
   }
@@ -429,7 +430,7 @@ struct MeshFile {
   static constexpr std::string_view name = "visualization_msgs/msg/MeshFile";
   std::string filename{};
   std::span<const std::uint8_t> data{};
-  static void fields(const MeshFile& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("filename", m.filename);
     visit("data", m.data);
   }
@@ -458,7 +459,7 @@ struct Marker {
   std::string mesh_resource{};
   MeshFile mesh_file{};
   bool mesh_use_embedded_materials = false;
-  static void fields(const Marker& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("ns", m.ns);
     visit("id", m.id);
@@ -483,7 +484,7 @@ struct Marker {
 struct MarkerArray {
   static constexpr std::string_view name = "visualization_msgs/msg/MarkerArray";
   std::vector<Marker> markers{};
-  static void fields(const MarkerArray& m, auto& visit) { visit("markers", m.markers); }
+  static void fields(auto& m, auto& visit) { visit("markers", m.markers); }
 };
 
 // ---- logs and states ----
@@ -495,7 +496,7 @@ struct Log {
   std::uint8_t level = 20;
   std::string logger{}, msg{}, file{}, function{};
   std::uint32_t line = 0;
-  static void fields(const Log& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("stamp", m.stamp);
     visit("level", m.level);
     visit("name", m.logger);
@@ -508,7 +509,7 @@ struct Log {
 struct KeyValue {
   static constexpr std::string_view name = "diagnostic_msgs/msg/KeyValue";
   std::string key{}, value{};
-  static void fields(const KeyValue& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("key", m.key);
     visit("value", m.value);
   }
@@ -519,7 +520,7 @@ struct DiagnosticStatus {
   Byte level{0};
   std::string subject{}, message{}, hardware_id{};
   std::vector<KeyValue> values{};
-  static void fields(const DiagnosticStatus& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("level", m.level);
     visit("name", m.subject);
     visit("message", m.message);
@@ -531,7 +532,7 @@ struct DiagnosticArray {
   static constexpr std::string_view name = "diagnostic_msgs/msg/DiagnosticArray";
   Header header{};
   std::vector<DiagnosticStatus> status{};
-  static void fields(const DiagnosticArray& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("status", m.status);
   }

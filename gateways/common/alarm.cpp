@@ -1,4 +1,4 @@
-#include "alarm.h"
+#include "common/alarm.h"
 
 #include <errno.h>
 #include <linux/futex.h>

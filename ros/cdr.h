@@ -15,14 +15,31 @@
 #include <utility>
 #include <vector>
 
-#include "channels/channel.h"
-
 namespace ros {
 
 static_assert(std::endian::native == std::endian::little, "the writer copies numbers as they lie in memory");
 
+// The four bytes before a message: plain CDR, little-endian, no options.
+inline constexpr std::array<char, 4> little_endian_head{0, 1, 0, 0};
+
 // A type of its own in definitions, an octet on the wire.
 enum class Byte : std::uint8_t {};
+
+// A sequence of at most `most` elements, and a text of at most as many bytes: on the wire like those without a limit.
+template <class T, std::size_t most_elements>
+struct Bounded : std::vector<T> {
+  using std::vector<T>::vector;
+};
+template <std::size_t most_bytes>
+struct BoundedText : std::string {
+  static constexpr std::size_t most = most_bytes;
+  using std::string::string;
+  explicit BoundedText(std::string text) : std::string(std::move(text)) {}
+};
+template <class T>
+inline constexpr bool is_bounded_text = false;
+template <std::size_t most>
+inline constexpr bool is_bounded_text<BoundedText<most>> = true;
 
 template <class T>
 concept Message = requires {
@@ -65,7 +82,7 @@ class Octets {
 template <class Out>
 class Encoder {
  public:
-  explicit Encoder(Out out) : out_(std::move(out)) { out_.append(channels::cdr_head(true).data(), head_size); }
+  explicit Encoder(Out out) : out_(std::move(out)) { out_.append(little_endian_head.data(), little_endian_head.size()); }
 
   template <class T>
   void operator()(std::string_view, const T& value) {
@@ -89,7 +106,12 @@ class Encoder {
   }
   template <class T>
   void put(const std::vector<T>& values) {
-    put(std::span<const T>(values));
+    if constexpr (std::is_same_v<T, bool>) {
+      put(static_cast<std::uint32_t>(values.size()));
+      for (const bool value : values) put(value);
+    } else {
+      put(std::span<const T>(values));
+    }
   }
   template <class T>
   void put(std::span<const T> values) {
@@ -115,7 +137,7 @@ class Encoder {
     if (const auto rest = (out_.size() - head_size) & (size - 1); rest != 0) out_.fill(size - rest);  // sizes are powers of two
   }
 
-  static constexpr std::size_t head_size = 4;
+  static constexpr std::size_t head_size = little_endian_head.size();
   Out out_;
 };
 
@@ -171,6 +193,11 @@ class Definitions {
   };
   template <class T>
   struct Part<std::span<const T>> : Part<std::vector<T>> {};
+  template <class T, std::size_t most>
+  struct Part<Bounded<T, most>> {
+    using type = T;
+    static std::string brackets() { return "[<=" + std::to_string(most) + "]"; }
+  };
   template <class T, std::size_t size>
   struct Part<std::array<T, size>> {
     using type = T;
@@ -185,6 +212,8 @@ class Definitions {
       return add<T>();
     } else if constexpr (std::is_same_v<T, std::string>) {
       return "string";
+    } else if constexpr (is_bounded_text<T>) {
+      return "string<=" + std::to_string(T::most);
     } else if constexpr (std::is_same_v<T, bool>) {
       return "bool";
     } else if constexpr (std::is_same_v<T, Byte>) {
@@ -218,11 +247,6 @@ std::vector<char> encode(const T& message) {
   std::vector<char> octets(encoded_size(message));
   encode(message, octets);
   return octets;
-}
-
-template <Message T>
-channels::Schema schema() {
-  return {std::string(T::name), "ros2msg", Definitions::of<T>()};
 }
 
 }  // namespace ros

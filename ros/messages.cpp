@@ -1,4 +1,4 @@
-#include "channels/ros/messages.h"
+#include "ros/messages.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "source.h"
+#include "common/source.h"
 
 #include <utility>
 

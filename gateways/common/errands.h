@@ -29,7 +29,7 @@ class Errands {
   Errands& operator=(const Errands&) = delete;
 
   // In the order of the calls. `done` is called by deliver(), with an error too when the simulator refused.
-  void post(shm::Request request, Done done);
+  void post(shm::Request request, Done done, std::chrono::nanoseconds timeout = limit);
   // Readable when there are answers; an eventfd.
   int descriptor() const { return descriptor_; }
   void deliver();

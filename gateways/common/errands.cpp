@@ -1,4 +1,4 @@
-#include "errands.h"
+#include "common/errands.h"
 
 #include <errno.h>
 #include <sys/eventfd.h>
@@ -49,11 +49,11 @@ Errands::~Errands() {
   ::close(descriptor_);
 }
 
-void Errands::post(shm::Request request, Done done) {
+void Errands::post(shm::Request request, Done done, std::chrono::nanoseconds timeout) {
   {
     auto queues = queues_.lock();
     if (queues->jobs.size() < max_waiting) {
-      queues->jobs.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + limit});
+      queues->jobs.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + timeout});
       posted_.notify_one();
       return;
     }

@@ -1,12 +1,12 @@
-// An iface that one or several devices of Player show. Works (and lets the sensor work) only while somebody reads. One thread at a time.
+// An iface that one or several devices of a gateway show. Works (and lets the sensor work) only while somebody reads. One thread at a time.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
 
-#include "alarm.h"
 #include "base/result.h"
+#include "common/alarm.h"
 #include "shm/client.h"
 
 namespace gateway {

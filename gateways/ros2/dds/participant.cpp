@@ -1,0 +1,441 @@
+#include "dds/participant.h"
+
+#include <errno.h>
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
+#include <fastdds/rtps/attributes/ReaderAttributes.h>
+#include <fastdds/rtps/attributes/WriterAttributes.h>
+#include <fastdds/rtps/history/ReaderHistory.h>
+#include <fastdds/rtps/history/WriterHistory.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+#include <fastdds/rtps/participant/RTPSParticipantListener.h>
+#include <fastdds/rtps/reader/RTPSReader.h>
+#include <fastdds/rtps/reader/ReaderListener.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/writer/RTPSWriter.h>
+#include <fastdds/rtps/writer/WriterListener.h>
+#include <fastrtps/attributes/TopicAttributes.h>
+#include <fastrtps/qos/ReaderQos.h>
+#include <fastrtps/qos/WriterQos.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/rtps/interfaces/IReaderDataFilter.hpp>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "base/guarded.h"
+#include "base/log.h"
+
+namespace ros2 {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+namespace dds = eprosima::fastdds::dds;
+
+constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20, max_waiting = 20000;
+constexpr std::uint32_t max_payload = std::uint32_t{1} << 30;
+
+Guid to_guid(const rtps::GUID_t& from) {
+  Guid guid{};
+  std::copy_n(from.guidPrefix.value, 12, guid.begin());
+  std::copy_n(from.entityId.value, 4, guid.begin() + 12);
+  return guid;
+}
+
+rtps::GUID_t from_guid(const Guid& from) {
+  rtps::GUID_t guid;
+  std::copy_n(from.begin(), 12, guid.guidPrefix.value);
+  std::copy_n(from.begin() + 12, 4, guid.entityId.value);
+  return guid;
+}
+
+rtps::SequenceNumber_t to_sequence(std::int64_t number) {
+  return {static_cast<std::int32_t>(number >> 32), static_cast<std::uint32_t>(number & 0xffffffff)};
+}
+
+std::int64_t from_sequence(const rtps::SequenceNumber_t& number) { return std::int64_t{number.high} << 32 | number.low; }
+
+// ---- what Fast DDS's threads leave for ours ----
+
+struct Matched {
+  std::uint64_t endpoint;
+  Guid peer;
+  bool is_matched;
+};
+struct Sampled {
+  std::uint64_t endpoint;
+  Received sample;
+};
+
+class Inbox {
+ public:
+  Inbox() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+  ~Inbox() { ::close(descriptor_); }
+  Inbox(const Inbox&) = delete;
+  Inbox& operator=(const Inbox&) = delete;
+
+  using Event = std::variant<Matched, Sampled, Peer>;
+  struct Content {
+    std::vector<Event> events;
+    std::size_t bytes = 0;
+    std::uint64_t refused = 0;
+  };
+
+  void put(Event event) {
+    {
+      auto content = content_.lock();
+      if (const auto* sampled = std::get_if<Sampled>(&event)) {
+        const std::size_t size = sampled->sample.bytes.size();
+        if (content->events.size() >= max_waiting || content->bytes + size > max_waiting_bytes) {
+          ++content->refused;
+          return;
+        }
+        content->bytes += size;
+      }
+      content->events.push_back(std::move(event));
+    }
+    const std::uint64_t one = 1;
+    while (::write(descriptor_, &one, sizeof one) < 0 && errno == EINTR) {
+    }
+  }
+  std::vector<Event> take() {
+    std::uint64_t count = 0;
+    while (::read(descriptor_, &count, sizeof count) < 0 && errno == EINTR) {
+    }
+    std::vector<Event> events;
+    auto content = content_.lock();
+    content->bytes = 0;
+    content->events.swap(events);
+    return events;
+  }
+  int descriptor() const { return descriptor_; }
+  std::uint64_t refused() const { return content_.lock()->refused; }
+
+ private:
+  int descriptor_;
+  base::Guarded<Content, base::Rank::queue> content_;
+};
+
+// ---- endpoints ----
+
+// Our side of a writer or a reader, for deliver().
+struct Endpoint {
+  std::vector<Guid> peers;
+  std::function<void()> on_match;
+  std::function<void(Received&)> on_sample;
+};
+using Endpoints = std::map<std::uint64_t, Endpoint*>;
+
+eprosima::fastrtps::TopicAttributes topic_of(const EndpointSettings& settings) {
+  eprosima::fastrtps::TopicAttributes topic(settings.topic.c_str(), settings.type.c_str(), rtps::NO_KEY);
+  topic.auto_fill_type_object = false;  // no type information: a peer that has it would compare
+  topic.auto_fill_type_information = false;
+  return topic;
+}
+
+template <class Qos>
+void describe(Qos& qos, const EndpointSettings& settings) {
+  qos.m_reliability.kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.m_durability.kind = settings.is_transient ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  const std::vector<rtps::octet> data(settings.user_data.begin(), settings.user_data.end());
+  static_cast<dds::GenericDataQosPolicy&>(qos.m_userData) = data;
+}
+
+class FastWriter final : public Writer, private rtps::WriterListener, private eprosima::fastdds::rtps::IReaderDataFilter {
+ public:
+  FastWriter(EndpointSettings settings, Inbox& inbox, Endpoints& endpoints, std::uint64_t id, std::function<void()> on_match)
+      : settings_(std::move(settings)), inbox_(inbox), endpoints_(endpoints), id_(id) {
+    endpoint_.on_match = std::move(on_match);
+    endpoints_[id_] = &endpoint_;
+  }
+  ~FastWriter() override {
+    if (writer_ != nullptr) rtps::RTPSDomain::removeRTPSWriter(writer_);
+    endpoints_.erase(id_);
+  }
+
+  bool open(rtps::RTPSParticipant& participant) {
+    const auto depth = static_cast<std::int32_t>(settings_.depth);
+    const rtps::HistoryAttributes attributes(rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, 256, std::min(depth, 10), depth);
+    history_ = std::make_unique<rtps::WriterHistory>(attributes);
+    rtps::WriterAttributes wanted;
+    wanted.endpoint.reliabilityKind = rtps::RELIABLE;
+    wanted.endpoint.durabilityKind = settings_.is_transient ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
+    wanted.endpoint.topicKind = rtps::NO_KEY;
+    wanted.times.heartbeatPeriod = {0, 200'000'000};
+    wanted.mode = settings_.is_large ? rtps::ASYNCHRONOUS_WRITER : rtps::SYNCHRONOUS_WRITER;
+    writer_ = rtps::RTPSDomain::createRTPSWriter(&participant, wanted, history_.get(), this);
+    if (writer_ == nullptr) return false;
+    guid_ = to_guid(writer_->getGuid());
+    eprosima::fastrtps::WriterQos qos;
+    describe(qos, settings_);
+    qos.representation.m_value.push_back(dds::XCDR_DATA_REPRESENTATION);
+    return participant.registerWriter(writer_, topic_of(settings_), qos);
+  }
+
+  const Guid& guid() const override { return guid_; }
+  const EndpointSettings& settings() const override { return settings_; }
+  const std::vector<Guid>& readers() const override { return endpoint_.peers; }
+  std::uint64_t lost() const override { return lost_; }
+
+  bool write(std::size_t size, const std::function<void(std::span<char>)>& fill, const std::optional<SampleIdentity>& related) override {
+    if (size > max_payload) return count_lost();
+    make_room();
+    rtps::CacheChange_t* change = writer_->new_change([size] { return static_cast<std::uint32_t>(size); }, rtps::ALIVE);
+    if (change == nullptr || change->serializedPayload.max_size < size) {
+      if (change != nullptr) writer_->release_change(change);
+      return count_lost();
+    }
+    fill({reinterpret_cast<char*>(change->serializedPayload.data), size});
+    change->serializedPayload.length = static_cast<std::uint32_t>(size);
+    change->serializedPayload.encapsulation = CDR_LE;
+    rtps::WriteParams params;
+    if (related) {
+      params.related_sample_identity().writer_guid(from_guid(related->writer));
+      params.related_sample_identity().sequence_number(to_sequence(related->sequence));
+    }
+    if (history_->add_change(change, params)) return true;
+    writer_->release_change(change);
+    return count_lost();
+  }
+
+  void separate_by_vendor() override { writer_->reader_data_filter(this); }
+
+ private:
+  bool count_lost() {
+    ++lost_;
+    return false;
+  }
+  void make_room() {
+    while (history_->getHistorySize() >= settings_.depth) {
+      rtps::CacheChange_t* oldest = nullptr;
+      if (!history_->get_min_change(&oldest)) return;
+      if (!writer_->is_acked_by_all(oldest)) ++lost_;
+      if (!history_->remove_min_change()) return;
+    }
+  }
+
+  // ---- threads of Fast DDS ----
+  using rtps::WriterListener::onWriterMatched;
+  void onWriterMatched(rtps::RTPSWriter*, rtps::MatchingInfo& info) override {
+    inbox_.put(Matched{id_, to_guid(info.remoteEndpointGuid), info.status == rtps::MATCHED_MATCHING});
+  }
+  bool is_relevant(const rtps::CacheChange_t& change, const rtps::GUID_t& reader) const override {
+    const bool has_identity = change.write_params.related_sample_identity().writer_guid() != rtps::GUID_t::unknown();
+    return has_identity == is_fast_dds(to_guid(reader));
+  }
+
+  const EndpointSettings settings_;
+  Inbox& inbox_;
+  Endpoints& endpoints_;
+  const std::uint64_t id_;
+  Endpoint endpoint_;
+  Guid guid_{};
+  std::uint64_t lost_ = 0;
+  std::unique_ptr<rtps::WriterHistory> history_;
+  rtps::RTPSWriter* writer_ = nullptr;
+};
+
+class FastReader final : public Reader, private rtps::ReaderListener {
+ public:
+  FastReader(EndpointSettings settings, Inbox& inbox, Endpoints& endpoints, std::uint64_t id, std::function<void(Received&)> on_sample)
+      : settings_(std::move(settings)), inbox_(inbox), endpoints_(endpoints), id_(id) {
+    endpoint_.on_sample = std::move(on_sample);
+    endpoints_[id_] = &endpoint_;
+  }
+  ~FastReader() override {
+    if (reader_ != nullptr) rtps::RTPSDomain::removeRTPSReader(reader_);
+    endpoints_.erase(id_);
+  }
+
+  bool open(rtps::RTPSParticipant& participant) {
+    const rtps::HistoryAttributes attributes(rtps::DYNAMIC_RESERVE_MEMORY_MODE, 256, 1, 1000);
+    history_ = std::make_unique<rtps::ReaderHistory>(attributes);
+    rtps::ReaderAttributes wanted;
+    wanted.endpoint.reliabilityKind = rtps::RELIABLE;
+    wanted.endpoint.durabilityKind = settings_.is_transient ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
+    wanted.endpoint.topicKind = rtps::NO_KEY;
+    reader_ = rtps::RTPSDomain::createRTPSReader(&participant, wanted, history_.get(), this);
+    if (reader_ == nullptr) return false;
+    guid_ = to_guid(reader_->getGuid());
+    eprosima::fastrtps::ReaderQos qos;
+    describe(qos, settings_);
+    qos.representation.m_value.push_back(dds::XCDR_DATA_REPRESENTATION);
+    return participant.registerReader(reader_, topic_of(settings_), qos);
+  }
+
+  const Guid& guid() const override { return guid_; }
+  const EndpointSettings& settings() const override { return settings_; }
+  const std::vector<Guid>& writers() const override { return endpoint_.peers; }
+
+ private:
+  // ---- threads of Fast DDS ----
+  using rtps::ReaderListener::onReaderMatched;
+  void onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo& info) override {
+    inbox_.put(Matched{id_, to_guid(info.remoteEndpointGuid), info.status == rtps::MATCHED_MATCHING});
+  }
+  void onNewCacheChangeAdded(rtps::RTPSReader* reader, const rtps::CacheChange_t* const change) override {
+    const auto& payload = change->serializedPayload;
+    if (change->kind == rtps::ALIVE && payload.data != nullptr) {
+      Received sample{{to_guid(change->writerGUID), from_sequence(change->sequenceNumber)}, std::nullopt, {}};
+      sample.bytes.assign(payload.data, payload.data + payload.length);
+      const auto& related = change->write_params.related_sample_identity();
+      if (related.writer_guid() != rtps::GUID_t::unknown())
+        sample.related = {to_guid(related.writer_guid()), from_sequence(related.sequence_number())};
+      inbox_.put(Sampled{id_, std::move(sample)});
+    }
+    reader->getHistory()->remove_change(const_cast<rtps::CacheChange_t*>(change));
+  }
+
+  const EndpointSettings settings_;
+  Inbox& inbox_;
+  Endpoints& endpoints_;
+  const std::uint64_t id_;
+  Endpoint endpoint_;
+  Guid guid_{};
+  std::unique_ptr<rtps::ReaderHistory> history_;
+  rtps::RTPSReader* reader_ = nullptr;
+};
+
+// ---- the participant ----
+
+class LogLines final : public dds::LogConsumer {
+ public:
+  // Of one thread of Fast DDS. Whoever sends damaged packets could fill a disk: the first lines are enough.
+  void Consume(const dds::Log::Entry& entry) override {
+    constexpr int most = 20;
+    if (entry.kind == dds::Log::Kind::Info || count_ > most) return;
+    const bool is_last = ++count_ > most;
+    base::log(base::Level::warn, "ros2-gateway", "DDS: {}{}", entry.message, is_last ? " (no further lines)" : "");
+  }
+
+ private:
+  int count_ = 0;
+};
+
+rtps::Locator_t ipv4(const std::string& address, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = port;
+  if (!address.empty()) rtps::IPLocator::setIPv4(locator, address);
+  return locator;
+}
+
+rtps::RTPSParticipantAttributes attributes_of(const ParticipantSettings& settings) {
+  rtps::RTPSParticipantAttributes attributes;
+  attributes.setName("/");
+  attributes.userData.assign(settings.user_data.begin(), settings.user_data.end());
+  attributes.useBuiltinTransports = false;  // no shared memory, which two versions of Fast DDS on a host do not share well
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->non_blocking_send = true;
+  udp->maxInitialPeersRange = 32;
+  udp->TTL = 1;
+  if (settings.network == Network::loopback) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  attributes.userTransports.push_back(udp);
+  auto& builtin = attributes.builtin;
+  builtin.discovery_config.leaseDuration = {10, 0};
+  builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
+  if (settings.network == Network::lan) {
+    builtin.initialPeersList.push_back(ipv4("239.255.0.1", 7400 + 250 * settings.domain));
+  } else {
+    builtin.metatrafficUnicastLocatorList.push_back(ipv4("", 0));  // one of its own, so that no multicast is listened to
+  }
+  builtin.initialPeersList.push_back(ipv4("127.0.0.1", 0));
+  return attributes;
+}
+
+class FastParticipant final : public Participant, private rtps::RTPSParticipantListener {
+ public:
+  ~FastParticipant() override {
+    if (participant_ != nullptr) rtps::RTPSDomain::removeRTPSParticipant(participant_);
+  }
+
+  bool start(const ParticipantSettings& settings) {
+    participant_ = rtps::RTPSDomain::createParticipant(settings.domain, true, attributes_of(settings), this);
+    if (participant_ != nullptr) guid_ = to_guid(participant_->getGuid());
+    return participant_ != nullptr;
+  }
+
+  const Guid& guid() const override { return guid_; }
+
+  base::Result<std::unique_ptr<Writer>> make_writer(EndpointSettings settings, std::function<void()> on_match) override {
+    const std::string topic = settings.topic;
+    auto writer = std::make_unique<FastWriter>(std::move(settings), inbox_, endpoints_, ++last_id_, std::move(on_match));
+    if (!writer->open(*participant_)) return base::Error{"cannot create the DDS writer of " + topic};
+    return std::unique_ptr<Writer>(std::move(writer));
+  }
+
+  base::Result<std::unique_ptr<Reader>> make_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) override {
+    const std::string topic = settings.topic;
+    auto reader = std::make_unique<FastReader>(std::move(settings), inbox_, endpoints_, ++last_id_, std::move(on_sample));
+    if (!reader->open(*participant_)) return base::Error{"cannot create the DDS reader of " + topic};
+    return std::unique_ptr<Reader>(std::move(reader));
+  }
+
+  void watch(std::function<void(const Peer&)> on_peer) override { on_peer_ = std::move(on_peer); }
+  int descriptor() const override { return inbox_.descriptor(); }
+  std::uint64_t refused() const override { return inbox_.refused(); }
+
+  void deliver() override {
+    for (auto& event : inbox_.take()) {
+      if (auto* peer = std::get_if<Peer>(&event)) {
+        if (on_peer_) on_peer_(*peer);
+      } else if (auto* matched = std::get_if<Matched>(&event)) {
+        match(*matched);
+      } else if (auto* sampled = std::get_if<Sampled>(&event)) {
+        const auto found = endpoints_.find(sampled->endpoint);
+        if (found != endpoints_.end() && found->second->on_sample) found->second->on_sample(sampled->sample);
+      }
+    }
+  }
+
+ private:
+  void match(const Matched& matched) {
+    const auto found = endpoints_.find(matched.endpoint);
+    if (found == endpoints_.end()) return;
+    Endpoint& endpoint = *found->second;
+    std::erase(endpoint.peers, matched.peer);
+    if (matched.is_matched) endpoint.peers.push_back(matched.peer);
+    if (endpoint.on_match) endpoint.on_match();
+  }
+
+  // ---- threads of Fast DDS ----
+  template <class Info>
+  void put_peer(const Info& info, bool is_writer, bool is_gone) {
+    const auto& data = info.m_qos.m_userData;
+    inbox_.put(Peer{to_guid(info.guid()), is_writer, is_gone, info.topicName().to_string(), info.typeName().to_string(),
+                    std::string(data.begin(), data.end()), info.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
+                    info.m_qos.m_durability.kind != dds::VOLATILE_DURABILITY_QOS});
+  }
+  void onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
+    put_peer(info.info, false, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
+  }
+  void onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    put_peer(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
+  }
+
+  Inbox inbox_;
+  Endpoints endpoints_;
+  std::uint64_t last_id_ = 0;
+  std::function<void(const Peer&)> on_peer_;
+  Guid guid_{};
+  rtps::RTPSParticipant* participant_ = nullptr;
+};
+
+}  // namespace
+
+base::Result<std::unique_ptr<Participant>> Participant::open(const ParticipantSettings& settings) {
+  dds::Log::ClearConsumers();
+  dds::Log::RegisterConsumer(std::make_unique<LogLines>());
+  auto participant = std::make_unique<FastParticipant>();
+  if (!participant->start(settings))
+    return base::Error{"cannot create a DDS participant in domain " + std::to_string(settings.domain) +
+                       ": all its ports are in use, or the network cannot be used"};
+  return std::unique_ptr<Participant>(std::move(participant));
+}
+
+}  // namespace ros2

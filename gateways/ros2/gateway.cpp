@@ -1,0 +1,280 @@
+#include "gateway.h"
+
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <set>
+
+#include "base/descriptors.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "parameters.h"
+#include "robot_topics.h"
+
+namespace ros2 {
+namespace {
+
+enum Event : std::uint64_t { signal_event, dds_event, alarm_event, errand_event, turn_event };
+
+constexpr std::chrono::milliseconds look_period{200}, resend_period{50};
+constexpr std::chrono::seconds report_period{10}, paused_clock_period{1};
+constexpr int idle_wait = 20;  // [ms]: the graph and replies that wait for a reader
+
+std::set<std::string> robots_in(const Listed& listed) {
+  std::set<std::string> robots;
+  for (const auto& iface : listed.ifaces) {
+    if (iface.type == shm::IfaceType::simulation || iface.type == shm::IfaceType::truth) continue;
+    const std::string& scoped = iface.model.empty() ? iface.name : iface.model;
+    robots.insert(scoped.substr(0, scoped.find("::")));
+  }
+  return robots;
+}
+
+}  // namespace
+
+Gateway::Gateway(Options options)
+    : options_(std::move(options)),
+      epoll_(::epoll_create1(EPOLL_CLOEXEC)),
+      errands_(options_.server_id),
+      world_(
+          options_.server_id, errands_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
+      waits_(options_.waits) {}
+
+Gateway::~Gateway() {
+  turns_.reset();
+  robots_.clear();
+  services_.reset();
+  node_.reset();
+  graph_.reset();
+  participant_.reset();
+  if (signals_ >= 0) ::close(signals_);
+  if (epoll_ >= 0) ::close(epoll_);
+}
+
+base::Result<void> Gateway::open() {
+  base::raise_descriptor_limit();
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  auto participant = Participant::open(options_.dds);
+  if (!participant) return participant.error();
+  participant_ = std::move(*participant);
+  auto graph = Graph::open(*participant_, options_.family);
+  if (!graph) return graph.error();
+  graph_ = std::move(*graph);
+  node_ = std::make_unique<Node>(*participant_, *graph_, gateway_node);
+  if (options_.has_clock) clock_ = node_->advertise<ros::Clock>("/clock");
+  Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
+  tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
+  if (options_.has_parameters) serve_parameters(*node_, gateway_node);
+  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, options_.service_prefix);
+  shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
+                                            [this](const Arrival& arrival) { waits_.arrive(arrival); }, options_.has_joint_tf});
+  if (options_.is_lockstep) {
+    const double rate = options_.clock_rate > 0 ? options_.clock_rate : 1000;
+    turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)));
+  }
+  const std::array<std::pair<int, Event>, 5> watched = {{{signals_, signal_event},
+                                                         {participant_->descriptor(), dds_event},
+                                                         {alarm_.descriptor(), alarm_event},
+                                                         {errands_.descriptor(), errand_event},
+                                                         {turns_ ? turns_->descriptor() : -1, turn_event}}};
+  for (const auto& [descriptor, event] : watched) {
+    epoll_event one{};
+    one.events = EPOLLIN;
+    one.data.u64 = event;
+    if (descriptor >= 0 && ::epoll_ctl(epoll_, EPOLL_CTL_ADD, descriptor, &one) != 0) return base::Error{"no file descriptors left"};
+  }
+  return {};
+}
+
+base::Result<void> Gateway::run() {
+  if (auto done = open(); !done) return done;
+  world_.look();
+  if (!world_.is_there()) base::log(base::Level::info, "ros2-gateway", "waiting for simulator {}", options_.server_id);
+  while (!is_over_ && !failed_) turn_loop();
+  report_losses();
+  if (failed_) return *failed_;
+  return {};
+}
+
+void Gateway::turn_loop() {
+  std::array<epoll_event, 8> events;
+  const int count = ::epoll_wait(epoll_, events.data(), events.size(), idle_wait);
+  for (int i = 0; i < count; ++i) handle(events[static_cast<std::size_t>(i)].data.u64);
+  const auto now = std::chrono::steady_clock::now();
+  if (now >= next_look_) {
+    next_look_ = now + look_period;
+    world_.look();
+    send_clock(false);
+  }
+  if (now >= next_report_) {
+    next_report_ = now + report_period;
+    report_losses();
+  }
+  for (const auto& robot : robots_) is_sources_changed_ = robot->choose_sources() || is_sources_changed_;
+  if (is_sources_changed_) {
+    is_sources_changed_ = false;
+    watched_.clear();
+    if (world_.clock()) watched_.push_back(world_.clock()->segment());
+    for (const auto& source : world_.sources()) {
+      if (source->is_read()) watched_.push_back(source->segment());
+    }
+    std::erase(watched_, nullptr);
+    // In lock step the ticks say when there is something new.
+    alarm_.watch(turns_ ? std::vector<SharedSegment>{} : watched_);
+  }
+  tend_tick(now);
+  node_->tend();
+  for (const auto& robot : robots_) robot->node().tend();
+  graph_->tend(now);
+}
+
+void Gateway::handle(std::uint64_t what) {
+  switch (what) {
+    case signal_event:
+      is_over_ = true;
+      return;
+    case dds_event:
+      return participant_->deliver();
+    case alarm_event:
+      alarm_.clear();
+      return take_samples();
+    case errand_event:
+      return errands_.deliver();
+    case turn_event:
+      if (const auto tick = turns_->tick(); tick && !tick_) begin_tick(*tick);
+  }
+}
+
+// ---- the world ----
+
+void Gateway::arrange(const Listed& listed) {
+  const auto wanted = robots_in(listed);
+  std::erase_if(robots_, [&](const auto& robot) { return !wanted.contains(robot->model()); });
+  for (const auto& model : wanted) {
+    if (std::ranges::any_of(robots_, [&](const auto& robot) { return robot->model() == model; })) continue;
+    robots_.push_back(std::make_unique<Robot>(*shared_, model, listed));
+    if (options_.has_parameters && !options_.naming.is_one_node) serve_parameters(robots_.back()->node(), robots_.back()->node().name());
+    std::string line = "node " + robots_.back()->node().name().full() + ":";
+    for (const auto& topic : robots_.back()->topics()) line += " " + topic.substr(0, topic.find(' '));
+    std::printf("%s\n", base::printable(line).c_str());
+  }
+  std::printf("domain %u: %zu robots\n", options_.dds.domain, robots_.size());
+  std::fflush(stdout);
+  is_sources_changed_ = true;
+  send_static_transforms();
+}
+
+void Gateway::send_static_transforms() {
+  ros::TFMessage message;
+  for (const auto& robot : robots_) {
+    const auto own = robot->static_transforms();
+    message.transforms.insert(message.transforms.end(), own.begin(), own.end());
+  }
+  if (tf_static_ != nullptr) publish(*tf_static_, message);
+}
+
+void Gateway::lose() {
+  robots_.clear();
+  clock_ns_ = -1;
+  is_sources_changed_ = true;
+}
+
+void Gateway::take_samples() {
+  for (const auto& robot : robots_) robot->read();
+  send_clock(false);
+  for (const bool is_first : {true, false}) {
+    for (const auto& robot : robots_) robot->show(is_first);
+  }
+}
+
+void Gateway::send_clock(bool is_forced) {
+  const auto& source = world_.clock();
+  if (!source || !source->iface().read() || clock_ == nullptr) return;
+  const auto& sample = source->iface().sample<shm::SimulationSample>();
+  const std::int64_t now = tick_ ? tick_->now.count() : sample.stamp.sim_time_ns;
+  const auto wall = std::chrono::steady_clock::now();
+  const std::int64_t period = options_.clock_rate > 0 ? static_cast<std::int64_t>(1e9 / options_.clock_rate) : 1;
+  const bool is_reset = clock_ns_ < 0 || sample.stamp.resets != resets_ || now < clock_ns_;
+  const bool is_due =
+      sample.paused != 0 ? now != clock_ns_ || wall >= clock_sent_ + paused_clock_period : now / period != clock_ns_ / period;
+  if (!is_forced && !is_reset && !is_due) return;
+  clock_ns_ = now;
+  clock_sent_ = wall;
+  publish(*clock_, ros::Clock{ros::to_time(std::chrono::nanoseconds(now))});
+  if (!is_reset) return;
+  if (sample.stamp.resets != resets_) waits_.rewind();
+  resets_ = sample.stamp.resets;
+  send_static_transforms();
+}
+
+// ---- lock step ----
+
+std::vector<std::string> Gateway::command_topics() const {
+  std::vector<std::string> topics;
+  for (const auto& robot : robots_) topics.insert(topics.end(), robot->commands().topics().begin(), robot->commands().topics().end());
+  return topics;
+}
+
+void Gateway::begin_tick(const shm::Tick& tick) {
+  tick_ = tick;
+  tick_start_ = std::chrono::steady_clock::now();
+  waits_.begin(tick.now, command_topics());
+  for (const auto& robot : robots_) robot->read();
+  send_clock(waits_.is_waiting());
+  for (const bool is_first : {true, false}) {
+    for (const auto& robot : robots_) robot->show(is_first);
+  }
+  tend_tick(tick_start_);
+}
+
+void Gateway::tend_tick(Time now) {
+  if (!tick_) return;
+  if (waits_.is_waiting() && now >= tick_start_ + options_.wait_timeout) {
+    const auto words = fmt::format(
+        "no command on {} for the tick at t = {} s within {} s", base::join({waits_.missing().begin(), waits_.missing().end()}, ", "),
+        std::chrono::duration<double>(tick_->now).count(), std::chrono::duration<double>(options_.wait_timeout).count());
+    waits_.give_up();
+    if (options_.on_timeout == OnTimeout::fail) {
+      failed_ = base::Error{words};
+      return;
+    }
+    base::log(base::Level::warn, "ros2-gateway", "{}", words);
+    if (options_.on_timeout == OnTimeout::stop) errands_.post(shm::PauseRequest{}, [](const base::Result<shm::Reply>&) {});
+  }
+  if (waits_.is_waiting()) {
+    // Readers of the clock are best effort: it may be lost.
+    if (now >= clock_sent_ + resend_period) send_clock(true);
+    return;
+  }
+  tick_.reset();
+  turns_->finish();
+}
+
+// ---- losses ----
+
+void Gateway::report_losses() {
+  std::vector<const Node*> nodes = {node_.get()};
+  for (const auto& robot : robots_) nodes.push_back(&robot->node());
+  for (const Node* node : nodes) {
+    for (const auto& writer : node->writers()) {
+      auto& reported = lost_[writer->settings().topic];
+      if (writer->lost() <= reported) continue;
+      std::vector<std::string> readers;
+      for (const Guid& reader : writer->readers()) readers.push_back(graph_->node_of(reader));
+      base::log(base::Level::warn, "ros2-gateway", "{}: {} samples were not confirmed in time by every reader ({})",
+                writer->settings().topic.substr(2), writer->lost() - reported, base::join(readers, ", "));
+      reported = writer->lost();
+    }
+  }
+}
+
+}  // namespace ros2

@@ -1,0 +1,94 @@
+// The gateway: robots, clock and services in one event loop. One thread; Fast DDS has its own (dds/participant.h), and so have the alarm,
+// the errands and the turns.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "common/alarm.h"
+#include "graph.h"
+#include "naming.h"
+#include "robot.h"
+#include "simulation.h"
+#include "turns.h"
+#include "waits.h"
+#include "world.h"
+
+namespace ros2 {
+
+enum class OnTimeout { hold, stop, fail };
+
+struct Options {
+  std::uint32_t server_id = 0;
+  ParticipantSettings dds;
+  std::optional<Family> family;
+  Naming naming;
+  std::string service_prefix;
+  double clock_rate = 100;  // [Hz of simulated time]; 0: every step
+  std::chrono::nanoseconds command_timeout = std::chrono::milliseconds(500);
+  bool has_clock = true, has_joint_tf = true, has_parameters = true;
+  bool is_lockstep = false;
+  std::vector<WaitFor> waits;
+  std::chrono::nanoseconds wait_timeout = std::chrono::seconds(10);
+  OnTimeout on_timeout = OnTimeout::fail;
+};
+
+class Gateway {
+ public:
+  explicit Gateway(Options options);
+  ~Gateway();
+
+  // Until SIGINT or SIGTERM, which must be blocked in all threads. Errors: DDS, or a command that did not come in time.
+  base::Result<void> run();
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+
+  base::Result<void> open();
+  void turn_loop();
+  void handle(std::uint64_t what);
+  void arrange(const Listed& listed);
+  void lose();
+  void send_static_transforms();
+  void take_samples();
+  void send_clock(bool is_forced);
+  void begin_tick(const shm::Tick& tick);
+  void tend_tick(Time now);
+  void report_losses();
+  std::vector<std::string> command_topics() const;
+
+  Options options_;
+  int epoll_ = -1, signals_ = -1;
+  Errands errands_;
+  gateway::Alarm alarm_;
+  World world_;
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Graph> graph_;
+  std::unique_ptr<Node> node_;
+  std::unique_ptr<SimulationServices> services_;
+  Writer* clock_ = nullptr;
+  Writer* tf_static_ = nullptr;
+  std::unique_ptr<Shared> shared_;
+  std::vector<std::unique_ptr<Robot>> robots_;
+  std::map<std::string, std::string> shown_;  // by robot: what was printed
+  std::vector<SharedSegment> watched_;
+  std::unique_ptr<Turns> turns_;
+  Waits waits_;
+  std::optional<shm::Tick> tick_;
+  Time tick_start_{}, clock_sent_{};
+  std::int64_t clock_ns_ = -1;
+  std::uint32_t resets_ = 0;
+  bool is_sources_changed_ = false;
+  std::map<std::string, std::uint64_t> lost_;  // by topic: as reported
+  Time next_look_{}, next_report_{};
+  bool is_over_ = false;
+  std::optional<base::Error> failed_;
+};
+
+}  // namespace ros2

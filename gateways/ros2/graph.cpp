@@ -1,0 +1,219 @@
+#include "graph.h"
+
+#include <algorithm>
+
+#include "base/log.h"
+#include "names.h"
+#include "ros/decode.h"
+#include "ros/graph_messages.h"
+#include "ros/type_hash.h"
+
+namespace ros2 {
+namespace {
+
+constexpr const char* graph_topic = "ros_discovery_info";
+constexpr std::chrono::milliseconds between_messages{50};
+constexpr std::chrono::seconds name_wait{1};  // until a peer has told of its nodes
+constexpr std::size_t max_peers = 100'000;
+
+ros::Gid gid16(const Guid& guid) { return {guid}; }
+ros::HumbleGid gid24(const Guid& guid) {
+  ros::HumbleGid gid;
+  std::ranges::copy(guid, gid.data.begin());
+  return gid;
+}
+
+bool starts_as_ros(const std::string& topic) { return topic.starts_with("rt/") || topic.starts_with("rq/") || topic.starts_with("rr/"); }
+
+Guid first_16(const auto& data) {
+  Guid guid{};
+  std::copy_n(data.begin(), guid.size(), guid.begin());
+  return guid;
+}
+
+template <class Message>
+void add_names(const Message& message, std::map<Guid, std::string>& names) {
+  for (const auto& node : message.node_entities_info_seq) {
+    const std::string name = NodeName{node.node_namespace, node.node_name}.full();
+    for (const auto& gid : node.reader_gid_seq) names[first_16(gid.data)] = name;
+    for (const auto& gid : node.writer_gid_seq) names[first_16(gid.data)] = name;
+  }
+}
+
+template <class Message, class NodeInfo, class Nodes, class ToGid>
+Message message_of(const Guid& participant, const Nodes& nodes, ToGid to_gid) {
+  Message message;
+  message.gid = to_gid(participant);
+  for (const auto& [name, node] : nodes) {
+    NodeInfo info;
+    info.node_namespace.assign(name.space);
+    info.node_name.assign(name.name);
+    for (const Guid& guid : node.readers) info.reader_gid_seq.push_back(to_gid(guid));
+    for (const Guid& guid : node.writers) info.writer_gid_seq.push_back(to_gid(guid));
+    message.node_entities_info_seq.push_back(std::move(info));
+  }
+  return message;
+}
+
+template <class Message>
+void send(Writer& writer, const Message& message) {
+  writer.write(ros::encoded_size(message), [&](std::span<char> room) { ros::encode(message, room); });
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Graph>> Graph::open(Participant& participant, std::optional<Family> family) {
+  auto graph = std::unique_ptr<Graph>(new Graph(participant, family));
+  EndpointSettings settings;
+  settings.topic = graph_topic;
+  settings.type = type_on_wire(ros::ParticipantEntitiesInfo::name);
+  settings.user_data = "typehash=" + ros::TypeHash::of<ros::ParticipantEntitiesInfo>() + ";";
+  settings.is_transient = true;
+  settings.depth = 1;
+  auto writer = participant.make_writer(settings);
+  if (!writer) return writer.error();
+  auto reader = participant.make_reader(settings, [self = graph.get()](const Received& message) { self->learn(message); });
+  if (!reader) return reader.error();
+  graph->writer_ = std::move(*writer);
+  graph->reader_ = std::move(*reader);
+  participant.watch([self = graph.get()](const Peer& peer) { self->see(peer); });
+  return graph;
+}
+
+void Graph::add_node(const NodeName& node) {
+  ++nodes_[node].uses;
+  has_changed_ = true;
+}
+
+void Graph::remove_node(const NodeName& node) {
+  if (const auto found = nodes_.find(node); found != nodes_.end() && --found->second.uses == 0) nodes_.erase(found);
+  has_changed_ = true;
+}
+
+void Graph::add_endpoint(const NodeName& node, const Guid& guid, const EndpointSettings& settings, bool is_writer) {
+  auto& lists = nodes_[node];
+  (is_writer ? lists.writers : lists.readers).push_back(guid);
+  own_[guid] = {settings, is_writer, node};
+  has_changed_ = true;
+  for (const Peer* peer : peers_of(settings.topic)) judge_fit(*peer);
+}
+
+void Graph::remove_endpoint(const NodeName& node, const Guid& guid) {
+  own_.erase(guid);
+  if (const auto found = nodes_.find(node); found != nodes_.end()) {
+    std::erase(found->second.readers, guid);
+    std::erase(found->second.writers, guid);
+  }
+  has_changed_ = true;
+}
+
+void Graph::tend(Time now) {
+  if (has_changed_ && family_ && now >= told_ + between_messages) {
+    told_ = now;
+    has_changed_ = false;
+    tell();
+  }
+  std::erase_if(doubts_, [&](const Doubt& doubt) {
+    if (now < doubt.due) return false;
+    base::log(base::Level::warn, "ros2-gateway", "{} of {}", doubt.words, node_of(doubt.peer));
+    return true;
+  });
+}
+
+void Graph::tell() {
+  const Guid& guid = participant_.guid();
+  if (*family_ == Family::humble) {
+    send(*writer_, message_of<ros::HumbleParticipantEntitiesInfo, ros::HumbleNodeEntitiesInfo>(guid, nodes_, gid24));
+  } else {
+    send(*writer_, message_of<ros::ParticipantEntitiesInfo, ros::NodeEntitiesInfo>(guid, nodes_, gid16));
+  }
+}
+
+std::string Graph::node_of(const Guid& endpoint) const {
+  for (const auto& [writer, names] : named_) {
+    if (const auto found = names.find(endpoint); found != names.end()) return found->second;
+  }
+  return "an unknown node";
+}
+
+const Peer* Graph::peer(const Guid& endpoint) const {
+  const auto found = peers_.find(endpoint);
+  return found == peers_.end() ? nullptr : &found->second;
+}
+
+std::vector<const Peer*> Graph::peers_of(const std::string& topic) const {
+  std::vector<const Peer*> found;
+  for (const auto& [guid, peer] : peers_) {
+    if (peer.topic == topic) found.push_back(&peer);
+  }
+  return found;
+}
+
+void Graph::see(const Peer& peer) {
+  if (peer.is_gone) {
+    peers_.erase(peer.guid);
+    named_.erase(peer.guid);
+    return;
+  }
+  if (peers_.size() >= max_peers) return;
+  const bool is_new = peers_.insert_or_assign(peer.guid, peer).second;
+  judge_family(peer);
+  if (is_new) judge_fit(peer);
+}
+
+// A writer of the graph without type hash is one of Humble; whoever gives the hash of a topic is of Iron or later. Others say nothing.
+void Graph::judge_family(const Peer& peer) {
+  const bool has_hash = value_in(peer.user_data, "typehash").has_value();
+  const bool is_graph = peer.topic == graph_topic;
+  if (!(is_graph && peer.is_writer) && !(starts_as_ros(peer.topic) && has_hash)) return;
+  const Family seen = has_hash ? Family::jazzy : Family::humble;
+  const char* name = seen == Family::humble ? "Humble" : "Iron, Jazzy or later";
+  if (!family_) {
+    family_ = seen;
+    base::log(base::Level::info, "ros2-gateway", "the domain has nodes of {}", name);
+  } else if (seen != *family_ && !is_mixed_) {
+    is_mixed_ = true;
+    base::log(
+        base::Level::error, "ros2-gateway",
+        "the domain has a node of {}, but this gateway serves {} ({}). Nodes of both cannot share a domain: use another ROS_DOMAIN_ID",
+        name, *family_ == Family::humble ? "Humble" : "Iron and later", is_set_ ? "--distro" : "the first node that it saw");
+  }
+}
+
+void Graph::judge_fit(const Peer& peer) {
+  const std::string name = peer.topic.starts_with("rt/") ? peer.topic.substr(2) : peer.topic;
+  for (const auto& [guid, own] : own_) {
+    if (own.settings.topic != peer.topic || own.is_writer == peer.is_writer) continue;
+    std::string words;
+    if (own.settings.type != peer.type) {
+      const bool has_twin = std::ranges::any_of(own_, [&](const auto& other) {
+        return other.second.settings.topic == peer.topic && other.second.settings.type == peer.type &&
+               other.second.is_writer == own.is_writer;
+      });
+      if (!has_twin) words = "has type " + type_of_ros(peer.type) + ", expected " + type_of_ros(own.settings.type) + ", in an endpoint";
+    } else if (own.is_writer && peer.is_transient && !own.settings.is_transient) {
+      words = "is offered as volatile, but transient local is requested by a reader";
+    } else if (!own.is_writer && !peer.is_reliable) {
+      words = "is requested as reliable, but best effort is offered by a writer";
+    } else if (!own.is_writer && own.settings.is_transient && !peer.is_transient) {
+      words = "is requested as transient local, but volatile is offered by a writer";
+    }
+    if (words.empty()) continue;
+    doubts_.push_back({peer.guid, name + " " + words, std::chrono::steady_clock::now() + name_wait});
+    return;
+  }
+}
+
+void Graph::learn(const Received& message) {
+  std::map<Guid, std::string> names;
+  const Peer* from = peer(message.identity.writer);
+  const bool is_humble = from != nullptr ? !value_in(from->user_data, "typehash") : family_ == Family::humble;
+  if (is_humble) {
+    if (const auto info = ros::decode<ros::HumbleParticipantEntitiesInfo>(message.bytes)) add_names(*info, names);
+  } else if (const auto info = ros::decode<ros::ParticipantEntitiesInfo>(message.bytes)) {
+    add_names(*info, names);
+  }
+  named_[message.identity.writer] = std::move(names);
+}
+
+}  // namespace ros2

@@ -1,0 +1,151 @@
+#include "naming.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "base/yaml_keys.h"
+#include "names.h"
+
+namespace ros2 {
+namespace {
+
+// Thrown by the readers below, caught in read_naming.
+struct WrongEntry {
+  YAML::Mark mark;
+  std::string what;
+};
+
+std::string naming_text(const YAML::Node& node, const char* what) {
+  if (!node.IsScalar()) throw WrongEntry{node.Mark(), std::string("expected ") + what};
+  return node.as<std::string>();
+}
+
+double naming_number(const YAML::Node& node, double least, double most, const char* what) {
+  double value = 0;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= least && value <= most))
+    throw WrongEntry{node.Mark(), std::string("expected ") + what};
+  return value;
+}
+
+bool naming_flag(const YAML::Node& node) {
+  bool value = false;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) throw WrongEntry{node.Mark(), "expected true or false"};
+  return value;
+}
+
+std::string full_name(const YAML::Node& node, bool may_be_root) {
+  std::string name = naming_text(node, "a name");
+  if (may_be_root && (name.empty() || name == "/")) return "/";
+  const auto problem = problem_of_name(name.front() == '/' ? name : "/" + name);
+  if (problem) throw WrongEntry{node.Mark(), "name " + base::in_quotes(name) + " " + *problem};
+  return may_be_root && name.front() != '/' ? "/" + name : name;
+}
+
+RobotNames robot_names(const std::string& model, const YAML::Node& node) {
+  if (!node.IsMap()) throw WrongEntry{node.Mark(), "expected namespace or frame_prefix"};
+  RobotNames names{"/" + tokens(model), tokens(model) + "/"};
+  for (const auto& entry : node) {
+    const auto key = naming_text(entry.first, "namespace or frame_prefix");
+    if (key == "namespace") {
+      names.space = full_name(entry.second, true);
+    } else if (key == "frame_prefix") {
+      names.frame_prefix = naming_text(entry.second, "a prefix");
+    } else {
+      throw WrongEntry{entry.first.Mark(), "expected namespace or frame_prefix, got " + base::in_quotes(key)};
+    }
+  }
+  return names;
+}
+
+void read_topic_key(TopicEntry& topic, const std::string& key, const YAML::Node& key_node, const YAML::Node& value) {
+  if (key == "iface") {
+    topic.iface = naming_text(value, "the name of an iface");
+  } else if (key == "ros_type_name") {
+    topic.type = naming_text(value, "a type such as sensor_msgs/msg/LaserScan");
+  } else if (key == "ros_topic_name") {
+    topic.topic = full_name(value, false);
+  } else if (key == "frame_id") {
+    topic.frame = naming_text(value, "a frame");
+  } else if (key == "rate") {
+    topic.rate = naming_number(value, 1e-3, 1e6, "a rate in Hz");
+  } else if (key == "publisher_queue") {
+    topic.depth = static_cast<std::size_t>(naming_number(value, 1, 10000, "a number from 1 to 10000"));
+  } else if (key == "durability") {
+    const auto text = naming_text(value, "volatile or transient_local");
+    if (text != "volatile" && text != "transient_local") throw WrongEntry{value.Mark(), "expected volatile or transient_local"};
+    topic.is_transient = text == "transient_local";
+  } else if (key == "served") {
+    topic.is_served = naming_flag(value);
+  } else {
+    throw WrongEntry{key_node.Mark(),
+                     "unknown key " + base::in_quotes(key) +
+                         "; expected iface, ros_type_name, ros_topic_name, frame_id, rate, publisher_queue, durability or served"};
+  }
+}
+
+TopicEntry topic_entry(const YAML::Node& node) {
+  if (!node.IsMap()) throw WrongEntry{node.Mark(), "expected an entry with iface"};
+  TopicEntry topic;
+  for (const auto& entry : node) read_topic_key(topic, naming_text(entry.first, "a key"), entry.first, entry.second);
+  if (topic.iface.empty()) throw WrongEntry{node.Mark(), "iface is missing"};
+  if (topic.topic && topic.type.empty())
+    throw WrongEntry{node.Mark(), "ros_topic_name needs ros_type_name: an iface can have several topics"};
+  return topic;
+}
+
+Naming naming_of(const YAML::Node& root) {
+  if (!root.IsMap()) throw WrongEntry{root.Mark(), "expected domain, clock_rate, robots or topics"};
+  Naming naming;
+  for (const auto& entry : root) {
+    const auto key = naming_text(entry.first, "a key");
+    if (key == "domain") {
+      naming.domain = static_cast<std::uint32_t>(naming_number(entry.second, 0, 232, "a domain from 0 to 232"));
+    } else if (key == "clock_rate") {
+      naming.clock_rate = naming_number(entry.second, 0, 1e6, "a rate in Hz");
+    } else if (key == "robots") {
+      if (!entry.second.IsMap()) throw WrongEntry{entry.second.Mark(), "robots: expected MODEL: {namespace: ...}"};
+      for (const auto& robot : entry.second) {
+        const auto model = naming_text(robot.first, "the name of a model");
+        naming.robots[model] = robot_names(model, robot.second);
+      }
+    } else if (key == "topics") {
+      if (!entry.second.IsSequence()) throw WrongEntry{entry.second.Mark(), "topics: expected a list"};
+      for (const auto& topic : entry.second) naming.topics.push_back(topic_entry(topic));
+    } else {
+      throw WrongEntry{entry.first.Mark(), "unknown key " + base::in_quotes(key) + "; expected domain, clock_rate, robots or topics"};
+    }
+  }
+  return naming;
+}
+
+}  // namespace
+
+RobotNames Naming::names_of(const std::string& model) const {
+  if (const auto found = robots.find(model); found != robots.end()) return found->second;
+  if (!root_robot.empty() && model == root_robot) return {"/", ""};
+  return {"/" + tokens(model), has_tf_per_robot ? "" : tokens(model) + "/"};
+}
+
+const TopicEntry* Naming::entry(const std::string& iface, const std::string& type) const {
+  const auto found = std::ranges::find_if(
+      topics, [&](const TopicEntry& topic) { return topic.iface == iface && (topic.type.empty() || topic.type == type); });
+  return found == topics.end() ? nullptr : &*found;
+}
+
+base::Result<Naming> read_naming(const std::string& path) {
+  try {
+    const auto root = YAML::LoadFile(path);
+    yaml::expect_unique_keys(root);
+    return naming_of(root);
+  } catch (const WrongEntry& wrong) {
+    return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.what};
+  } catch (const YAML::BadFile&) {
+    return base::Error{"mapping " + path + " can't be read"};
+  } catch (const YAML::Exception& wrong) {
+    return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.msg};
+  }
+}
+
+}  // namespace ros2

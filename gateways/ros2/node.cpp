@@ -1,0 +1,61 @@
+#include "node.h"
+
+#include <utility>
+
+#include "base/log.h"
+
+namespace ros2 {
+
+Node::Node(Participant& participant, Graph& graph, NodeName name) : participant_(participant), graph_(graph), name_(std::move(name)) {
+  graph_.add_node(name_);
+}
+
+Node::~Node() {
+  for (const auto& writer : writers_) graph_.remove_endpoint(name_, writer->guid());
+  for (const auto& reader : readers_) graph_.remove_endpoint(name_, reader->guid());
+  services_.clear();
+  graph_.remove_node(name_);
+}
+
+Writer* Node::add_writer(EndpointSettings settings, std::function<void()> on_match) {
+  auto writer = participant_.make_writer(std::move(settings), std::move(on_match));
+  if (!writer) {
+    base::log(base::Level::error, "ros2-gateway", "{}", writer.error().message);
+    return nullptr;
+  }
+  graph_.add_endpoint(name_, (*writer)->guid(), (*writer)->settings(), true);
+  writers_.push_back(std::move(*writer));
+  return writers_.back().get();
+}
+
+Reader* Node::add_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) {
+  auto reader = participant_.make_reader(std::move(settings), std::move(on_sample));
+  if (!reader) {
+    base::log(base::Level::error, "ros2-gateway", "{}", reader.error().message);
+    return nullptr;
+  }
+  graph_.add_endpoint(name_, (*reader)->guid(), (*reader)->settings(), false);
+  readers_.push_back(std::move(*reader));
+  return readers_.back().get();
+}
+
+void Node::add_service(const std::string& name, ServiceTypes types, OnRequest on_request) {
+  auto service = Service::open(participant_, graph_, name_, name, std::move(types), std::move(on_request));
+  if (!service) {
+    base::log(base::Level::error, "ros2-gateway", "{}", service.error().message);
+    return;
+  }
+  services_.push_back(std::move(*service));
+}
+
+void Node::tend() {
+  for (const auto& service : services_) service->tend();
+}
+
+std::uint64_t Node::damaged() const {
+  std::uint64_t count = damaged_;
+  for (const auto& service : services_) count += service->damaged();
+  return count;
+}
+
+}  // namespace ros2

@@ -1,0 +1,117 @@
+// A node of ROS 2: topics and services, typed by the structures of ros/. Its endpoints end with it. Errors of DDS are logged, and the
+// endpoint is left out. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dds/participant.h"
+#include "graph.h"
+#include "names.h"
+#include "ros/cdr.h"
+#include "ros/decode.h"
+#include "ros/type_hash.h"
+#include "service.h"
+
+namespace ros2 {
+
+struct Qos {
+  bool is_transient = false;
+  std::size_t depth = 10;
+};
+
+template <ros::Message T>
+bool publish(Writer& writer, const T& message) {
+  return writer.write(ros::encoded_size(message), [&](std::span<char> room) { ros::encode(message, room); });
+}
+
+class Node {
+ public:
+  Node(Participant& participant, Graph& graph, NodeName name);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const NodeName& name() const { return name_; }
+  Graph& graph() { return graph_; }
+
+  // `topic` is a full name. Nothing when DDS has no room. The node owns the writer.
+  template <ros::Message T>
+  Writer* advertise(const std::string& topic, Qos qos = {}, bool is_large = false, std::function<void()> on_match = {}) {
+    return add_writer({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>(), qos.is_transient, qos.depth, is_large},
+                      std::move(on_match));
+  }
+  // Messages that cannot be read are counted and left out.
+  template <ros::Message T>
+  Reader* subscribe(const std::string& topic, std::function<void(const T&)> on_message) {
+    EndpointSettings settings{topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>()};
+    return add_reader(std::move(settings), [this, on_message = std::move(on_message)](const Received& received) {
+      if (const auto message = ros::decode<T>(received.bytes)) {
+        on_message(*message);
+      } else {
+        ++damaged_;
+      }
+    });
+  }
+  // `Request2`: what newer clients send under the same name; told apart by the type hash of the client. `on_request` receives either, and
+  // the function that sends the reply, now or later.
+  template <ros::Message Request, ros::Message Response>
+  void serve(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request) {
+    add_service(service, service_types<Request, Response>(),
+                [on_request = std::move(on_request)](std::span<const std::uint8_t> bytes, const std::string&, const Reply& reply) {
+                  const auto request = ros::decode<Request>(bytes);
+                  if (!request) return false;
+                  on_request(*request, [reply](const Response& response) { reply(ros::encode(response)); });
+                  return true;
+                });
+  }
+  template <ros::Message Request, ros::Message Request2, ros::Message Response>
+  void serve_both(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request,
+                  std::function<Request(const Request2&)> to_request) {
+    add_service(service, service_types<Request, Response>(),
+                [on_request = std::move(on_request), to_request = std::move(to_request), hash = ros::TypeHash::of<Request2>()](
+                    std::span<const std::uint8_t> bytes, const std::string& client_hash, const Reply& reply) {
+                  std::optional<Request> request;
+                  if (client_hash == hash) {
+                    if (const auto newer = ros::decode<Request2>(bytes)) request = to_request(*newer);
+                  } else {
+                    request = ros::decode<Request>(bytes);
+                  }
+                  if (!request) return false;
+                  on_request(*request, [reply](const Response& response) { reply(ros::encode(response)); });
+                  return true;
+                });
+  }
+  // To be called some times a second while a service is called: sends replies whose client was not matched.
+  void tend();
+  // Messages and requests that could not be read.
+  std::uint64_t damaged() const;
+  const std::vector<std::unique_ptr<Writer>>& writers() const { return writers_; }
+
+ private:
+  template <ros::Message T>
+  static std::string user_data_of() {
+    return "typehash=" + ros::TypeHash::of<T>() + ";";
+  }
+  template <ros::Message Request, ros::Message Response>
+  static ServiceTypes service_types() {
+    return {type_on_wire(Request::name), type_on_wire(Response::name), ros::TypeHash::of<Request>(), ros::TypeHash::of<Response>()};
+  }
+  Writer* add_writer(EndpointSettings settings, std::function<void()> on_match);
+  Reader* add_reader(EndpointSettings settings, std::function<void(Received&)> on_sample);
+  void add_service(const std::string& service, ServiceTypes types, OnRequest on_request);
+
+  Participant& participant_;
+  Graph& graph_;
+  const NodeName name_;
+  std::vector<std::unique_ptr<Writer>> writers_;
+  std::vector<std::unique_ptr<Reader>> readers_;
+  std::vector<std::unique_ptr<Service>> services_;
+  std::uint64_t damaged_ = 0;
+};
+
+}  // namespace ros2

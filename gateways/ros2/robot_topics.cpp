@@ -1,0 +1,436 @@
+#include "robot_topics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "base/log.h"
+#include "description.h"
+#include "ros/contact_messages.h"
+
+namespace ros2 {
+namespace {
+
+using shm::HeldFrame;
+
+// Covariances that filters can use: what wheels measure, and what they don't.
+constexpr double flat_variance = 1e-5, yaw_variance = 1e-3, unknown_variance = 1e12;
+
+std::array<double, 36> wheel_covariance() {
+  std::array<double, 36> covariance{};
+  const std::array<double, 6> diagonal = {flat_variance, flat_variance, unknown_variance, unknown_variance, unknown_variance, yaw_variance};
+  for (std::size_t i = 0; i < 6; ++i) covariance[i * 7] = diagonal[i];
+  return covariance;
+}
+
+std::string leaf_of(const std::string& iface, const std::string& model) {
+  return iface.starts_with(model + "::") ? iface.substr(model.size() + 2) : iface;
+}
+
+template <class T>
+void publish_if(Writer* writer, const T& message) {
+  if (writer != nullptr && !writer->readers().empty()) publish(*writer, message);
+}
+
+std::vector<Writer*> without_null(std::vector<Writer*> writers) {
+  std::erase(writers, nullptr);
+  return writers;
+}
+
+// A point of a scanner of several layers, as drivers of such scanners send it.
+struct RingPoint {
+  float x, y, z, intensity;
+  std::uint16_t ring, reserved;
+  float time;
+};
+static_assert(sizeof(RingPoint) == 24);
+
+std::vector<RingPoint> ring_points(const shm::LaserInfo& info, const shm::ScanView& scan) {
+  std::vector<RingPoint> points;
+  points.reserve(scan.ranges.size());
+  const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = std::isfinite(scan.ranges[i]) ? scan.ranges[i] : std::numeric_limits<double>::quiet_NaN();
+    const double yaw = info.min_angle + static_cast<double>(i % info.beams) * info.angle_step;
+    const double pitch = info.min_vertical + static_cast<double>(i / info.beams) * rise;
+    points.push_back({static_cast<float>(range * std::cos(pitch) * std::cos(yaw)),
+                      static_cast<float>(range * std::cos(pitch) * std::sin(yaw)), static_cast<float>(range * std::sin(pitch)),
+                      i < scan.intensities.size() ? scan.intensities[i] : 0.0F, static_cast<std::uint16_t>(i / info.beams), 0, 0});
+  }
+  return points;
+}
+
+constexpr std::uint8_t uint16_field = 4, float32_field = 7;
+
+ros::Contacts contacts_message(const shm::Iface& iface, const std::string& frame) {
+  const auto view = iface.bumper();
+  ros::Contacts message{ros::header_of(view.sample->stamp, frame), {}};
+  const std::string own = iface.name();
+  for (const shm::Contact& contact : view.contacts) {
+    ros::Contact one;
+    one.collision1 = {0, own, ros::Entity::collision};
+    one.collision2 = {0, ros::text_of(contact.other), ros::Entity::collision};
+    one.positions.push_back(ros::vector_of(contact.position));
+    one.normals.push_back(ros::vector_of(contact.normal));
+    one.depths.push_back(contact.depth);
+    ros::JointWrench wrench;
+    wrench.header = message.header;
+    wrench.body_1_name.data = own;
+    wrench.body_2_name.data = one.collision2.label;
+    wrench.body_1_wrench.force = ros::vector_of(contact.force);
+    wrench.body_2_wrench.force = {-contact.force[0], -contact.force[1], -contact.force[2]};
+    one.wrenches.push_back(std::move(wrench));
+    message.contacts.push_back(std::move(one));
+  }
+  return message;
+}
+
+// What moves a link along or about its joint's axis.
+shm::Pose motion_of(const shm::Joint& joint, double position) {
+  const double* a = joint.axis;
+  if (joint.kind == RTMSIM_JOINT_SLIDES) return {a[0] * position, a[1] * position, a[2] * position, 1, 0, 0, 0};
+  const double s = std::sin(position / 2);
+  return {0, 0, 0, std::cos(position / 2), a[0] * s, a[1] * s, a[2] * s};
+}
+
+}  // namespace
+
+std::vector<ServedRow> served_rows() {
+  using enum shm::IfaceType;
+  return {
+      {laser, "scan; of several layers: points", "sensor_msgs/msg/LaserScan; PointCloud2 (x y z intensity ring time)"},
+      {sonar, "SENSOR/0, SENSOR/1, ...", "sensor_msgs/msg/Range"},
+      {camera, "SENSOR/image_raw, SENSOR/image_raw/compressed, SENSOR/camera_info", "sensor_msgs/msg/Image, CompressedImage, CameraInfo"},
+      {depth, "SENSOR/depth/image_raw, SENSOR/depth/camera_info", "sensor_msgs/msg/Image (32FC1), CameraInfo"},
+      {points, "SENSOR/points", "sensor_msgs/msg/PointCloud2"},
+      {imu, "imu/data", "sensor_msgs/msg/Imu"},
+      {gps, "gps/fix", "sensor_msgs/msg/NavSatFix"},
+      {magnetometer, "imu/mag", "sensor_msgs/msg/MagneticField"},
+      {air_pressure, "air_pressure", "sensor_msgs/msg/FluidPressure"},
+      {altimeter, "altimeter", "ros_gz_interfaces/msg/Altimeter"},
+      {force_torque, "SENSOR/wrench", "geometry_msgs/msg/WrenchStamped"},
+      {bumper, "SENSOR/contacts", "ros_gz_interfaces/msg/Contacts"},
+      {joints, "joint_states, /tf", "sensor_msgs/msg/JointState, tf2_msgs/msg/TFMessage"},
+      {position2d, "odom, ground_truth/odom, /tf", "nav_msgs/msg/Odometry, tf2_msgs/msg/TFMessage"},
+      {position3d, "odom, ground_truth/odom, /tf", "nav_msgs/msg/Odometry, tf2_msgs/msg/TFMessage"},
+  };
+}
+
+// ---- what all have in common ----
+
+void RobotTopics::make(const Listed& listed) {
+  std::vector<ListedIface> own;
+  for (const auto& iface : listed.ifaces) {
+    if (iface.model == robot_.model_ || iface.name.starts_with(robot_.model_ + "::")) own.push_back(iface);
+  }
+  // The drive first: it says where the base is.
+  std::ranges::stable_sort(
+      own, {}, [](const ListedIface& one) { return one.type != shm::IfaceType::position2d && one.type != shm::IfaceType::position3d; });
+  const bool has_drive = !own.empty() && (own[0].type == shm::IfaceType::position2d || own[0].type == shm::IfaceType::position3d);
+  for (const auto& iface : own) {
+    const auto count = std::ranges::count(own, iface.type, &ListedIface::type);
+    add(iface, count == 1);
+  }
+  const auto model = std::ranges::find(listed.models, robot_.model_, &ListedModel::name);
+  if (!has_drive && model != listed.models.end()) put_frame("world", base(), model->pose);
+  add_description(listed);
+}
+
+void RobotTopics::add(const ListedIface& listed, bool is_only) {
+  using enum shm::IfaceType;
+  if (listed.type == truth || listed.type == simulation) return;
+  auto source = robot_.shared_.world.find(listed.type, listed.name);
+  if (!source) return;
+  const std::string leaf = leaf_of(listed.name, robot_.model_);
+  Place place{source, listed.name, is_only ? "" : tokens(leaf) + "/", tokens(leaf), robot_.names_.frame(token(leaf))};
+  if (const auto* entry = robot_.shared_.naming.entry(listed.name, ""); entry != nullptr && entry->frame) place.frame = *entry->frame;
+  switch (listed.type) {
+    case laser:
+      return source->iface().info<shm::LaserInfo>().layers == 1 ? add_laser(place) : add_cloud_of_laser(place);
+    case sonar:
+      return add_sonar(place);
+    case camera:
+      return add_camera(place, place.leaf);
+    case depth:
+      return add_camera(place, place.leaf + "/depth");
+    case points:
+      return add_points(place);
+    case position2d:
+      return add_position2d(place);
+    case position3d:
+      return add_position3d(place);
+    case joints:
+      return add_joints(place);
+    case bumper:
+      return add_bumper(place);
+    case altimeter:
+      return add_altimeter(place);
+    case imu:
+      return add_meter<ros::Imu, shm::ImuInfo>(place, place.front + "imu/data", ros::imu_message);
+    case gps:
+      return add_meter<ros::NavSatFix, shm::GpsInfo>(place, place.front + "gps/fix", ros::fix_message);
+    case magnetometer:
+      return add_meter<ros::MagneticField, shm::MeterInfo>(place, place.front + "imu/mag", ros::field_message);
+    case air_pressure:
+      return add_meter<ros::FluidPressure, shm::MeterInfo>(place, place.front + "air_pressure", ros::pressure_message);
+    case force_torque:
+      return add_meter<ros::WrenchStamped, shm::MeterInfo>(place, place.leaf + "/wrench", ros::wrench_message);
+    case truth:
+    case simulation:
+      break;
+  }
+}
+
+template <ros::Message T>
+Writer* RobotTopics::advertise(const Place& place, const std::string& topic, bool is_large) {
+  const TopicEntry* entry = robot_.shared_.naming.entry(place.name, std::string(T::name));
+  if (entry != nullptr && !entry->is_served) return nullptr;
+  std::string name = robot_.names_.topic(entry != nullptr && entry->topic ? *entry->topic : topic);
+  if (!robot_.used_topics_.insert(name).second) {
+    base::log(base::Level::warn, "ros2-gateway", "{}: topic {} is in use; the topic of {} gets the name {}_2", robot_.model_, name,
+              place.name, name);
+    robot_.used_topics_.insert(name += "_2");
+  }
+  Qos qos;
+  if (entry != nullptr && entry->depth) qos.depth = *entry->depth;
+  if (entry != nullptr && entry->is_transient) qos.is_transient = *entry->is_transient;
+  return robot_.node_.advertise<T>(name, qos, is_large);
+}
+
+Outlet& RobotTopics::outlet(const Place& place, std::vector<Writer*> writers) {
+  robot_.outlets_.push_back({place.source, without_null(std::move(writers)), {}});
+  Outlet& made = robot_.outlets_.back();
+  if (const auto* entry = robot_.shared_.naming.entry(place.name, ""); entry != nullptr && entry->rate)
+    made.period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / *entry->rate));
+  return made;
+}
+
+void RobotTopics::put_frame(const std::string& parent, const std::string& child, const shm::Pose& pose) {
+  robot_.static_transforms_.push_back(ros::transform_of({}, parent, child, pose));
+}
+
+void RobotTopics::put_sensor_frame(const Place& place, const shm::Pose& on_model) {
+  put_frame(base(), place.frame, ros::product(ros::inverse(base_on_model_), on_model));
+}
+
+template <class Message, class Info, class Make>
+void RobotTopics::add_meter(Place& place, const std::string& topic, Make make) {
+  put_sensor_frame(place, place.source->iface().info<Info>().pose);
+  Writer* writer = advertise<Message>(place, topic);
+  if (writer == nullptr) return;
+  outlet(place, {writer}).show = [writer, make, frame = place.frame](Iface& iface, const HeldFrame*) {
+    publish(*writer, make(iface, frame));
+  };
+}
+
+// ---- range finders ----
+
+void RobotTopics::add_laser(Place& place) {
+  const auto& info = place.source->iface().info<shm::LaserInfo>();
+  put_sensor_frame(place, info.pose);
+  Writer* writer = advertise<ros::LaserScan>(place, place.front + "scan");
+  if (writer == nullptr) return;
+  auto message = ros::empty_scan(place.source->iface(), place.frame);
+  // Readers count the ranges by the angles.
+  message.angle_max = static_cast<float>(info.min_angle + (info.beams - 1) * info.angle_step);
+  outlet(place, {writer}).show = [writer, message](Iface& iface, const HeldFrame*) mutable {
+    const auto scan = iface.laser_scan();
+    message.header.stamp = ros::time_of(scan.sample->stamp);
+    message.ranges = scan.ranges;
+    message.intensities = ros::is_zero(scan.intensities) ? std::span<const float>() : scan.intensities;
+    publish(*writer, message);
+  };
+}
+
+void RobotTopics::add_cloud_of_laser(Place& place) {
+  put_sensor_frame(place, place.source->iface().info<shm::LaserInfo>().pose);
+  Writer* writer = advertise<ros::PointCloud2>(place, place.front + "points", true);
+  if (writer == nullptr) return;
+  outlet(place, {writer}).show = [writer, frame = place.frame](Iface& iface, const HeldFrame*) {
+    const auto scan = iface.laser_scan();
+    const auto& info = iface.info<shm::LaserInfo>();
+    const auto points = ring_points(info, scan);
+    ros::PointCloud2 message{.header = ros::header_of(scan.sample->stamp, frame), .height = info.layers, .width = info.beams};
+    message.point_fields = {{"x", 0},
+                            {"y", 4},
+                            {"z", 8},
+                            {"intensity", 12},
+                            {"ring", offsetof(RingPoint, ring), uint16_field},
+                            {"time", offsetof(RingPoint, time), float32_field}};
+    message.point_step = sizeof(RingPoint);
+    message.row_step = message.point_step * message.width;
+    message.data = {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(RingPoint)};
+    message.is_dense = std::ranges::all_of(points, [](const RingPoint& point) { return std::isfinite(point.x); });
+    publish(*writer, message);
+  };
+}
+
+void RobotTopics::add_sonar(Place& place) {
+  const auto poses = place.source->iface().sonar_poses();
+  std::vector<Writer*> writers;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::string number = std::to_string(i);
+    put_frame(base(), place.frame + "_" + number, ros::product(ros::inverse(base_on_model_), poses[i]));
+    // A part of a name does not begin with a digit.
+    writers.push_back(advertise<ros::Range>(place, place.leaf + "/range_" + number));
+  }
+  if (without_null(writers).empty()) return;
+  outlet(place, writers).show = [writers, frame = place.frame](Iface& iface, const HeldFrame*) {
+    const auto scan = iface.sonar_scan();
+    const auto& info = iface.info<shm::SonarInfo>();
+    for (std::size_t i = 0; i < scan.ranges.size() && i < writers.size(); ++i) {
+      ros::Range message{.header = ros::header_of(scan.sample->stamp, frame + "_" + std::to_string(i))};
+      message.field_of_view = static_cast<float>(info.cone);
+      message.min_range = static_cast<float>(info.min_range);
+      message.max_range = static_cast<float>(info.max_range);
+      message.range = scan.ranges[i];
+      message.variance = static_cast<float>(info.noise * info.noise);
+      publish_if(writers[i], message);
+    }
+  };
+}
+
+// ---- cameras ----
+
+void RobotTopics::add_camera(Place& place, const std::string& topic) {
+  const auto& info = place.source->iface().info<shm::CameraInfo>();
+  put_sensor_frame(place, info.pose);
+  const std::string optical = place.frame + "_optical_frame";
+  put_frame(place.frame, optical, {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
+  const auto pixels = ros::jpeg_pixels(static_cast<shm::Format>(info.format));
+  Writer* raw = advertise<ros::Image>(place, topic + "/image_raw", true);
+  Writer* compressed = pixels ? advertise<ros::CompressedImage>(place, topic + "/image_raw/compressed", true) : nullptr;
+  Writer* described = advertise<ros::CameraInfo>(place, topic + "/camera_info");
+  const auto encoder = std::make_shared<base::JpegEncoder>();
+  outlet(place, {raw, compressed, described}).show = [=](Iface& iface, const HeldFrame* frame) {
+    const auto header = ros::header_of(frame->head().stamp, optical);
+    publish_if(described, ros::camera_message(iface.info<shm::CameraInfo>(), header));
+    publish_if(raw, ros::image_message(*frame, header));
+    if (compressed == nullptr || compressed->readers().empty()) return;
+    if (const auto bytes = ros::to_jpeg(*encoder, *frame, *pixels)) publish(*compressed, ros::CompressedImage{header, "jpeg", *bytes});
+  };
+}
+
+void RobotTopics::add_points(Place& place) {
+  put_sensor_frame(place, place.source->iface().info<shm::CameraInfo>().pose);
+  Writer* writer = advertise<ros::PointCloud2>(place, place.leaf + "/points", true);
+  if (writer == nullptr) return;
+  outlet(place, {writer}).show = [writer, frame_id = place.frame](Iface&, const HeldFrame* frame) {
+    const auto& head = frame->head();
+    const bool has_intensity = static_cast<shm::Format>(head.format) == shm::Format::points_intensity_float;
+    ros::PointCloud2 message{.header = ros::header_of(head.stamp, frame_id), .height = head.height, .width = head.width};
+    message.point_fields = {{"x", 0}, {"y", 4}, {"z", 8}};
+    if (has_intensity) message.point_fields.push_back({"intensity", 12});
+    message.point_step = has_intensity ? 16 : 12;
+    message.row_step = message.point_step * message.width;
+    message.data = {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()};
+    publish(*writer, message);
+  };
+}
+
+// ---- drives and joints ----
+
+void RobotTopics::add_position2d(Place& place) {
+  base_on_model_ = place.source->iface().info<shm::Position2dInfo>().pose;
+  const std::string odom = robot_.names_.frame("odom");
+  Writer* writer = advertise<ros::Odometry>(place, place.front + "odom");
+  Writer* truth = advertise<ros::Odometry>(place, place.front + "ground_truth/odom");
+  Writer* tf = robot_.tf();
+  ros::Odometry message{.header = {{}, odom}, .child_frame_id = base()};
+  message.pose.covariance = message.twist.covariance = wheel_covariance();
+  Outlet& made = outlet(place, {writer, truth, tf});
+  made.is_first = true;
+  made.show = [=](Iface& iface, const HeldFrame*) mutable {
+    const auto& sample = iface.sample<shm::Position2dSample>();
+    const auto pose = ros::pose_at(sample.odometry[0], sample.odometry[1], 0, sample.odometry[2]);
+    publish_if(tf, ros::TFMessage{{ros::transform_of(sample.stamp, odom, message.child_frame_id, pose)}});
+    message.header.stamp = ros::time_of(sample.stamp);
+    message.pose.pose = ros::pose_of(pose);
+    message.twist.twist = {{sample.velocity[0], sample.velocity[1], 0}, {0, 0, sample.velocity[2]}};
+    publish_if(writer, message);
+    ros::Odometry real{.header = {message.header.stamp, "world"}, .child_frame_id = message.child_frame_id};
+    real.pose.pose = ros::pose_of(sample.true_pose);
+    real.twist.twist = {{sample.true_velocity[0], sample.true_velocity[1], 0}, {0, 0, sample.true_velocity[2]}};
+    publish_if(truth, real);
+  };
+  robot_.commands_.take_drive(place.source, robot_.names_.topic(place.front + "cmd_vel"));
+}
+
+void RobotTopics::add_position3d(Place& place) {
+  base_on_model_ = place.source->iface().info<shm::Position3dInfo>().pose;
+  const std::string odom = robot_.names_.frame("odom"), child = base();
+  Writer* writer = advertise<ros::Odometry>(place, place.front + "odom");
+  Writer* truth = advertise<ros::Odometry>(place, place.front + "ground_truth/odom");
+  Writer* tf = robot_.tf();
+  Outlet& made = outlet(place, {writer, truth, tf});
+  made.is_first = true;
+  made.show = [=](Iface& iface, const HeldFrame*) {
+    const auto& sample = iface.sample<shm::Position3dSample>();
+    publish_if(tf, ros::TFMessage{{ros::transform_of(sample.stamp, odom, child, sample.odometry)}});
+    ros::Odometry message{.header = ros::header_of(sample.stamp, odom), .child_frame_id = child};
+    message.pose.pose = ros::pose_of(sample.odometry);
+    message.twist.twist = {ros::vector_of(sample.velocity), ros::vector_of(sample.velocity + 3)};
+    publish_if(writer, message);
+    message.header.frame_id = "world";
+    message.pose.pose = ros::pose_of(sample.true_pose);
+    message.twist.twist = {ros::vector_of(sample.true_velocity), ros::vector_of(sample.true_velocity + 3)};
+    publish_if(truth, message);
+  };
+  robot_.commands_.take_drive(place.source, robot_.names_.topic(place.front + "cmd_vel"));
+}
+
+void RobotTopics::add_joints(Place& place) {
+  Writer* writer = advertise<ros::JointState>(place, place.front + "joint_states");
+  Writer* tf = robot_.shared_.has_joint_tf ? robot_.tf() : nullptr;
+  Outlet& made = outlet(place, {writer, tf});
+  made.is_first = true;
+  // The frame of a link is that of the joint that moves it, as in URDF.
+  const auto* joints = reinterpret_cast<const shm::Joint*>(place.source->iface().info_followers(0));
+  std::vector<std::string> frames;
+  for (std::size_t i = 0; i < place.source->iface().count(); ++i)
+    frames.push_back(robot_.names_.frame(token(ros::text_of(joints[i].link))));
+  made.show = [writer, tf, frames, root = base(), to_base = ros::inverse(base_on_model_)](Iface& iface, const HeldFrame*) {
+    publish_if(writer, ros::joints_message(iface));
+    if (tf == nullptr || tf->readers().empty()) return;
+    const auto* joint = reinterpret_cast<const shm::Joint*>(iface.info_followers(0));
+    const auto* state = reinterpret_cast<const shm::JointState*>(iface.sample_followers(0));
+    ros::TFMessage message;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const auto moved = ros::product(joint[i].pose, motion_of(joint[i], state[i].position));
+      const bool is_root = joint[i].parent == 0 || joint[i].parent > frames.size();
+      message.transforms.push_back(ros::transform_of(iface.sample<shm::Stamp>(), is_root ? root : frames[joint[i].parent - 1], frames[i],
+                                                     is_root ? ros::product(to_base, moved) : moved));
+    }
+    publish(*tf, message);
+  };
+  robot_.commands_.take_joints(place.source, robot_.names_);
+}
+
+// ---- the rest ----
+
+void RobotTopics::add_bumper(Place& place) {
+  Writer* writer = advertise<ros::Contacts>(place, place.leaf + "/contacts");
+  if (writer == nullptr) return;
+  outlet(place, {writer}).show = [writer](Iface& iface, const HeldFrame*) { publish(*writer, contacts_message(iface, "world")); };
+}
+
+void RobotTopics::add_altimeter(Place& place) {
+  add_meter<ros::Altimeter, shm::MeterInfo>(place, place.front + "altimeter", [](const Iface& iface, const std::string& frame) {
+    const auto& sample = iface.sample<shm::AltimeterSample>();
+    return ros::Altimeter{ros::header_of(sample.stamp, frame), sample.height, sample.climb, iface.info<shm::MeterInfo>().reference};
+  });
+}
+
+void RobotTopics::add_description(const Listed& listed) {
+  const auto model = std::ranges::find(listed.models, robot_.model_, &ListedModel::name);
+  if (model == listed.models.end()) return;
+  const shm::Iface* joints = nullptr;
+  for (const Outlet& one : robot_.outlets_) {
+    if (one.source->iface().type() == shm::IfaceType::joints) joints = &one.source->iface();
+  }
+  Writer* writer = robot_.node_.advertise<ros::Text>(robot_.names_.topic("robot_description"), {true, 1}, true);
+  if (writer != nullptr) publish(*writer, ros::Text{urdf_of(*model, joints, base_on_model_)});
+}
+
+}  // namespace ros2

@@ -1,0 +1,305 @@
+#include "simulation.h"
+
+#include <regex.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "ros/from_iface.h"
+
+namespace ros2 {
+namespace {
+
+using ros::SimulationResult;
+constexpr std::size_t max_pattern = 200;
+constexpr std::uint64_t max_steps = 1'000'000'000;
+constexpr std::chrono::minutes step_timeout{10};
+
+// What simulation_interfaces calls the abilities of this simulator.
+enum Feature : std::uint16_t {
+  spawning = 0,
+  deleting = 1,
+  spawning_resource_string = 9,
+  entity_state_getting = 10,
+  entity_state_setting = 11,
+  simulation_reset = 20,
+  simulation_reset_state = 22,
+  simulation_state_getting = 24,
+  simulation_state_setting = 25,
+  simulation_state_pause = 26,
+  step_single = 31,
+  step_multiple = 32,
+  world_info_getting = 44,
+};
+// Results that a service has for itself.
+constexpr std::uint8_t already_in_state = 101, name_not_unique = 101, no_resource = 104, namespace_invalid = 105,
+                       resource_parse_error = 106, invalid_pose = 109, state_invalid_pose = 101, no_world = 101;
+
+SimulationResult good() { return {SimulationResult::ok, ""}; }
+SimulationResult bad(std::uint8_t code, const std::string& why) { return {code, why}; }
+
+// A POSIX extended regular expression; one of clients, so its length is limited.
+class Pattern {
+ public:
+  explicit Pattern(const std::string& text) : is_everything_(text.empty()) {
+    is_good_ = is_everything_ || (text.size() <= max_pattern && ::regcomp(&compiled_, text.c_str(), REG_EXTENDED | REG_NOSUB) == 0);
+  }
+  ~Pattern() {
+    if (is_good_ && !is_everything_) ::regfree(&compiled_);
+  }
+  Pattern(const Pattern&) = delete;
+  Pattern& operator=(const Pattern&) = delete;
+  bool is_good() const { return is_good_; }
+  bool fits(const std::string& name) const { return is_everything_ || ::regexec(&compiled_, name.c_str(), 0, nullptr, 0) == 0; }
+
+ private:
+  const bool is_everything_;
+  bool is_good_ = false;
+  regex_t compiled_{};
+};
+
+std::vector<std::string> models_in(const std::string& tree) {
+  std::vector<std::string> names;
+  const auto json = nlohmann::json::parse(tree, nullptr, false);
+  if (!json.is_object() || !json.contains("models")) return names;
+  for (const auto& model : json["models"]) names.push_back(model.value("name", ""));
+  return names;
+}
+
+std::optional<shm::Pose> shm_pose(const ros::Pose& pose) {
+  const auto& q = pose.orientation;
+  const auto& p = pose.position;
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!std::isfinite(length) || !std::isfinite(p.x + p.y + p.z)) return std::nullopt;
+  if (length < 1e-9) return shm::Pose{p.x, p.y, p.z, 1, 0, 0, 0};  // all zero: not said
+  return shm::Pose{p.x, p.y, p.z, q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+bool is_world(const std::string& frame) { return frame.empty() || frame == "world" || frame == "map"; }
+
+}  // namespace
+
+SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, std::string prefix)
+    : node_(node), world_(world), errands_(errands), prefix_(std::move(prefix)) {
+  serve_time();
+  serve_entities();
+  serve_entity_states();
+}
+
+ros::SimulationState SimulationServices::state() const {
+  const auto& clock = world_.clock();
+  if (!clock || !clock->iface().read()) return {ros::SimulationState::quitting};
+  const auto& sample = clock->iface().sample<shm::SimulationSample>();
+  if (sample.paused == 0) return {ros::SimulationState::playing};
+  return {sample.steps == 0 ? ros::SimulationState::stopped : ros::SimulationState::paused};
+}
+
+void SimulationServices::ask(shm::Request request, std::function<void(const Result&)> done, std::chrono::nanoseconds timeout) {
+  errands_.post(
+      std::move(request),
+      [done = std::move(done)](const base::Result<shm::Reply>& reply) {
+        done(reply ? good() : bad(SimulationResult::failed, reply.error().message));
+      },
+      timeout);
+}
+
+// ---- time ----
+
+void SimulationServices::serve_time() {
+  node_.serve<ros::GetSimulatorFeaturesRequest, ros::GetSimulatorFeaturesResponse>(name("get_simulator_features"), [](const auto&,
+                                                                                                                      const auto& reply) {
+    reply(ros::GetSimulatorFeaturesResponse{{{spawning, deleting, spawning_resource_string, entity_state_getting, entity_state_setting,
+                                              simulation_reset, simulation_reset_state, simulation_state_getting, simulation_state_setting,
+                                              simulation_state_pause, step_single, step_multiple, world_info_getting},
+                                             {"sdf"},
+                                             "rtm-sim"}});
+  });
+  node_.serve<ros::GetSimulationStateRequest, ros::GetSimulationStateResponse>(
+      name("get_simulation_state"), [this](const auto&, const auto& reply) {
+        reply(ros::GetSimulationStateResponse{state(), world_.is_there() ? good() : bad(SimulationResult::failed, "no simulator runs")});
+      });
+  node_.serve<ros::SetSimulationStateRequest, ros::SetSimulationStateResponse>(name("set_simulation_state"), [this](const auto& request,
+                                                                                                                    const auto& reply) {
+    const auto answer = [reply](const Result& result) { reply(ros::SetSimulationStateResponse{result}); };
+    const std::uint8_t wanted = request.state.state;
+    if (wanted == state().state) return answer(bad(already_in_state, "the simulation is in this state already"));
+    if (wanted == ros::SimulationState::playing) return ask(shm::RunRequest{}, answer);
+    if (wanted == ros::SimulationState::paused) return ask(shm::PauseRequest{}, answer);
+    if (wanted != ros::SimulationState::stopped)
+      return answer(bad(SimulationResult::unsupported, "expected 0 (stopped), 1 (playing) or 2 (paused), got " + std::to_string(wanted)));
+    ask(shm::PauseRequest{}, [this, answer](const Result& paused) {
+      if (paused.result != SimulationResult::ok) return answer(paused);
+      ask(shm::ResetRequest{}, answer);
+    });
+  });
+  node_.serve<ros::ResetSimulationRequest, ros::ResetSimulationResponse>(
+      name("reset_simulation"), [this](const auto& request, const auto& reply) {
+        using Scope = ros::ResetSimulationRequest;
+        const auto answer = [reply](const Result& result) { reply(ros::ResetSimulationResponse{result}); };
+        const std::uint8_t scope = request.scope == 0 ? Scope::all : request.scope;
+        if ((scope & Scope::all) == Scope::all || (scope & (Scope::time | Scope::state)) == (Scope::time | Scope::state))
+          return ask(shm::ResetRequest{}, answer);
+        if (scope == Scope::state) return ask(shm::ResetRequest{.poses_only = true}, answer);
+        answer(bad(SimulationResult::unsupported, "scope " + std::to_string(scope) + " is not supported; use 0 (all) or 2 (state)"));
+      });
+  node_.serve<ros::StepSimulationRequest, ros::StepSimulationResponse>(
+      name("step_simulation"), [this](const auto& request, const auto& reply) {
+        const auto answer = [reply](const Result& result) { reply(ros::StepSimulationResponse{result}); };
+        if (state().state == ros::SimulationState::playing)
+          return answer(bad(SimulationResult::failed, "the simulation runs; pause it first"));
+        if (request.steps < 1 || request.steps > max_steps)
+          return answer(bad(SimulationResult::failed, "steps must be from 1 to 1000000000, got " + std::to_string(request.steps)));
+        ask(shm::StepRequest{.steps = static_cast<std::int64_t>(request.steps)}, answer, step_timeout);
+      });
+  node_.serve<ros::GetCurrentWorldRequest, ros::GetCurrentWorldResponse>(name("get_current_world"), [this](const auto&, const auto& reply) {
+    if (!world_.is_there()) return reply(ros::GetCurrentWorldResponse{bad(no_world, "no simulator runs"), {}});
+    const auto& info = world_.clock()->iface().template info<shm::SimulationInfo>();
+    reply(ros::GetCurrentWorldResponse{good(), {ros::text_of(info.world), {ros::text_of(info.file), ""}, "", {}}});
+  });
+}
+
+// ---- entities ----
+
+void SimulationServices::ask_models(const ros::EntityFilters& filters, OnModels done) {
+  if (!filters.categories.empty() || !filters.tags.tags.empty() || filters.bounds.type != 0)
+    return done({}, bad(SimulationResult::unsupported, "only the filter by name is supported: categories, tags and bounds must be empty"));
+  const auto pattern = std::make_shared<Pattern>(filters.filter);
+  if (!pattern->is_good())
+    return done({}, bad(SimulationResult::failed, "filter is no POSIX extended regular expression of at most 200 characters"));
+  errands_.post(shm::TreeRequest{}, [pattern, done = std::move(done)](const base::Result<shm::Reply>& reply) {
+    if (!reply) return done({}, bad(SimulationResult::failed, reply.error().message));
+    auto models = models_in(reply->text);
+    std::erase_if(models, [&](const std::string& model) { return !pattern->fits(model); });
+    done(models, good());
+  });
+}
+
+void SimulationServices::serve_entities() {
+  node_.serve<ros::GetEntitiesRequest, ros::GetEntitiesResponse>(name("get_entities"), [this](const auto& request, const auto& reply) {
+    ask_models(request.filters, [reply](const std::vector<std::string>& models, const Result& result) {
+      reply(ros::GetEntitiesResponse{result, models});
+    });
+  });
+  node_.serve<ros::DeleteEntityRequest, ros::DeleteEntityResponse>(name("delete_entity"), [this](const auto& request, const auto& reply) {
+    ask_models({}, [this, reply, entity = request.entity](const std::vector<std::string>& models, const Result& result) {
+      const auto answer = [reply](const Result& done) { reply(ros::DeleteEntityResponse{done}); };
+      if (result.result != SimulationResult::ok) return answer(result);
+      if (std::ranges::find(models, entity) == models.end())
+        return answer(bad(SimulationResult::not_found, "the world has no model \"" + entity + "\""));
+      ask(shm::DeleteRequest{entity}, answer);
+    });
+  });
+  node_.serve_both<ros::SpawnEntityRequest, ros::SpawnEntityRequest2, ros::SpawnEntityResponse>(
+      name("spawn_entity"), [this](const auto& request, const auto& reply) { spawn(request, reply); },
+      [](const ros::SpawnEntityRequest2& newer) {
+        return ros::SpawnEntityRequest{newer.label,
+                                       newer.allow_renaming,
+                                       newer.entity_resource.uri,
+                                       newer.entity_resource.resource_string,
+                                       newer.entity_namespace,
+                                       newer.initial_pose};
+      });
+}
+
+void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply) {
+  const auto refuse = [&](std::uint8_t code, const std::string& why) { reply(ros::SpawnEntityResponse{bad(code, why), ""}); };
+  if (request.uri.empty() && request.resource_string.empty()) return refuse(no_resource, "uri and resource_string are empty");
+  if (!request.entity_namespace.empty())
+    return refuse(namespace_invalid, "entity_namespace must be empty: topics have the name of the model");
+  const auto pose = shm_pose(request.initial_pose.pose);
+  if (!pose || !is_world(request.initial_pose.header.frame_id))
+    return refuse(invalid_pose, "initial_pose must be finite and in the frame world");
+  ask_models({}, [this, request, reply, pose](const std::vector<std::string>& models, const Result& result) {
+    if (result.result != SimulationResult::ok) return reply(ros::SpawnEntityResponse{result, ""});
+    std::string wanted = request.label;
+    for (int i = 1; !wanted.empty() && std::ranges::find(models, wanted) != models.end(); ++i) {
+      if (!request.allow_renaming)
+        return reply(ros::SpawnEntityResponse{bad(name_not_unique, "the world has a model \"" + wanted + "\" already"), ""});
+      wanted = request.label + "_" + std::to_string(i);
+    }
+    const bool is_path = request.resource_string.empty();
+    // For clients that may not read all that the simulator may.
+    shm::SpawnRequest spawn{is_path ? request.uri : request.resource_string, is_path, wanted, true, *pose, true};
+    errands_.post(std::move(spawn), [reply](const base::Result<shm::Reply>& done) {
+      if (!done) return reply(ros::SpawnEntityResponse{bad(resource_parse_error, done.error().message), ""});
+      reply(ros::SpawnEntityResponse{good(), done->message});
+    });
+  });
+}
+
+void SimulationServices::ask_state(const std::string& entity, OnState done) {
+  errands_.post(shm::GetPoseRequest{entity}, [this, entity, done = std::move(done)](const base::Result<shm::Reply>& pose) {
+    if (!pose) return done({}, bad(SimulationResult::not_found, pose.error().message));
+    errands_.post(shm::GetVelocityRequest{entity}, [done, place = *pose](const base::Result<shm::Reply>& velocity) {
+      if (!velocity) return done({}, bad(SimulationResult::failed, velocity.error().message));
+      const double* p = place.values;
+      const double* v = velocity->values;
+      ros::EntityState state;
+      state.header = {ros::to_time(std::chrono::nanoseconds(velocity->sim_time_ns)), "world"};
+      state.pose = {{p[0], p[1], p[2]}, {p[4], p[5], p[6], p[3]}};
+      state.twist = {ros::vector_of(v), ros::vector_of(v + 3)};
+      done(state, good());
+    });
+  });
+}
+
+void SimulationServices::serve_entity_states() {
+  node_.serve<ros::GetEntityStateRequest, ros::GetEntityStateResponse>(
+      name("get_entity_state"), [this](const auto& request, const auto& reply) {
+        ask_state(request.entity, [reply](const ros::EntityState& state, const Result& result) {
+          reply(ros::GetEntityStateResponse{result, state});
+        });
+      });
+  node_.serve<ros::GetEntitiesStatesRequest, ros::GetEntitiesStatesResponse>(
+      name("get_entities_states"), [this](const auto& request, const auto& reply) {
+        ask_models(request.filters, [this, reply](const std::vector<std::string>& models, const Result& result) {
+          const auto response = std::make_shared<ros::GetEntitiesStatesResponse>(ros::GetEntitiesStatesResponse{result, {}, {}});
+          if (models.empty()) return reply(*response);
+          const auto left = std::make_shared<std::size_t>(models.size());
+          for (const auto& model : models) {
+            // One that was deleted meanwhile is left out.
+            ask_state(model, [reply, response, left, model](const ros::EntityState& state, const Result& one) {
+              if (one.result == SimulationResult::ok) {
+                response->entities.push_back(model);
+                response->states.push_back(state);
+              }
+              if (--*left == 0) reply(*response);
+            });
+          }
+        });
+      });
+  // A client of 1.x sets pose and velocity.
+  node_.serve_both<ros::SetEntityStateRequest, ros::SetEntityStateRequest2, ros::SetEntityStateResponse>(
+      name("set_entity_state"), [this](const auto& request, const auto& reply) { set_state(request, reply); },
+      [](const ros::SetEntityStateRequest2& newer) {
+        ros::SetEntityStateRequest request{newer.entity, newer.state};
+        if (!newer.set_pose) request.state.header.frame_id = "keep";
+        if (!newer.set_twist) request.state.twist = {};
+        return request;
+      });
+}
+
+void SimulationServices::set_state(const ros::SetEntityStateRequest& request,
+                                   const std::function<void(const ros::SetEntityStateResponse&)>& reply) {
+  const auto answer = [reply](const Result& result) { reply(ros::SetEntityStateResponse{result}); };
+  const auto& twist = request.state.twist;
+  const auto set_velocity = [this, twist, entity = request.entity, answer] {
+    shm::SetVelocityRequest velocity{
+        entity, {twist.linear.x, twist.linear.y, twist.linear.z}, {twist.angular.x, twist.angular.y, twist.angular.z}};
+    ask(velocity, answer);
+  };
+  if (request.state.header.frame_id == "keep") return set_velocity();
+  const auto pose = shm_pose(request.state.pose);
+  if (!pose || !is_world(request.state.header.frame_id))
+    return answer(bad(state_invalid_pose, "pose must be finite and in the frame world"));
+  const bool is_at_rest = twist.linear.x == 0 && twist.linear.y == 0 && twist.linear.z == 0 && twist.angular.x == 0 &&
+                          twist.angular.y == 0 && twist.angular.z == 0;
+  errands_.post(shm::SetPoseRequest{request.entity, *pose}, [answer, set_velocity, is_at_rest](const base::Result<shm::Reply>& done) {
+    if (!done) return answer(bad(SimulationResult::not_found, done.error().message));
+    if (is_at_rest) return answer(good());  // the pose was set at rest
+    set_velocity();
+  });
+}
+
+}  // namespace ros2

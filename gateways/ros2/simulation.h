@@ -1,0 +1,45 @@
+// The services of simulation_interfaces for one simulator: state, steps, reset, entities. Each request becomes requests to the simulator;
+// the reply is sent when these are done. One thread at a time.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "node.h"
+#include "ros/simulation_services.h"
+#include "world.h"
+
+namespace ros2 {
+
+class SimulationServices {
+ public:
+  // `prefix`: "" for the root names, "/sim" for "/sim/get_simulation_state" and so on. All must outlive this object.
+  SimulationServices(Node& node, World& world, Errands& errands, std::string prefix);
+
+ private:
+  using Result = ros::SimulationResult;
+  using OnModels = std::function<void(const std::vector<std::string>& models, const Result& result)>;
+  using OnState = std::function<void(const ros::EntityState& state, const Result& result)>;
+
+  void serve_time();
+  void serve_entities();
+  void serve_entity_states();
+  void spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply);
+  void set_state(const ros::SetEntityStateRequest& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);
+  // Asks the simulator for its models; those that the filter names.
+  void ask_models(const ros::EntityFilters& filters, OnModels done);
+  void ask_state(const std::string& entity, OnState done);
+  // The simulator's answer as a result.
+  void ask(shm::Request request, std::function<void(const Result&)> done, std::chrono::nanoseconds timeout = Errands::limit);
+  ros::SimulationState state() const;
+  std::string name(const char* service) const { return prefix_ + "/" + service; }
+
+  Node& node_;
+  World& world_;
+  Errands& errands_;
+  const std::string prefix_;
+};
+
+}  // namespace ros2

@@ -1,0 +1,97 @@
+// Messages of ROS 2 that command robots, and what they are made of. Units: m, rad, s. Values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ros/messages.h"
+
+namespace ros {
+
+struct TwistStamped {
+  static constexpr std::string_view name = "geometry_msgs/msg/TwistStamped";
+  Header header{};
+  Twist twist{};
+  static void fields(auto& m, auto& visit) {
+    visit("header", m.header);
+    visit("twist", m.twist);
+  }
+};
+struct PoseStamped {
+  static constexpr std::string_view name = "geometry_msgs/msg/PoseStamped";
+  Header header{};
+  Pose pose{};
+  static void fields(auto& m, auto& visit) {
+    visit("header", m.header);
+    visit("pose", m.pose);
+  }
+};
+struct Accel {
+  static constexpr std::string_view name = "geometry_msgs/msg/Accel";
+  Vector3 linear{};
+  Vector3 angular{};
+  static void fields(auto& m, auto& visit) {
+    visit("linear", m.linear);
+    visit("angular", m.angular);
+  }
+};
+struct MultiArrayDimension {
+  static constexpr std::string_view name = "std_msgs/msg/MultiArrayDimension";
+  std::string label{};
+  std::uint32_t size = 0;
+  std::uint32_t stride = 0;
+  static void fields(auto& m, auto& visit) {
+    visit("label", m.label);
+    visit("size", m.size);
+    visit("stride", m.stride);
+  }
+};
+struct MultiArrayLayout {
+  static constexpr std::string_view name = "std_msgs/msg/MultiArrayLayout";
+  std::vector<MultiArrayDimension> dim{};
+  std::uint32_t data_offset = 0;
+  static void fields(auto& m, auto& visit) {
+    visit("dim", m.dim);
+    visit("data_offset", m.data_offset);
+  }
+};
+struct Float64MultiArray {
+  static constexpr std::string_view name = "std_msgs/msg/Float64MultiArray";
+  MultiArrayLayout layout{};
+  std::vector<double> data{};
+  static void fields(auto& m, auto& visit) {
+    visit("layout", m.layout);
+    visit("data", m.data);
+  }
+};
+struct JointTrajectoryPoint {
+  static constexpr std::string_view name = "trajectory_msgs/msg/JointTrajectoryPoint";
+  std::vector<double> positions{};
+  std::vector<double> velocities{};
+  std::vector<double> accelerations{};
+  std::vector<double> effort{};
+  Duration time_from_start{};
+  static void fields(auto& m, auto& visit) {
+    visit("positions", m.positions);
+    visit("velocities", m.velocities);
+    visit("accelerations", m.accelerations);
+    visit("effort", m.effort);
+    visit("time_from_start", m.time_from_start);
+  }
+};
+struct JointTrajectory {
+  static constexpr std::string_view name = "trajectory_msgs/msg/JointTrajectory";
+  Header header{};
+  std::vector<std::string> joint_names{};
+  std::vector<JointTrajectoryPoint> points{};
+  static void fields(auto& m, auto& visit) {
+    visit("header", m.header);
+    visit("joint_names", m.joint_names);
+    visit("points", m.points);
+  }
+};
+
+}  // namespace ros
