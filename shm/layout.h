@@ -48,7 +48,8 @@ enum class CommandKind : std::uint32_t {
   stop = RTMSIM_COMMAND_STOP,
   velocity = RTMSIM_COMMAND_VELOCITY,
   pose = RTMSIM_COMMAND_POSE,
-  joints = RTMSIM_COMMAND_JOINTS
+  joints = RTMSIM_COMMAND_JOINTS,
+  charge = RTMSIM_COMMAND_CHARGE
 };
 
 // A command as a device sees it.

@@ -9,46 +9,11 @@
 #include <span>
 
 #include "base/jpeg.h"
+#include "channels/views/view_parts.h"
 
 namespace channels {
 
 namespace {
-
-template <class Message>
-Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
-  return {topic_of(iface.type(), iface.name()) + suffix,
-          "cdr",
-          ros::schema<Message>(),
-          {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
-}
-
-ros::Time time_of(const shm::Stamp& stamp) { return ros::to_time(std::chrono::nanoseconds(stamp.sim_time_ns)); }
-
-ros::Vector3 vector_of(const double* v) { return {v[0], v[1], v[2]}; }
-
-std::array<double, 9> diagonal(double a, double b, double c) { return {a, 0, 0, 0, b, 0, 0, 0, c}; }
-
-shm::Pose pose_at(double x, double y, double z, double yaw) { return {x, y, z, std::cos(yaw / 2), 0, 0, std::sin(yaw / 2)}; }
-
-// A sensor on its model; its frame has the name of the iface.
-template <class Info>
-void place(IfaceView& view, const shm::Iface& iface) {
-  const Info& info = iface.info<Info>();
-  view.frames.push_back(transform_of({}, text_of(info.model), iface.name(), info.pose));
-  view.rate = info.rate;
-}
-
-// A view with one channel: `say` makes the message of the latest sample.
-template <class Message, class Info, class Sample, class Say>
-IfaceView simple_view(const shm::Iface& iface, Say say) {
-  IfaceView view;
-  view.channels = {channel<Message>(iface)};
-  place<Info>(view, iface);
-  view.tell = [say](shm::Iface& from, const shm::HeldFrame*, Said& said) {
-    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from));
-  };
-  return view;
-}
 
 // ---- range finders ----
 
@@ -478,6 +443,15 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
       return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, pressure_message);
     case joints:
       return joints_view(iface);
+    case battery:
+    case dvl:
+    case air_speed:
+    case ins:
+    case rfid:
+    case wireless:
+    case wheels:
+    case localization:
+      return plain_view(iface);
     case simulation:
     case truth:
       break;
