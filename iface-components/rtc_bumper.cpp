@@ -13,13 +13,21 @@ static const iface::Specification specification{
 RTCBumper::RTCBumper(RTC::Manager* manager)
     : IfaceComponent(manager, specification, shm::IfaceType::bumper, true),
       contact_out_("contact", contact_),
-      force_out_("force", force_) {}
+      force_out_("force", force_),
+      service_port_("bumper") {}
 
 RTC::ReturnCode_t RTCBumper::onInitialize() {
   addOutPort("contact", contact_out_);
   addOutPort("force", force_out_);
+  service_port_.registerProvider("bumper", "RTC::Bumper", service_);
+  addPort(service_port_);
   bindDevice();
   return RTC::RTC_OK;
+}
+
+void RTCBumper::describe(const shm::Iface& bumper) {
+  const auto& info = bumper.info<shm::BumperInfo>();
+  service_.describe({iface::to_pose(info.middle), {info.size[0], info.size[1], info.size[2]}, info.radius});
 }
 
 void RTCBumper::publish(const shm::Iface& bumper) {

@@ -1,11 +1,15 @@
 // RTCBumper: bridges a bumper iface to the OutPorts `contact` (RTC::TimedBooleanSeq of one: touched) and `force` (RTC::TimedDoubleSeq: x y
-// z [N] of each contact, world frame). The standard types have geometries of bumpers, but no data. Configuration: server_id, device_id.
+// z [N] of each contact, world frame). The standard types have geometries of bumpers, but no data. Service port `bumper` (RTC::Bumper).
+// Configuration: server_id, device_id.
 #pragma once
 
+#include <rtm/ext/BumperSkel.h>
 #include <rtm/idl/BasicDataTypeSkel.h>
 
+#include <rtm/CorbaPort.h>
 #include <rtm/DataOutPort.h>
 
+#include "geometry_service.h"
 #include "iface_component.h"
 
 class RTCBumper : public iface::IfaceComponent {
@@ -14,6 +18,7 @@ class RTCBumper : public iface::IfaceComponent {
   RTC::ReturnCode_t onInitialize() override;
 
  protected:
+  void describe(const shm::Iface& bumper) override;
   void publish(const shm::Iface& bumper) override;
 
  private:
@@ -21,6 +26,8 @@ class RTCBumper : public iface::IfaceComponent {
   RTC::OutPort<RTC::TimedBooleanSeq> contact_out_;
   RTC::TimedDoubleSeq force_;
   RTC::OutPort<RTC::TimedDoubleSeq> force_out_;
+  RTC::CorbaPort service_port_;
+  iface::GeometryService<POA_RTC::Bumper, RTC::BumperGeometry> service_;
 };
 
 extern "C" {

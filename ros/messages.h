@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -132,6 +133,33 @@ struct TwistWithCovariance {
   static void fields(auto& m, auto& visit) {
     visit("twist", m.twist);
     visit("covariance", m.covariance);
+  }
+};
+struct TwistStamped {
+  static constexpr std::string_view name = "geometry_msgs/msg/TwistStamped";
+  Header header{};
+  Twist twist{};
+  static void fields(const TwistStamped& m, auto& visit) {
+    visit("header", m.header);
+    visit("twist", m.twist);
+  }
+};
+struct TwistWithCovarianceStamped {
+  static constexpr std::string_view name = "geometry_msgs/msg/TwistWithCovarianceStamped";
+  Header header{};
+  TwistWithCovariance twist{};
+  static void fields(const TwistWithCovarianceStamped& m, auto& visit) {
+    visit("header", m.header);
+    visit("twist", m.twist);
+  }
+};
+struct PoseWithCovarianceStamped {
+  static constexpr std::string_view name = "geometry_msgs/msg/PoseWithCovarianceStamped";
+  Header header{};
+  PoseWithCovariance pose{};
+  static void fields(const PoseWithCovarianceStamped& m, auto& visit) {
+    visit("header", m.header);
+    visit("pose", m.pose);
   }
 };
 struct Transform {
@@ -377,6 +405,41 @@ struct JointState {
     visit("position", m.position);
     visit("velocity", m.velocity);
     visit("effort", m.effort);
+  }
+};
+struct BatteryState {
+  static constexpr std::string_view name = "sensor_msgs/msg/BatteryState";
+  static constexpr std::string_view constants =
+      "uint8 POWER_SUPPLY_STATUS_UNKNOWN=0\nuint8 POWER_SUPPLY_STATUS_CHARGING=1\nuint8 POWER_SUPPLY_STATUS_DISCHARGING=2\n"
+      "uint8 POWER_SUPPLY_STATUS_NOT_CHARGING=3\nuint8 POWER_SUPPLY_STATUS_FULL=4\nuint8 POWER_SUPPLY_HEALTH_GOOD=1\n"
+      "uint8 POWER_SUPPLY_TECHNOLOGY_UNKNOWN=0\n";
+  enum Status : std::uint8_t { charging = 1, discharging = 2, not_charging = 3, full = 4 };
+  static constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+  Header header{};
+  float voltage = 0, temperature = unknown, current = 0;  // [V], [degree C], [A]: negative while it discharges
+  float charge = 0, capacity = 0, design_capacity = 0;    // [Ah]
+  float percentage = 0;                                   // 0 to 1
+  std::uint8_t power_supply_status = 0, power_supply_health = 1, power_supply_technology = 0;
+  bool present = true;
+  std::vector<float> cell_voltage{}, cell_temperature{};
+  std::string location{}, serial_number{};
+  static void fields(const BatteryState& m, auto& visit) {
+    visit("header", m.header);
+    visit("voltage", m.voltage);
+    visit("temperature", m.temperature);
+    visit("current", m.current);
+    visit("charge", m.charge);
+    visit("capacity", m.capacity);
+    visit("design_capacity", m.design_capacity);
+    visit("percentage", m.percentage);
+    visit("power_supply_status", m.power_supply_status);
+    visit("power_supply_health", m.power_supply_health);
+    visit("power_supply_technology", m.power_supply_technology);
+    visit("present", m.present);
+    visit("cell_voltage", m.cell_voltage);
+    visit("cell_temperature", m.cell_temperature);
+    visit("location", m.location);
+    visit("serial_number", m.serial_number);
   }
 };
 struct MagneticField {

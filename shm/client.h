@@ -116,6 +116,15 @@ class Iface {
   std::span<const std::byte> info_data() const;
   const std::byte* info_followers(std::size_t array) const;
   const std::byte* sample_followers(std::size_t array) const;
+  // The first array as elements of the type's own: all behind the info; of the sample those that are true.
+  template <class Element>
+  std::span<const Element> info_elements() const {
+    return {reinterpret_cast<const Element*>(info_followers(0)), count()};
+  }
+  template <class Element>
+  std::span<const Element> elements() const {
+    return {reinterpret_cast<const Element*>(sample_followers(0)), filled()};
+  }
 
   // Number of the latest sample or frame there is; 0 = none.
   std::uint64_t sequence() const;

@@ -42,6 +42,28 @@ using JointsInfo = ::rtmsim_joints_info;
 using Joint = ::rtmsim_joint;
 using JointState = ::rtmsim_joint_state;
 using JointsSample = ::rtmsim_joints_sample;
+using BatteryInfo = ::rtmsim_battery_info;
+using BatterySample = ::rtmsim_battery_sample;
+using DvlInfo = ::rtmsim_dvl_info;
+using DvlBeam = ::rtmsim_dvl_beam;
+using DvlSample = ::rtmsim_dvl_sample;
+using DvlEcho = ::rtmsim_dvl_echo;
+using AirSpeedSample = ::rtmsim_air_speed_sample;
+using InsInfo = ::rtmsim_ins_info;
+using InsSample = ::rtmsim_ins_sample;
+using RfidInfo = ::rtmsim_rfid_info;
+using RfidTag = ::rtmsim_rfid_tag;
+using RfidSample = ::rtmsim_rfid_sample;
+using WirelessInfo = ::rtmsim_wireless_info;
+using Radio = ::rtmsim_radio;
+using WirelessSample = ::rtmsim_wireless_sample;
+using WheelsInfo = ::rtmsim_wheels_info;
+using Wheel = ::rtmsim_wheel;
+using WheelsSample = ::rtmsim_wheels_sample;
+using Encoder = ::rtmsim_encoder;
+using LocalizationInfo = ::rtmsim_localization_info;
+using Hypothesis = ::rtmsim_hypothesis;
+using LocalizationSample = ::rtmsim_localization_sample;
 using TruthInfo = ::rtmsim_truth_info;
 using TruthSample = ::rtmsim_truth_sample;
 
@@ -63,6 +85,14 @@ enum class IfaceType : std::uint32_t {
   magnetometer = RTMSIM_MAGNETOMETER,
   air_pressure = RTMSIM_AIR_PRESSURE,
   joints = RTMSIM_JOINTS,
+  battery = RTMSIM_BATTERY,
+  dvl = RTMSIM_DVL,
+  air_speed = RTMSIM_AIR_SPEED,
+  ins = RTMSIM_INS,
+  rfid = RTMSIM_RFID,
+  wireless = RTMSIM_WIRELESS,
+  wheels = RTMSIM_WHEELS,
+  localization = RTMSIM_LOCALIZATION,
 };
 
 struct IfaceRow {
@@ -249,6 +279,93 @@ inline constexpr std::array joint_state_fields{field<&JointState::position>("pos
                                                field<&JointState::mode>("mode"),
                                                field<&JointState::status>("status")};
 
+inline constexpr std::array battery_info{field<&BatteryInfo::model>("model"),
+                                         field<&BatteryInfo::name>("name"),
+                                         field<&BatteryInfo::rate>("rate", "Hz"),
+                                         field<&BatteryInfo::capacity>("capacity", "A h"),
+                                         field<&BatteryInfo::initial_charge>("initial_charge", "A h"),
+                                         field<&BatteryInfo::constant>("constant", "V"),
+                                         field<&BatteryInfo::linear>("linear", "V"),
+                                         field<&BatteryInfo::resistance>("resistance", "ohm"),
+                                         field<&BatteryInfo::smoothing>("smoothing", "s"),
+                                         field<&BatteryInfo::load>("load", "W"),
+                                         field<&BatteryInfo::charging_time>("charging_time", "h")};
+inline constexpr std::array battery_sample{field<&BatterySample::stamp>("stamp"),          field<&BatterySample::voltage>("voltage", "V"),
+                                           field<&BatterySample::current>("current", "A"), field<&BatterySample::charge>("charge", "A h"),
+                                           field<&BatterySample::level>("level"),          field<&BatterySample::power>("power", "W"),
+                                           field<&BatterySample::state>("state"),          flag<&BatterySample::is_empty>("is_empty")};
+
+inline constexpr std::array dvl_info{field<&DvlInfo::model>("model"),
+                                     field<&DvlInfo::rate>("rate", "Hz"),
+                                     field<&DvlInfo::noise>("noise", "m/s"),
+                                     field<&DvlInfo::min_range>("min_range", "m"),
+                                     field<&DvlInfo::max_range>("max_range", "m"),
+                                     field<&DvlInfo::count>("count"),
+                                     field<&DvlInfo::pose>("pose"),
+                                     field<&DvlInfo::reference>("reference"),
+                                     followers("beams", 0)};
+inline constexpr std::array dvl_beam_fields{field<&DvlBeam::axis>("axis"), field<&DvlBeam::aperture>("aperture", "rad")};
+inline constexpr std::array dvl_sample{field<&DvlSample::stamp>("stamp"),
+                                       field<&DvlSample::velocity>("velocity", "m/s"),
+                                       field<&DvlSample::covariance>("covariance", "m^2/s^2"),
+                                       field<&DvlSample::range>("range", "m"),
+                                       field<&DvlSample::locked>("locked"),
+                                       flag<&DvlSample::has_velocity>("has_velocity"),
+                                       followers("echoes", 0)};
+inline constexpr std::array dvl_echo_fields{field<&DvlEcho::range>("range", "m"), field<&DvlEcho::speed>("speed", "m/s")};
+
+inline constexpr std::array air_speed_sample{field<&AirSpeedSample::stamp>("stamp"), field<&AirSpeedSample::pressure>("pressure", "Pa"),
+                                             field<&AirSpeedSample::temperature>("temperature", "K")};
+inline constexpr std::array ins_info{field<&InsInfo::model>("model"),
+                                     field<&InsInfo::rate>("rate", "Hz"),
+                                     field<&InsInfo::position_noise>("position_noise", "m"),
+                                     field<&InsInfo::altitude_noise>("altitude_noise", "m"),
+                                     field<&InsInfo::velocity_noise>("velocity_noise", "m/s"),
+                                     field<&InsInfo::heading_noise>("heading_noise", "rad"),
+                                     field<&InsInfo::pose>("pose")};
+inline constexpr std::array ins_sample{field<&InsSample::stamp>("stamp"),
+                                       field<&InsSample::latitude>("latitude", "degree"),
+                                       field<&InsSample::longitude>("longitude", "degree"),
+                                       field<&InsSample::altitude>("altitude", "m"),
+                                       field<&InsSample::height>("height", "m"),
+                                       field<&InsSample::velocity>("velocity", "m/s"),
+                                       field<&InsSample::orientation>("orientation", "rad")};
+
+inline constexpr std::array rfid_info{field<&RfidInfo::model>("model"),        field<&RfidInfo::rate>("rate", "Hz"),
+                                      field<&RfidInfo::capacity>("capacity"),  field<&RfidInfo::range>("range", "m"),
+                                      field<&RfidInfo::angle>("angle", "rad"), flag<&RfidInfo::needs_sight>("needs_sight"),
+                                      field<&RfidInfo::pose>("pose")};
+inline constexpr std::array rfid_sample{field<&RfidSample::stamp>("stamp"), field<&RfidSample::total>("total"), followers("tags", 0)};
+inline constexpr std::array rfid_tag_fields{field<&RfidTag::id>("id"), field<&RfidTag::data>("data")};
+
+inline constexpr std::array wireless_info{field<&WirelessInfo::model>("model"),
+                                          field<&WirelessInfo::rate>("rate", "Hz"),
+                                          field<&WirelessInfo::capacity>("capacity"),
+                                          field<&WirelessInfo::gain>("gain", "dBi"),
+                                          field<&WirelessInfo::sensitivity>("sensitivity", "dBm"),
+                                          field<&WirelessInfo::min_frequency>("min_frequency", "MHz"),
+                                          field<&WirelessInfo::max_frequency>("max_frequency", "MHz"),
+                                          field<&WirelessInfo::pose>("pose")};
+inline constexpr std::array wireless_sample{field<&WirelessSample::stamp>("stamp"), field<&WirelessSample::total>("total"),
+                                            followers("transmitters", 0)};
+inline constexpr std::array radio_fields{field<&Radio::essid>("essid"), field<&Radio::transmitter>("transmitter"),
+                                         field<&Radio::frequency>("frequency", "MHz"), field<&Radio::level>("level", "dBm"),
+                                         flag<&Radio::is_blocked>("is_blocked")};
+
+inline constexpr std::array wheels_info{field<&WheelsInfo::model>("model"), field<&WheelsInfo::rate>("rate", "Hz"),
+                                        field<&WheelsInfo::ticks>("ticks"), field<&WheelsInfo::count>("count"), followers("wheels", 0)};
+inline constexpr std::array wheel_fields{field<&Wheel::joint>("joint"), field<&Wheel::radius>("radius", "m")};
+inline constexpr std::array wheels_sample{field<&WheelsSample::stamp>("stamp"), followers("wheels", 0)};
+inline constexpr std::array encoder_fields{field<&Encoder::ticks>("ticks"), field<&Encoder::angle>("angle", "rad"),
+                                           field<&Encoder::speed>("speed", "rad/s")};
+
+inline constexpr std::array localization_info{
+    field<&LocalizationInfo::model>("model"), field<&LocalizationInfo::rate>("rate", "Hz"), field<&LocalizationInfo::capacity>("capacity"),
+    field<&LocalizationInfo::position_noise>("position_noise", "m"), field<&LocalizationInfo::heading_noise>("heading_noise", "rad")};
+inline constexpr std::array localization_sample{field<&LocalizationSample::stamp>("stamp"), followers("hypotheses", 0)};
+inline constexpr std::array hypothesis_fields{field<&Hypothesis::pose>("pose"), field<&Hypothesis::covariance>("covariance"),
+                                              field<&Hypothesis::weight>("weight")};
+
 inline constexpr std::array truth_info{field<&TruthInfo::model>("model")};
 inline constexpr std::array truth_sample{field<&TruthSample::stamp>("stamp"), field<&TruthSample::pose>("pose"),
                                          field<&TruthSample::velocity>("velocity", "m/s, rad/s")};
@@ -259,6 +376,7 @@ inline constexpr std::uint64_t most_values = std::uint64_t{1} << 24;
 inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
 inline constexpr std::uint64_t most_contacts = 65536;
 inline constexpr std::uint64_t most_joints = 4096;
+inline constexpr std::uint64_t most_others = 4096;  // beams of a dvl, tags, transmitters, wheels, hypotheses
 
 constexpr auto beams = [](const void* info) {
   const auto& laser = *static_cast<const LaserInfo*>(info);
@@ -267,6 +385,8 @@ constexpr auto beams = [](const void* info) {
 constexpr auto transducers = [](const void* info) { return std::uint64_t{static_cast<const SonarInfo*>(info)->count}; };
 constexpr auto capacity = [](const void* info) { return std::uint64_t{static_cast<const BumperInfo*>(info)->capacity}; };
 constexpr auto joints_of = [](const void* info) { return std::uint64_t{static_cast<const JointsInfo*>(info)->count}; };
+// Of those whose info begins with it.
+constexpr auto first_word = [](const void* info) { return std::uint64_t{*static_cast<const std::uint32_t*>(info)}; };
 constexpr auto pixels = [](const void* info) {
   const auto& camera = *static_cast<const CameraInfo*>(info);
   return std::uint64_t{camera.width} * camera.height;
@@ -293,7 +413,7 @@ constexpr IfaceRow frames(IfaceType type, std::string_view name, std::string_vie
 
 }  // namespace detail
 
-// By number, from 1 on.
+// By number, in ascending order; some numbers are free.
 inline constexpr std::array iface_types{
     IfaceRow{.type = IfaceType::simulation,
              .name = "simulation",
@@ -420,14 +540,106 @@ inline constexpr std::array iface_types{
              .sample_tail = {1, detail::size<JointState, 40>(), detail::joint_state_fields},
              .filled = detail::part<&JointsSample::count>(),
              .is_always_full = true},
+    IfaceRow{.type = IfaceType::battery,
+             .name = "battery",
+             .meaning = "charge of a battery and what it drives",
+             .info_size = detail::size<BatteryInfo, 264>(),
+             .sample_size = detail::size<BatterySample, 80>(),
+             .info = detail::battery_info,
+             .sample = detail::battery_sample},
+    IfaceRow{.type = IfaceType::dvl,
+             .name = "dvl",
+             .meaning = "velocity against the bottom by sound",
+             .info_size = detail::size<DvlInfo, 280>(),
+             .sample_size = detail::size<DvlSample, 152>(),
+             .info = detail::dvl_info,
+             .sample = detail::dvl_sample,
+             .count = detail::first_word,
+             .most = detail::most_others,
+             .info_tail = {1, detail::size<DvlBeam, 32>(), detail::dvl_beam_fields},
+             .sample_tail = {1, detail::size<DvlEcho, 16>(), detail::dvl_echo_fields},
+             .filled = detail::part<&DvlSample::count>(),
+             .is_always_full = true},
+    IfaceRow{.type = IfaceType::air_speed,
+             .name = "air_speed",
+             .meaning = "pressure of the air that meets it",
+             .info_size = detail::size<MeterInfo, 344>(),
+             .sample_size = detail::size<AirSpeedSample, 48>(),
+             .info = detail::meter_info_without_joint,
+             .sample = detail::air_speed_sample},
+    IfaceRow{.type = IfaceType::ins,
+             .name = "ins",
+             .meaning = "place, velocity and orientation on earth",
+             .info_size = detail::size<InsInfo, 224>(),
+             .sample_size = detail::size<InsSample, 112>(),
+             .info = detail::ins_info,
+             .sample = detail::ins_sample},
+    IfaceRow{.type = IfaceType::rfid,
+             .name = "rfid",
+             .meaning = "tags in reach of a reader",
+             .info_size = detail::size<RfidInfo, 216>(),
+             .sample_size = detail::size<RfidSample, 40>(),
+             .info = detail::rfid_info,
+             .sample = detail::rfid_sample,
+             .count = detail::first_word,
+             .most = detail::most_others,
+             .sample_tail = {1, detail::size<RfidTag, 192>(), detail::rfid_tag_fields},
+             .filled = detail::part<&RfidSample::count>()},
+    IfaceRow{.type = IfaceType::wireless,
+             .name = "wireless",
+             .meaning = "transmitters that a receiver hears",
+             .info_size = detail::size<WirelessInfo, 232>(),
+             .sample_size = detail::size<WirelessSample, 40>(),
+             .info = detail::wireless_info,
+             .sample = detail::wireless_sample,
+             .count = detail::first_word,
+             .most = detail::most_others,
+             .sample_tail = {1, detail::size<Radio, 216>(), detail::radio_fields},
+             .filled = detail::part<&WirelessSample::count>()},
+    IfaceRow{.type = IfaceType::wheels,
+             .name = "wheels",
+             .meaning = "encoders of wheels",
+             .info_size = detail::size<WheelsInfo, 152>(),
+             .sample_size = detail::size<WheelsSample, 40>(),
+             .info = detail::wheels_info,
+             .sample = detail::wheels_sample,
+             .count = detail::first_word,
+             .most = detail::most_others,
+             .info_tail = {1, detail::size<Wheel, 104>(), detail::wheel_fields},
+             .sample_tail = {1, detail::size<Encoder, 24>(), detail::encoder_fields},
+             .filled = detail::part<&WheelsSample::count>(),
+             .is_always_full = true},
+    IfaceRow{.type = IfaceType::localization,
+             .name = "localization",
+             .meaning = "hypotheses of where a model is",
+             .info_size = detail::size<LocalizationInfo, 160>(),
+             .sample_size = detail::size<LocalizationSample, 40>(),
+             .info = detail::localization_info,
+             .sample = detail::localization_sample,
+             .count = detail::first_word,
+             .most = detail::most_others,
+             .sample_tail = {1, detail::size<Hypothesis, 80>(), detail::hypothesis_fields},
+             .filled = detail::part<&LocalizationSample::count>()},
     // A new type gets its row here.
 };
 
 // --- what follows from it
 
-constexpr bool is_type(std::uint32_t type) { return type >= 1 && type <= iface_types.size(); }
+inline constexpr std::uint32_t highest_type = static_cast<std::uint32_t>(iface_types.back().type);
+
+namespace detail {
+// The place of each number in the table; one past its end for those that are free.
+inline constexpr auto places = [] {
+  std::array<std::uint8_t, highest_type + 1> places{};
+  places.fill(static_cast<std::uint8_t>(iface_types.size()));
+  for (std::size_t i = 0; i < iface_types.size(); ++i) places[static_cast<std::size_t>(iface_types[i].type)] = static_cast<std::uint8_t>(i);
+  return places;
+}();
+}  // namespace detail
+
+constexpr bool is_type(std::uint32_t type) { return type <= highest_type && detail::places[type] < iface_types.size(); }
 // Only of a type that there is.
-constexpr const IfaceRow& row_of(IfaceType type) { return iface_types[static_cast<std::size_t>(type) - 1]; }
+constexpr const IfaceRow& row_of(IfaceType type) { return iface_types[detail::places[static_cast<std::size_t>(type)]]; }
 constexpr std::string_view to_text(IfaceType type) { return is_type(static_cast<std::uint32_t>(type)) ? row_of(type).name : "?"; }
 constexpr std::optional<IfaceType> parse_type(std::string_view name) {
   for (const IfaceRow& row : iface_types) {
@@ -454,13 +666,13 @@ constexpr std::size_t sample_size(const IfaceRow& row, std::uint64_t count) {
 }
 
 namespace detail {
-constexpr bool stand_by_number() {
-  for (std::size_t i = 0; i < iface_types.size(); ++i) {
-    if (static_cast<std::size_t>(iface_types[i].type) != i + 1) return false;
+constexpr bool ascend() {
+  for (std::size_t i = 1; i < iface_types.size(); ++i) {
+    if (iface_types[i].type <= iface_types[i - 1].type) return false;
   }
-  return true;
+  return iface_types.size() < 255;
 }
-static_assert(stand_by_number(), "the row of type n is the n-th");
+static_assert(ascend(), "rows are in the order of their numbers, and each number has one");
 }  // namespace detail
 
 }  // namespace shm

@@ -49,7 +49,8 @@ enum class CommandKind : std::uint32_t {
   velocity = RTMSIM_COMMAND_VELOCITY,
   pose = RTMSIM_COMMAND_POSE,
   joints = RTMSIM_COMMAND_JOINTS,
-  car = RTMSIM_COMMAND_CAR
+  car = RTMSIM_COMMAND_CAR,
+  charge = RTMSIM_COMMAND_CHARGE
 };
 
 // A command as a device sees it.

@@ -42,6 +42,15 @@ enum {
   RTMSIM_MAGNETOMETER = 15,
   RTMSIM_AIR_PRESSURE = 16,
   RTMSIM_JOINTS = 17,
+  /* 18 to 26 are kept for devices that look */
+  RTMSIM_BATTERY = 27,
+  RTMSIM_DVL = 28,
+  RTMSIM_AIR_SPEED = 29,
+  RTMSIM_INS = 30,
+  RTMSIM_RFID = 31,
+  RTMSIM_WIRELESS = 32,
+  RTMSIM_WHEELS = 33,
+  RTMSIM_LOCALIZATION = 34,
 };
 
 /* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
@@ -109,7 +118,7 @@ enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one l
  * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Car: position2d of a drive whose info
  * gives a wheel base: speed [m/s] and steering angle [rad] of a wheel in the middle between the steered ones. Joints: for each joint of the
  * iface mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows
- * the commands of all its clients, each for its own joints. */
+ * the commands of all its clients, each for its own joints. Charge: battery 1 (the charger is connected) or 0. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
   int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
@@ -120,7 +129,14 @@ typedef struct {
 /* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had left. */
 enum { RTMSIM_COMMAND_TIMED = 1 };
 
-enum { RTMSIM_COMMAND_STOP = 0, RTMSIM_COMMAND_VELOCITY = 1, RTMSIM_COMMAND_POSE = 2, RTMSIM_COMMAND_JOINTS = 3, RTMSIM_COMMAND_CAR = 4 };
+enum {
+  RTMSIM_COMMAND_STOP = 0,
+  RTMSIM_COMMAND_VELOCITY = 1,
+  RTMSIM_COMMAND_POSE = 2,
+  RTMSIM_COMMAND_JOINTS = 3,
+  RTMSIM_COMMAND_CAR = 4,
+  RTMSIM_COMMAND_CHARGE = 5
+};
 
 typedef struct {
   uint64_t owner;               /* [atomic] (pid << 32) | a number unique in that process; 0 = free */
@@ -470,6 +486,193 @@ typedef struct {
   uint32_t count;
   uint32_t commanded; /* joints that a living client commands */
 } rtmsim_joints_sample;
+
+enum {
+  RTMSIM_BATTERY_IDLE = 0,   /* nothing takes power yet */
+  RTMSIM_BATTERY_DRAINS = 1, /* its load takes power */
+  RTMSIM_BATTERY_CHARGES = 2,
+  RTMSIM_BATTERY_FULL = 3,  /* the charger is connected and has stopped */
+  RTMSIM_BATTERY_EMPTY = 4, /* the motors of its model have no power */
+};
+
+/* Open-circuit voltage = constant + linear (1 - charge / capacity). */
+typedef struct {
+  double rate;
+  double capacity, initial_charge; /* [Ah] */
+  double constant, linear;         /* [V] */
+  double resistance;               /* [ohm] */
+  double smoothing;                /* time constant of the current [s] */
+  double load;                     /* of all consumers, while it drains [W] */
+  double charging_time;            /* from empty to full [h]; 0: it cannot be charged */
+  char name[64];
+  char model[128];
+} rtmsim_battery_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double voltage;    /* [V] */
+  double current;    /* out of the battery; negative while it charges [A] */
+  double charge;     /* [Ah] */
+  double level;      /* charge / capacity, 0 to 1 */
+  double power;      /* that the load takes [W] */
+  uint32_t state;    /* RTMSIM_BATTERY_* */
+  uint32_t is_empty; /* 1: the motors of its model have no power */
+} rtmsim_battery_sample;
+
+/* `count` beams (rtmsim_dvl_beam) follow. */
+typedef struct {
+  uint32_t count;
+  uint32_t reserved;
+  double rate, noise;          /* standard deviation of the speed along a beam [m/s] */
+  double min_range, max_range; /* [m] */
+  rtmsim_pose pose;            /* on the model; the beams look down, along -z */
+  rtmsim_pose reference;       /* frame that the velocity is told in, in the frame of the sensor */
+  char model[128];
+} rtmsim_dvl_info;
+
+typedef struct {
+  double axis[3];  /* unit vector in the frame of the sensor */
+  double aperture; /* full opening angle of its cone [rad] */
+} rtmsim_dvl_beam;
+
+/* `count` echoes (rtmsim_dvl_echo) follow. */
+typedef struct {
+  rtmsim_stamp stamp;
+  double velocity[3];    /* of the sensor against the bottom, in the reference frame [m/s]; 0 while it is not known */
+  double covariance[9];  /* of it, by rows */
+  double range;          /* of the nearest echo [m]; +infinity: none */
+  uint32_t count;        /* beams */
+  uint32_t locked;       /* beams with an echo */
+  uint32_t has_velocity; /* at least three beams have an echo */
+  uint32_t reserved;
+} rtmsim_dvl_sample;
+
+typedef struct {
+  double range; /* [m]; +infinity: no echo */
+  double speed; /* of the sensor along the beam [m/s]; 0 without an echo */
+} rtmsim_dvl_echo;
+
+/* The info is rtmsim_meter_info: noise of the pressure; altitude of the world's origin. */
+typedef struct {
+  rtmsim_stamp stamp;
+  double pressure;    /* of the air that meets the sensor along x; negative from behind [Pa] */
+  double temperature; /* [K] */
+} rtmsim_air_speed_sample;
+
+typedef struct {
+  double rate;
+  double position_noise, altitude_noise; /* standard deviations [m] */
+  double velocity_noise;                 /* [m/s] */
+  double heading_noise;                  /* [rad] */
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_ins_info;
+
+typedef struct {
+  rtmsim_stamp stamp;
+  double latitude, longitude; /* WGS 84 [degree] */
+  double altitude;            /* above the ellipsoid [m] */
+  double height;              /* above the world's origin [m] */
+  double velocity[3];         /* east, north, up [m/s] */
+  double orientation[3];      /* roll, pitch, yaw [rad]; yaw 0 is east */
+} rtmsim_ins_sample;
+
+typedef struct {
+  uint32_t capacity;
+  uint32_t needs_sight; /* 1: what stands between reader and tag hides it */
+  double rate;
+  double range; /* [m] */
+  double angle; /* full opening angle of what it reads, about x [rad] */
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_rfid_info;
+
+typedef struct {
+  char id[64];
+  char data[128];
+} rtmsim_rfid_tag;
+
+/* `capacity` tags (rtmsim_rfid_tag) follow, `count` of them are filled: the nearest first. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t total; /* tags in reach */
+} rtmsim_rfid_sample;
+
+typedef struct {
+  uint32_t capacity;
+  uint32_t reserved;
+  double rate;
+  double gain;                         /* of the antenna [dBi] */
+  double sensitivity;                  /* weaker transmitters are not received [dBm] */
+  double min_frequency, max_frequency; /* [MHz] */
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_wireless_info;
+
+typedef struct {
+  char essid[64];
+  char transmitter[128]; /* model::sensor */
+  double frequency;      /* [MHz] */
+  double level;          /* received power [dBm] */
+  uint32_t is_blocked;   /* something stands between the antennas */
+  uint32_t reserved;
+} rtmsim_radio;
+
+/* `capacity` transmitters (rtmsim_radio) follow, `count` of them are filled: the strongest first. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t total; /* transmitters that are received */
+} rtmsim_wireless_sample;
+
+/* `count` wheels (rtmsim_wheel) follow. */
+typedef struct {
+  uint32_t count;
+  uint32_t reserved;
+  double rate;
+  double ticks; /* in a turn of a wheel */
+  char model[128];
+} rtmsim_wheels_info;
+
+typedef struct {
+  char joint[96];
+  double radius; /* [m]; 0: the wheel is not round */
+} rtmsim_wheel;
+
+/* `count` encoders (rtmsim_encoder) follow. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t reserved;
+} rtmsim_wheels_sample;
+
+typedef struct {
+  double ticks; /* whole; since the start */
+  double angle; /* that they stand for [rad] */
+  double speed; /* of the wheel [rad/s] */
+} rtmsim_encoder;
+
+typedef struct {
+  uint32_t capacity;
+  uint32_t reserved;
+  double rate;
+  double position_noise, heading_noise; /* standard deviations [m], [rad] */
+  char model[128];
+} rtmsim_localization_info;
+
+typedef struct {
+  double pose[3];       /* x y a in the world */
+  double covariance[6]; /* xx, xy, xa, yy, ya, aa */
+  double weight;        /* those of a sample sum to 1 */
+} rtmsim_hypothesis;
+
+/* `capacity` hypotheses (rtmsim_hypothesis) follow, `count` of them are filled: the best first. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t reserved;
+} rtmsim_localization_sample;
 
 /* ---- simulation: requests ---- */
 

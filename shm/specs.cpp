@@ -1,7 +1,6 @@
 #include "shm/specs.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace shm {
 namespace {
@@ -35,20 +34,6 @@ IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slot
   spec.geometry.participants = participants;
   return spec;
 }
-
-namespace {
-
-// The info and what follows it.
-template <class Info, class Element>
-IfaceSpec spec_with(IfaceType type, const std::string& name, Info info, std::span<const Element> elements) {
-  info.count = static_cast<std::uint32_t>(elements.size());
-  std::vector<std::byte> bytes(sizeof info + elements.size_bytes());
-  std::memcpy(bytes.data(), &info, sizeof info);
-  if (!elements.empty()) std::memcpy(bytes.data() + sizeof info, elements.data(), elements.size_bytes());
-  return iface_spec(type, name, std::span<const std::byte>(bytes));
-}
-
-}  // namespace
 
 IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses) {
   return spec_with(IfaceType::sonar, name, info, poses);

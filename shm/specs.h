@@ -39,4 +39,14 @@ IfaceSpec joints_spec(const std::string& name, const JointsInfo& info, std::span
 // type: camera, depth or points. stride and frame_size are computed when 0.
 IfaceSpec camera_spec(IfaceType type, const std::string& name, const CameraInfo& info, std::uint32_t slots = 4);
 
+// The info with its count set to what follows it.
+template <class Info, class Element>
+IfaceSpec spec_with(IfaceType type, const std::string& name, Info info, std::span<const Element> elements) {
+  info.count = static_cast<std::uint32_t>(elements.size());
+  const auto fixed = std::as_bytes(std::span<const Info>(&info, 1)), tail = std::as_bytes(elements);
+  std::vector<std::byte> bytes(fixed.begin(), fixed.end());
+  bytes.insert(bytes.end(), tail.begin(), tail.end());
+  return iface_spec(type, name, std::span<const std::byte>(bytes));
+}
+
 }  // namespace shm

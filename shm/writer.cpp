@@ -93,7 +93,7 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   impl.seen_command = latest;
   if (owner == 0) return impl.lose();  // commanded and went before we looked
   const bool is_finite = std::ranges::all_of(impl.fresh_values, [](double value) { return std::isfinite(value); });
-  if (!is_finite || fresh.kind > RTMSIM_COMMAND_JOINTS) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  if (!is_finite || fresh.kind > RTMSIM_COMMAND_CHARGE) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.commander = owner;
   impl.commander_lease = index;
   impl.command_values.swap(impl.fresh_values);
@@ -117,7 +117,7 @@ bool IfaceWriter::poll_commands(const TakeCommand& take) {
     CommandHead fresh;
     if (owner == 0 || load(lease.command.sequence) == seen || !impl.read_command(index, fresh)) return;
     if (std::exchange(seen, fresh.sequence) == fresh.sequence) return;
-    if (fresh.kind > RTMSIM_COMMAND_JOINTS || !std::ranges::all_of(impl.fresh_values, [](double v) { return std::isfinite(v); })) return;
+    if (fresh.kind > RTMSIM_COMMAND_CHARGE || !std::ranges::all_of(impl.fresh_values, [](double v) { return std::isfinite(v); })) return;
     take(owner, {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.fresh_values});
   };
   for (std::size_t i = 0; i < count; ++i) {

@@ -113,7 +113,8 @@ void Camera::show_sample() {
   constexpr std::size_t room = player::max_message - 64;  // for pixels
   const auto frame = iface().hold();
   if (!frame || frame->head().stamp.valid == 0) return;
-  const auto image = to_image(frame->head(), frame->data());
+  auto image = to_image(frame->head(), frame->data());
+  if (image && is_jpeg_) compress(*image);
   if (!image || image->pixels.size() > room) {
     if (!std::exchange(has_complained_, true))
       base::log(base::Level::warn, "player-gateway", "camera {}: {}", iface().name(),
@@ -122,6 +123,31 @@ void Camera::show_sample() {
   }
   latest_ = player::encode(*image);
   publish(1, latest_, frame->head().stamp);
+}
+
+// Colours only: clients make colours of every JPEG, in the room that the picture says.
+void Camera::compress(player::Image& image) {
+  if (image.format != player::ImageFormat::rgb888) return;
+  const std::span<const std::uint8_t> pixels(reinterpret_cast<const std::uint8_t*>(image.pixels.data()), image.pixels.size());
+  const auto file =
+      encoder_.encode(pixels, static_cast<int>(image.width), static_cast<int>(image.height), 0, base::JpegPixels::rgb, quality_);
+  if (!file) return;
+  image.pixels.assign(reinterpret_cast<const char*>(file->data()), file->size());
+  image.is_compressed = true;
+}
+
+std::optional<player::PropertyValue> Camera::property(const std::string& key) const {
+  if (key == "compression") return std::int32_t{is_jpeg_};
+  if (key == "quality") return std::int32_t{quality_};
+  return Device::property(key);
+}
+
+bool Camera::set_property(const player::DriverProperty& property) {
+  const auto* value = std::get_if<std::int32_t>(&property.value);
+  if (value == nullptr) return false;
+  if (property.key == "compression" && (*value == 0 || *value == 1)) return is_jpeg_ = *value == 1, true;
+  if (property.key == "quality" && *value >= 1 && *value <= 100) return quality_ = *value, true;
+  return false;
 }
 
 std::optional<Answer> Camera::answer(std::uint8_t subtype, const std::string&, const Later&) {

@@ -1,8 +1,9 @@
-// camera: pictures as they come, not compressed. One thread at a time.
+// camera: pictures as they come, or as JPEG. One thread at a time.
 #pragma once
 
 #include <array>
 
+#include "base/jpeg.h"
 #include "device.h"
 #include "protocol/payloads.h"
 
@@ -19,7 +20,8 @@ class Camera final : public Device {
   static constexpr std::array shows{shm::IfaceType::camera, shm::IfaceType::depth};
   static constexpr std::array table = std::to_array<Served>({
       {player::Type::data, 1,
-       "pictures as RGB888, MONO8 or MONO16, not compressed; mosaics as their colours; depths as MONO16 in millimetres, 0: nothing there"},
+       "pictures as RGB888, MONO8 or MONO16, or as JPEG (property compression); mosaics as their colours; depths as MONO16 in millimetres, "
+       "0: nothing there"},
       {player::Type::request, 1, "source"},
       {player::Type::request, 3, "picture"},
   });
@@ -29,9 +31,15 @@ class Camera final : public Device {
   void show_sample() override;
   std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) override;
   void on_attach() override;
+  std::optional<player::PropertyValue> property(const std::string& key) const override;
+  bool set_property(const player::DriverProperty& property) override;
+  void compress(player::Image& image);
 
   std::string latest_;  // payload of the last picture, for those who ask for one
   bool has_complained_ = false;
+  base::JpegEncoder encoder_;
+  bool is_jpeg_ = false;
+  int quality_ = 90;
 };
 
 }  // namespace gateway

@@ -7,9 +7,11 @@
 #include "base/text.h"
 #include "camera_device.h"
 #include "drive_devices.h"
+#include "estimate_devices.h"
 #include "joint_devices.h"
 #include "limb_device.h"
 #include "point_cloud_device.h"
+#include "power_device.h"
 #include "range_devices.h"
 #include "sensor_devices.h"
 #include "simulation_device.h"
@@ -42,6 +44,10 @@ constexpr std::array kinds{
     row<Imu>(imu),
     row<Bumper>(bumper),
     row<Analog>(aio),
+    row<Power>(power),
+    row<Rfid>(rfid),
+    row<Wifi>(wifi),
+    row<Localize>(localize),
     row<Ranger>(ranger),
     row<PointCloud>(pointcloud3d),
     row<Simulation>(simulation),

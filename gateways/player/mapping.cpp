@@ -3,16 +3,17 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "base/log.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "device_kinds.h"
+#include "player_cfg.h"
 
 namespace gateway {
 namespace {
@@ -243,32 +244,14 @@ base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
   return ifaces;
 }
 
-namespace {
-
-// A line begins with "driver" and a bracket, which may be on the next one.
-bool is_of_player(const std::string& path) {
-  constexpr int most_lines = 1000;
-  std::ifstream file(path);
-  std::string line;
-  bool is_after_driver = false;
-  for (int i = 0; i < most_lines && std::getline(file, line); ++i) {
-    const std::string_view text = base::trim(line);
-    if (text.empty() || text.starts_with('#')) continue;
-    if (is_after_driver && text.starts_with('(')) return true;
-    is_after_driver = text == "driver";
-    if (text.starts_with("driver") && base::trim(text.substr(6)).starts_with('(')) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
 base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
   try {
-    if (is_of_player(path))
-      return base::Error{path +
-                         ": is a configuration file of Player, whose drivers are not started here; a mapping in YAML is expected, or "
-                         "no --config: then each robot of the world gets a port (docs/stage.md)"};
+    if (is_of_player(path)) {
+      std::vector<std::string> notes;
+      auto ports = read_player_config(path, notes);
+      for (const std::string& note : notes) base::log(base::Level::warn, "player-gateway", "{}", note);
+      return ports;
+    }
     const auto root = YAML::LoadFile(path);
     yaml::expect_unique_keys(root);
     return configured_ports(root);
@@ -328,6 +311,37 @@ bool is_magnetometer(const std::string& name, const std::vector<ListedIface>& if
   return std::any_of(ifaces.begin(), ifaces.end(),
                      [&](const ListedIface& one) { return one.type == shm::IfaceType::magnetometer && one.name == name; });
 }
+
+// Those of a model that an interface shows, in the order in which its devices are numbered.
+std::vector<const ListedIface*> candidates(const std::string& model, player::Interface interface, const std::vector<ListedIface>& ifaces) {
+  std::vector<const ListedIface*> found;
+  const DeviceKind* kind = find_kind(interface);
+  for (const shm::IfaceType type : kind->shows) {
+    for (const ListedIface& iface : ifaces) {
+      if (iface.type != type || robot_of(iface) != model) continue;
+      const bool is_group = type == shm::IfaceType::joints;
+      const auto groups = std::ranges::count(iface.groups, interface, &JointGroup::interface);
+      found.insert(found.end(), is_group ? static_cast<std::size_t>(groups) : 1, &iface);
+    }
+  }
+  return found;
+}
+
+// By its name, also with parts behind it that no iface has; else by its model and number. Null: not there.
+const ListedIface* find_iface(const ConfiguredDevice& device, const std::vector<ListedIface>& ifaces) {
+  std::string name = device.iface;
+  while (!name.empty()) {
+    const auto found = std::find_if(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) {
+      return one.name == name && (device.type ? one.type == *device.type : can_show(device.address.interface, one.type));
+    });
+    if (found != ifaces.end()) return &*found;
+    const auto end = name.rfind("::");
+    name.resize(device.model.empty() || end == std::string::npos ? 0 : end);
+  }
+  if (device.model.empty() || device.address.interface == player::Interface::simulation) return nullptr;
+  const auto all = candidates(device.model, device.address.interface, ifaces);
+  return device.which < all.size() ? all[device.which] : nullptr;
+}
 }  // namespace
 
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
@@ -336,17 +350,17 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
   for (const ConfiguredPort& port : ports) {
     PortPlan plan{port.port, base::join(port.robots, " "), {}};
     for (const ConfiguredDevice& device : port.devices) {
-      const auto found = std::find_if(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) {
-        return one.name == device.iface && (device.type ? one.type == *device.type : can_show(device.address.interface, one.type));
-      });
-      if (found != ifaces.end()) {
+      const ListedIface* found = find_iface(device, ifaces);
+      if (found != nullptr) {
         plan.devices.push_back({device.address, found->type, found->name, device.magnetometer, group_of(device, *found)});
         if (!device.magnetometer.empty() && !is_magnetometer(device.magnetometer, ifaces))
           missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no magnetometer " +
                             base::in_quotes(device.magnetometer));
       } else if (device.address.interface != player::Interface::simulation) {
-        missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no iface " +
-                          base::in_quotes(device.iface));
+        const bool is_of_model = !device.model.empty() && (device.iface.empty() || device.iface == device.model);
+        missing.push_back(
+            player::to_text(device.address) + " of port " + std::to_string(port.port) + ": " +
+            (is_of_model ? "no such device of model " + base::in_quotes(device.model) : "no iface " + base::in_quotes(device.iface)));
       }
     }
     for (const std::string& robot : port.robots) {

@@ -40,12 +40,14 @@ struct ListedIface {
 // From the reply to a ListRequest. Ifaces of types that are not known are left out.
 base::Result<std::vector<ListedIface>> parse_list(std::string_view json);
 
-// A mapping file as written: see docs/player.md.
+// A mapping file as written, or a configuration file of Player: see docs/player.md.
 struct ConfiguredDevice {
   player::Address address;
   std::optional<shm::IfaceType> type;  // nothing: the first that the interface can show
   std::string iface;
   std::string magnetometer;         // as in DevicePlan
+  std::string model;                // where no iface has the name: the one of this model that the interface shows, by its number
+  std::size_t which = 0;            // from 0
   std::vector<std::string> joints;  // empty: those that the simulator lists for the interface, else all
 };
 struct ConfiguredPort {
@@ -53,7 +55,7 @@ struct ConfiguredPort {
   std::vector<std::string> robots;
   std::vector<ConfiguredDevice> devices;
 };
-// Errors name the file, the line and what was expected.
+// Errors name the file, the line and what was expected. What a configuration file of Player asks for and is not served is logged.
 base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path);
 
 // One port for each model of the world that has devices, from `first_port` (0: any free ones) on; one port without robot when there is

@@ -42,9 +42,11 @@ Utm to_utm(double latitude, double longitude) {
 
 // ---- gps ----
 
-void Gps::show_sample() {
-  const auto& info = iface().info<shm::GpsInfo>();
-  const auto& sample = iface().sample<shm::GpsSample>();
+namespace {
+
+// What a gps and an ins have alike.
+template <class Info, class Sample>
+player::GpsState gps_state(const Info& info, const Sample& sample) {
   const auto utm = to_utm(sample.latitude * pi / 180, sample.longitude * pi / 180);
   player::GpsState state;
   state.seconds = static_cast<std::uint32_t>(sample.stamp.sim_time_ns / 1'000'000'000);
@@ -60,7 +62,15 @@ void Gps::show_sample() {
   state.quality = 1;
   state.horizontal_error = info.position_noise;
   state.vertical_error = info.altitude_noise;
-  publish(1, player::encode(state), sample.stamp);
+  return state;
+}
+
+}  // namespace
+
+void Gps::show_sample() {
+  const auto state = iface().type() == shm::IfaceType::gps ? gps_state(iface().info<shm::GpsInfo>(), iface().sample<shm::GpsSample>())
+                                                           : gps_state(iface().info<shm::InsInfo>(), iface().sample<shm::InsSample>());
+  publish(1, player::encode(state), iface().sample<shm::Stamp>());
 }
 
 std::optional<Answer> Gps::answer(std::uint8_t, const std::string&, const Later&) { return nack(); }
@@ -76,8 +86,38 @@ void Imu::show_sample() {
   show(still, source().get());
 }
 
-void Imu::show(const shm::ImuSample& sample, Source* magnetometer) {
-  const auto& q = sample.orientation;
+namespace {
+
+shm::Pose turn_of(const double (&q)[4]) { return {0, 0, 0, q[0], q[1], q[2], q[3]}; }
+
+shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
+  return {0,
+          0,
+          0,
+          a.qw * b.qw - a.qx * b.qx - a.qy * b.qy - a.qz * b.qz,
+          a.qw * b.qx + a.qx * b.qw + a.qy * b.qz - a.qz * b.qy,
+          a.qw * b.qy - a.qx * b.qz + a.qy * b.qw + a.qz * b.qx,
+          a.qw * b.qz + a.qx * b.qy - a.qy * b.qx + a.qz * b.qw};
+}
+
+}  // namespace
+
+// From now on the present orientation is this one.
+bool Imu::reset(const player::Pose3d& angles) {
+  for (const double angle : {angles.roll, angles.pitch, angles.yaw}) {
+    if (!std::isfinite(angle)) return false;
+  }
+  if (iface().type() != shm::IfaceType::imu || !iface().read()) return false;
+  auto back = turn_of(iface().sample<shm::ImuSample>().orientation);
+  back = {0, 0, 0, back.qw, -back.qx, -back.qy, -back.qz};
+  turned_ = product(shm::euler_pose(0, 0, 0, angles.roll, angles.pitch, angles.yaw), back);
+  return true;
+}
+
+void Imu::show(shm::ImuSample sample, Source* magnetometer) {
+  const shm::Pose turned = product(turned_, turn_of(sample.orientation));
+  auto& q = sample.orientation;
+  q[0] = turned.qw, q[1] = turned.qx, q[2] = turned.qy, q[3] = turned.qz;
   const auto angles = to_pose3d({0, 0, 0, q[0], q[1], q[2], q[3]});
   player::ImuCalibrated calibrated;
   for (int i = 0; i < 3; ++i) {
@@ -109,7 +149,12 @@ void Imu::show(const shm::ImuSample& sample, Source* magnetometer) {
 }
 
 std::optional<Answer> Imu::answer(std::uint8_t subtype, const std::string& payload, const Later&) {
-  constexpr std::uint8_t set_data_type = 1;
+  constexpr std::uint8_t set_data_type = 1, reset_orientation = 2, reset_euler = 3;
+  if (subtype == reset_orientation) return player::decode_u32(payload) && reset({}) ? ack() : nack();
+  if (subtype == reset_euler) {
+    const auto angles = player::decode_pose3d(payload);
+    return angles && reset(*angles) ? ack() : nack();
+  }
   const auto kind = player::decode_byte(payload);
   if (subtype != set_data_type || !kind || *kind < imu_data::state || *kind > imu_data::full) return nack();
   kind_ = *kind;

@@ -16,7 +16,7 @@ Utm to_utm(double latitude, double longitude);
 class Gps final : public Device {
  public:
   using Device::Device;
-  static constexpr std::array shows{shm::IfaceType::gps};
+  static constexpr std::array shows{shm::IfaceType::gps, shm::IfaceType::ins};
   static constexpr std::array table = std::to_array<Served>({
       {player::Type::data, 1,
        "place, speed, course (clockwise from north), UTM in cm as client libraries read it; satellites are not simulated and 0"},
@@ -44,14 +44,19 @@ class Imu final : public Device {
       {player::Type::data, 4, ""},
       {player::Type::data, 5, ""},
       {player::Type::request, 1, "kind of data"},
+      {player::Type::request, 2, "reset of the orientation: to 0, or to angles"},
+      {player::Type::request, 3, ""},
   });
 
  private:
   ServedTable served() const override { return table; }
   void show_sample() override;
   std::optional<Answer> answer(std::uint8_t subtype, const std::string& payload, const Later& later) override;
-  void show(const shm::ImuSample& sample, Source* magnetometer);
+  void on_attach() override { turned_ = {0, 0, 0, 1, 0, 0, 0}; }
+  void show(shm::ImuSample sample, Source* magnetometer);
+  bool reset(const player::Pose3d& angles);
   std::uint8_t kind_ = 4;
+  shm::Pose turned_{0, 0, 0, 1, 0, 0, 0};  // what resets add before the orientation
 };
 
 // Each iface is a device with one bumper.

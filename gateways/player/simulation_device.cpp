@@ -5,14 +5,15 @@
 #include <cstring>
 #include <utility>
 
+#include "base/log.h"
 #include "protocol/payloads.h"
 #include "simulator.h"
 
 namespace gateway {
 namespace {
 
-constexpr std::uint8_t get_pose2d = 1, set_pose2d = 2, get_pose3d = 3, set_pose3d = 4, get_property = 5;
-constexpr std::uint8_t pause = 1, reset = 2;
+constexpr std::uint8_t get_pose2d = 1, set_pose2d = 2, get_pose3d = 3, set_pose3d = 4, get_property = 5, set_property_request = 6;
+constexpr std::uint8_t pause = 1, reset = 2, save = 3;
 
 shm::Pose pose_of(const shm::Reply& reply) {
   const double* v = reply.values;
@@ -28,6 +29,7 @@ std::string bytes_of(T value) {
 
 std::optional<Answer> Simulation::answer(std::uint8_t subtype, const std::string& payload, const Later& later) {
   if (subtype == get_property) return property(payload);
+  if (subtype == set_property_request) return set_property(payload, later);
   const auto flat = subtype == get_pose2d || subtype == set_pose2d ? player::decode_named_pose2d(payload) : std::nullopt;
   const auto full = subtype == get_pose3d || subtype == set_pose3d ? player::decode_named_pose3d(payload) : std::nullopt;
   if (!flat && !full) return nack();
@@ -87,8 +89,24 @@ std::optional<Answer> Simulation::property(const std::string& payload) {
   return ack(player::encode(*request));
 }
 
+// Of the world: whether it runs, and how fast.
+std::optional<Answer> Simulation::set_property(const std::string& payload, const Later& later) {
+  const auto request = player::decode_property(payload);
+  if (!request || request->name != "world") return nack();
+  if (request->property == "state" && request->value.size() == 1)
+    return request->value[0] != 0 ? ask(shm::RunRequest{}, later) : ask(shm::PauseRequest{}, later);
+  double factor = 0;
+  if (request->property != "real_time_factor" || request->value.size() != sizeof factor) return nack();
+  std::memcpy(&factor, request->value.data(), sizeof factor);
+  return std::isfinite(factor) && factor >= 0 ? std::optional<Answer>(ask(shm::SetRtfRequest{factor}, later)) : nack();
+}
+
 void Simulation::obey(Client&, std::uint8_t subtype, const std::string&) {
   const auto nobody = [](const base::Result<shm::Reply>&) {};
+  if (subtype == save && !std::exchange(has_refused_to_save_, true))
+    base::log(
+        base::Level::warn, "player-gateway",
+        "SAVE of simulation is ignored: a world is written by its author, not by the simulator; rtse record keeps what happens in it");
   if (subtype == reset) services_.errands.post(shm::ResetRequest{}, nobody);
   if (subtype != pause || !iface().read()) return;
   if (iface().sample<shm::SimulationSample>().paused != 0) {

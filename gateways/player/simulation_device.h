@@ -16,9 +16,11 @@ class Simulation final : public Device {
       {player::Type::request, 2, ""},
       {player::Type::request, 3, ""},
       {player::Type::request, 4, ""},
-      {player::Type::request, 5, "properties, see below"},
+      {player::Type::request, 5, "properties, get and set, see below"},
+      {player::Type::request, 6, ""},
       {player::Type::command, 1, "pause (turns round)"},
       {player::Type::command, 2, "reset"},
+      {player::Type::command, 3, ""},
   });
 
  private:
@@ -27,6 +29,8 @@ class Simulation final : public Device {
   void obey(Client& client, std::uint8_t subtype, const std::string& payload) override;
   bool has_data() const override { return false; }
   std::optional<Answer> property(const std::string& payload);
+  std::optional<Answer> set_property(const std::string& payload, const Later& later);
+  bool has_refused_to_save_ = false;
 };
 
 }  // namespace gateway

@@ -89,6 +89,11 @@ class Device {
   // Of position devices; others refuse.
   virtual bool set_odometry(const Eigen::Isometry3d&) { return false; }
   virtual bool set_motors(bool) { return false; }
+
+  // Of devices with motors, after a step: whether a motor has been told to work.
+  virtual bool is_working() const { return false; }
+  // The same: whether their motors have power, from the next step on and until a reset. A battery that is empty takes it away.
+  virtual void set_power(bool) {}
 };
 
 // All devices of a model: its sensors and those of its plugins that are known. What is left out adds a line to `left_out`. Fails when an

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/text.h"
+#include "devices/battery.h"
 #include "devices/device.h"
 #include "devices/drives/position2d.h"
 #include "devices/drives/position3d.h"
@@ -55,6 +56,11 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
   const ModelDef& def = m.world.physics.def(m.model);
   if (!m.can_name(iface_name(def, sensor), "sensor " + sensor.name)) return;
   if (const SensorMaker* maker = maker_of(sensor.kind)) {
+    if (sensor.kind == SensorKind::wheels && !missing_wheel(def, sensor).empty()) {
+      m.left_out.push_back(fmt::format("model {}: sensor {}: the model has no joint {} that turns about one axis; the sensor is left out",
+                                       def.name, sensor.name, base::in_quotes(missing_wheel(def, sensor))));
+      return;
+    }
     if (!maker->stands_in_joint) return m.take(maker->make({m.world, mount, sensor, std::nullopt}));
     m.left_out.push_back(fmt::format("model {}: sensor {}: a {} sensor measures the joint that it stands in; this one stands in a link",
                                      def.name, sensor.name, to_text(sensor.kind)));
@@ -182,6 +188,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
     case PluginKind::buoyancy:
+    case PluginKind::battery:  // after all that it drives
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;
@@ -192,6 +199,20 @@ void make_joints(Makers& m) {
   const ModelDef& def = m.world.physics.def(m.model);
   if (commandable_joints(def).empty() || !m.can_name(JointsDevice::name_of(def), "joints")) return;
   m.take(JointsDevice::make(m.world, m.model));
+}
+
+void make_batteries(Makers& m) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  std::vector<Device*> others;
+  for (const auto& device : m.devices) others.push_back(device.get());
+  for (const auto& plugin : def.plugins) {
+    if (kind_of(plugin) != PluginKind::battery || !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) continue;
+    if (const auto setup = battery_setup(def, plugin)) {
+      m.take(Battery::make(m.world, m.model, plugin, *setup, others));
+    } else {
+      m.left_out.push_back(setup.error().message);
+    }
+  }
 }
 
 }  // namespace
@@ -208,6 +229,7 @@ base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& wor
   make_joint_sensors(m);
   make_sonars(m);
   make_joints(m);
+  make_batteries(m);
   if (!world.physics.is_static(model) && m.can_name(def.name, "true pose")) m.take(make_truth(world, model));
   if (m.failure) return *m.failure;
   return std::move(m.devices);

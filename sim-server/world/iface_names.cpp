@@ -59,6 +59,8 @@ class Namer {
   void name(PluginDef& plugin) {
     const PluginKind kind = kind_of(plugin);
     if (is_wheel_drive(kind)) plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
+    if (kind == PluginKind::battery)
+      plugin.iface = take(batteries_, "battery " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     // One way of moving for each model, so one name.
     if (kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower)
       plugin.iface = scoped_and_short(plugin.scope, "position3d");
@@ -84,7 +86,7 @@ class Namer {
   const ModelDef& model_;
   Complaints& complaints_;
   std::map<int, TakenNames> taken_;
-  TakenNames drives_;
+  TakenNames drives_, batteries_;
 };
 
 template <class Do>
@@ -123,7 +125,9 @@ std::string iface_name(const ModelDef& model, const SensorDef& sensor) {
 }
 
 std::string iface_name(const ModelDef& model, const PluginDef& plugin) {
-  return after(model, plugin.iface, plugin.scope, is_wheel_drive(kind_of(plugin)) ? iface_own_name(plugin) : "position3d");
+  const PluginKind kind = kind_of(plugin);
+  const bool has_own_name = is_wheel_drive(kind) || kind == PluginKind::battery;
+  return after(model, plugin.iface, plugin.scope, has_own_name ? iface_own_name(plugin) : "position3d");
 }
 
 }  // namespace sim

@@ -327,10 +327,19 @@ class ModelBuilder {
       weightless_.emplace(link.name, node);
     }
     for (const char* kind : {"projector", "audio_sink", "audio_source", "battery", "particle_emitter"}) {
+      if (std::string_view(kind) == "battery" && has_battery_plugin(node.parent())) continue;
       for (pugi::xml_node child : node.children(kind))
         context_.complaints.warn(child, describe_in_context(child) + " is not simulated and ignored");
     }
     model_.links.push_back(std::move(link));
+  }
+
+  // Which has what Gazebo classic reads from the <battery> of a link.
+  static bool has_battery_plugin(pugi::xml_node model) {
+    const auto plugins = model.children("plugin");
+    return std::any_of(plugins.begin(), plugins.end(), [](pugi::xml_node plugin) {
+      return kind_of_plugin(plugin.attribute("filename").value(), plugin.attribute("name").value()) == PluginKind::battery;
+    });
   }
 
   // The specification's 1 kg m^2 makes a wheel of 0.1 kg turn like one of 100 kg.

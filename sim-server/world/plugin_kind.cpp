@@ -24,6 +24,8 @@ const std::map<std::string_view, PluginKind>& table() {
       {"planarmove", velocity_control},
       {"trajectoryfollower", trajectory_follower},
       {"buoyancy", buoyancy},
+      {"linearbattery", battery},
+      {"battery", battery},
       {"jointpositioncontroller", joint_controller},
       {"jointcontroller", joint_controller},
       {"jointtrajectorycontroller", joint_controller},
@@ -62,6 +64,9 @@ const std::map<std::string_view, PluginKind>& table() {
       {"magnetometer", implied},
       {"airpressure", implied},
       {"airspeed", implied},
+      {"dopplervelocitylog", implied},
+      {"dvl", implied},
+      {"rfidsensor", implied},
       {"logicalcamera", implied},
       {"forcetorque", implied},
       {"posepublisher", implied},
@@ -147,6 +152,10 @@ bool is_wheel_drive(PluginKind kind) {
 }
 
 std::string iface_own_name(const PluginDef& plugin) {
+  if (kind_of(plugin) == PluginKind::battery) {
+    const std::string name = plugin.parameters.text_of({"battery_name"}).value_or("");
+    return name.empty() ? "battery" : name;
+  }
   return plugin.name.empty() || plugin.name.find("::") != std::string::npos ? "position2d" : plugin.name;
 }
 

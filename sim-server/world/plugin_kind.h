@@ -14,6 +14,7 @@ enum class PluginKind {
   joint_controller,     // joints keep the position or speed that it starts with until they are commanded
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   buoyancy,             // of the world
+  battery,              // drives the motors of the model until it is empty
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
@@ -27,7 +28,7 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
 bool is_wheel_drive(PluginKind kind);
 
 // What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
-// a class.
+// a class. Of a battery: its <battery_name>, or "battery".
 std::string iface_own_name(const PluginDef& plugin);
 
 }  // namespace sim

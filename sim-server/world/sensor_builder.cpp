@@ -5,16 +5,11 @@
 
 #include "base/text.h"
 #include "world/model_builder.h"
+#include "world/sensor_parts.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
 namespace sim {
-
-namespace {
-
-constexpr int most_rays = 4000000;  // of one scan
-constexpr int most_pixels_a_side = 16384;
-constexpr double most_pixels = 1 << 26;  // an iface holds no larger frames
 
 NoiseDef build_noise(pugi::xml_node node, BuildContext& context) {
   NoiseDef noise;
@@ -50,6 +45,12 @@ std::string must(pugi::xml_node sensor, const std::string& what, const std::stri
   return what + " of " + describe_in_context(sensor) + " must be " + expected + ", got " + base::format_number(got) +
          "; the sensor is left out";
 }
+
+namespace {
+
+constexpr int most_rays = 4000000;  // of one scan
+constexpr int most_pixels_a_side = 16384;
+constexpr double most_pixels = 1 << 26;  // an iface holds no larger frames
 
 ScanDef build_scan(pugi::xml_node node) {
   ScanDef scan;
@@ -302,6 +303,34 @@ constexpr std::array kinds{
         SensorKind::air_pressure,
         {"air_pressure"},
         [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_air_pressure(sensor, context))); }},
+    KindRow{
+        SensorKind::dvl, {"dvl"}, [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_dvl(sensor, context)); }},
+    KindRow{SensorKind::air_speed,
+            {"air_speed", "airspeed"},
+            [](SensorDef& out, Node sensor, BuildContext& context) {
+              return take(out, std::optional(AirSpeedDef{noise_at(sensor, "air_speed/pressure", context)}));
+            }},
+    KindRow{SensorKind::ins,
+            {"ins"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, std::optional(build_ins(sensor, context))); }},
+    KindRow{SensorKind::rfid,
+            {"rfid"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_rfid(sensor, context)); }},
+    KindRow{SensorKind::rfid_tag,
+            {"rfidtag"},
+            [](SensorDef& out, Node sensor, BuildContext&) { return take(out, std::optional(build_rfid_tag(sensor))); }},
+    KindRow{SensorKind::wireless_receiver,
+            {"wireless_receiver"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_radio(sensor, context)); }},
+    KindRow{SensorKind::wireless_transmitter,
+            {"wireless_transmitter"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_radio(sensor, context)); }},
+    KindRow{SensorKind::wheels,
+            {"wheel_encoders"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_wheels(sensor, context)); }},
+    KindRow{SensorKind::localization,
+            {"localization"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_localization(sensor, context)); }},
 };
 
 const KindRow* row_of(std::string_view spelling) {
@@ -309,6 +338,16 @@ const KindRow* row_of(std::string_view spelling) {
     return !spelling.empty() && std::find(one.spellings.begin(), one.spellings.end(), spelling) != one.spellings.end();
   });
   return row == kinds.end() ? nullptr : &*row;
+}
+
+// A sensor of type "custom" names its type in an attribute with a prefix of its own: gz:type="dvl".
+std::string type_of(Node sensor) {
+  const std::string type = sensor.attribute("type").value();
+  if (type != "custom") return type;
+  for (const pugi::xml_attribute attribute : sensor.attributes()) {
+    if (std::string_view(attribute.name()).ends_with(":type") && row_of(attribute.value()) != nullptr) return attribute.value();
+  }
+  return type;
 }
 
 }  // namespace
@@ -321,7 +360,7 @@ std::string_view to_text(SensorKind kind) {
 std::optional<SensorDef> build_sensor(pugi::xml_node node, BuildContext& context) {
   SensorDef sensor;
   sensor.name = node.attribute("name").value();
-  sensor.type = node.attribute("type").value();
+  sensor.type = type_of(node);
   const KindRow* kind = row_of(sensor.type);
   if (kind == nullptr) {
     context.complaints.drop(

@@ -107,6 +107,46 @@ struct AirPressureDef {
   double reference_altitude = 0;
 };
 
+// Doppler velocity log: beams of sound that look down, along -z.
+struct DvlDef {
+  struct Beam {
+    double aperture = 1.5707963267948966;  // full opening angle of its cone
+    double rotation = 0, tilt = 0;         // about -z, after it was tilted away from -z
+  };
+  std::vector<Beam> beams;  // at least three
+  double range_min = 0.1, range_max = 100;
+  Eigen::Isometry3d reference = Eigen::Isometry3d::Identity();  // frame in the sensor that the velocity is told in
+  NoiseDef speed;                                               // along a beam
+};
+struct AirSpeedDef {
+  NoiseDef pressure;
+};
+struct InsDef {
+  NoiseDef horizontal_position, vertical_position, horizontal_velocity, vertical_velocity, attitude, heading;
+};
+struct RfidDef {
+  double range = 1;
+  double angle = 6.283185307179586;  // full opening angle about x
+  bool needs_sight = false;
+};
+struct RfidTagDef {
+  std::string id, data;  // id empty: the scoped name of the sensor
+};
+// Receiver or transmitter.
+struct RadioDef {
+  std::string essid = "wireless";
+  double frequency = 2442, min_frequency = 2412, max_frequency = 2484;  // [MHz]
+  double gain = 2.5, power = 14.5, sensitivity = -90;                   // [dBi], [dBm], [dBm]
+};
+struct WheelsDef {
+  std::vector<std::string> joints;  // as in the file
+  double ticks = 500;               // in a turn of the wheel
+};
+struct LocalizationDef {
+  NoiseDef position, heading;
+  int hypotheses = 1;
+};
+
 enum class SensorKind {
   ray,  // ray, gpu_ray, lidar, gpu_lidar
   camera,
@@ -121,6 +161,15 @@ enum class SensorKind {
   altimeter,
   magnetometer,
   air_pressure,
+  dvl,
+  air_speed,
+  ins,
+  rfid,
+  rfid_tag,
+  wireless_receiver,
+  wireless_transmitter,
+  wheels,
+  localization,
 };
 std::string_view to_text(SensorKind kind);  // as the table of sensor_builder.cpp says it
 
@@ -135,7 +184,8 @@ struct SensorDef {
   bool always_on = false;
   bool visualize = false;
   std::string topic;
-  std::variant<RayDef, CameraSetDef, ContactDef, ImuDef, GpsDef, SonarDef, ForceTorqueDef, AltimeterDef, MagnetometerDef, AirPressureDef>
+  std::variant<RayDef, CameraSetDef, ContactDef, ImuDef, GpsDef, SonarDef, ForceTorqueDef, AltimeterDef, MagnetometerDef, AirPressureDef,
+               DvlDef, AirSpeedDef, InsDef, RfidDef, RfidTagDef, RadioDef, WheelsDef, LocalizationDef>
       data;
   std::vector<PluginDef> plugins;
 };

@@ -336,7 +336,7 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_EQ(error("ports: []\n"), ":1: there is no port");
   EXPECT_NE(error("ports: [\n").find(":"), std::string::npos);
   EXPECT_NE(error("").find("expected a list"), std::string::npos);
-  EXPECT_NE(error("# of a robot\ndriver\n(\n  name \"stage\"\n)\n").find("is a configuration file of Player"), std::string::npos);
+  EXPECT_NE(error("# of a robot\ndriver\n(\n  name \"stage\"\n)\n").find("no driver provides a device of a simulator"), std::string::npos);
   EXPECT_EQ(read_config("/nowhere/at/all.yaml").error().message, "mapping /nowhere/at/all.yaml can't be read");
 }
 

@@ -243,6 +243,34 @@ TEST(PlayerPayload, image_is_followed_by_its_pixels) {
   EXPECT_EQ(encode(image), bytes("00000002 00000001 00000018 00000005 00000001 00000000 00000006 00000006 616263646566 0000"));
 }
 
+TEST(PlayerPayload, power_has_five_valid_values) {
+  EXPECT_EQ(encode(PowerState{12, 50, 1000, -6, -1}), bytes("0000001f 41400000 42480000 447a0000 c0c00000 ffffffff"));
+  const auto policy = decode_charging_policy(bytes("00000001 00000000"));
+  ASSERT_TRUE(policy);
+  EXPECT_TRUE(policy->has_input);
+  EXPECT_FALSE(policy->has_output);
+  EXPECT_FALSE(decode_charging_policy(bytes("00000001")));
+}
+
+TEST(PlayerPayload, tags_and_links_have_counted_names) {
+  EXPECT_EQ(encode_tags({"E2"}), bytes("00000001 00000001 00000000 00000002 00000002 45320000"));
+  EXPECT_EQ(encode_tags({}), bytes("00000000 00000000"));
+  EXPECT_EQ(encode_links({{"a", "lab", 2442, -40}}),
+            bytes("00000001 00000001  00000002 00000002 61000000  00000001 00000001 00000000  00000004 00000004 6c616200 "
+                  "00000003 0000098a 00000000 000000d8 000000d8 00000000 "
+                  "00000000 00000000 00000003 00000001 00000000 00000000 00000000  00000002 00000002 61000000"));
+}
+
+TEST(PlayerPayload, hypotheses_have_their_covariances_in_the_order_of_the_wire) {
+  Hypothesis one{{1, 2, 0}, {1, 2, 3, 4, 5, 6}, 0.5};
+  EXPECT_EQ(
+      encode_hypotheses(0, {one}),
+      bytes("00000000 0000000000000000 00000001 00000001 3ff0000000000000 4000000000000000 0000000000000000 "
+            "3ff0000000000000 4000000000000000 4008000000000000 4010000000000000 4014000000000000 4018000000000000 3fe0000000000000"));
+  EXPECT_EQ(encode_particles({one}), bytes("3ff0000000000000 4000000000000000 0000000000000000 3ff0000000000000 00000001 00000001 "
+                                           "3ff0000000000000 4000000000000000 0000000000000000 3fe0000000000000"));
+}
+
 TEST(PlayerAddress, names_and_codes) {
   EXPECT_EQ(to_text(Address{Interface::ranger, 1}), "ranger:1");
   EXPECT_EQ(to_text(Address{static_cast<Interface>(7), 0}), "blobfinder:0");

@@ -97,7 +97,9 @@ def gps():
 
 
 def bumper():
-    up("RTCBumper", "robot::bumper")
+    up("RTCBumper", "robot::bumper", beside=("DeviceProbe",))
+    rig.rtse("con", "DeviceProbe0:bumper", "RTCBumper0:bumper")
+    call("bumper")
     await_("a contact with the floor", lambda: sample("RTCBumper0:contact")["data"] == [True])
 
     def weight():
@@ -244,6 +246,42 @@ def meters():
     close([field["x"], field["y"], field["z"]], truth("robot::magnetometer")["field"], 1e-7)
     pose = sample("RTCTruth0:pose")["data"]
     close([pose["position"]["x"], pose["position"]["y"], pose["position"]["z"], pose["orientation"]["y"]], [-4, 3, 0.15, 0.7], 0.02)
+
+
+# Each sensor of the world that does not look, against what its iface says of the same moment.
+def others():
+    rig.server(world=f"{sys.argv[4]}/worlds/power.sdf")
+    rig.naming()
+    devices = {"RTCPower": "rover::battery", "RTCDvl": "diver::dvl", "RTCAirSpeed": "glider::air_speed", "RTCIns": "rover::ins", "RTCRfid": "rover::rfid",
+               "RTCWireless": "rover::wireless", "RTCWheels": "rover::wheels", "RTCLocalization": "rover::localization"}
+    rig.host(*(device(component, f"conf.default.device_id={iface}") for component, iface in devices.items()), "DeviceProbe")
+    for component in devices:
+        rig.there(f"{component}0")
+        rig.rtse("act", f"{component}0")
+    battery = truth("rover::battery")
+    close([sample(f"RTCPower0:{port}")["data"] for port in ("voltage", "current", "level")], [battery[key] for key in ("voltage", "current", "level")], 1e-6)
+    assert sample("RTCPower0:state")["data"] == 0
+    rig.rtse("inject", "RTCPower0:charger", json.dumps({"tm": {"sec": 0, "nsec": 0}, "data": True}))
+    await_("a battery that is charged", lambda: sample("RTCPower0:state")["data"] == 2 and sample("RTCPower0:current")["data"] < -0.5)
+    rig.rtse("deact", "RTCPower0")
+    await_("a charger that is disconnected", lambda: truth("rover::battery")["state"] == 0)
+    velocity = sample("RTCDvl0:velocity")["data"]
+    close([velocity["vx"], velocity["vy"], velocity["vz"]], [0.3, 0, 0], 0.05)
+    ranges = sample("RTCDvl0:ranges")["data"]
+    assert len(ranges) == 4 and min(ranges) > 3.8 / math.cos(math.radians(29)) - 0.1 and abs(sample("RTCDvl0:range")["data"] - min(ranges)) < 0.1, ranges
+    close([sample("RTCAirSpeed0:pressure")["data"], sample("RTCAirSpeed0:temperature")["data"]], [truth("glider::air_speed")["pressure"], 288.15 - 0.0065 * 35], 1)
+    position = sample("RTCIns0:position")
+    close([position["latitude"], position["longitude"]], [36.06, 140.13], 2e-5)
+    assert abs(position["altitude"] - 25.3) < 0.1 and abs(position["orientation"]["y"]) < 0.1, position
+    assert sample("RTCRfid0:tags")["data"] == ["E200-0017"]
+    rig.rtse("con", "DeviceProbe0:rfid", "RTCRfid0:rfid")
+    call("tag")
+    assert sample("RTCWireless0:essids")["data"] == ["lab"] and -60 < sample("RTCWireless0:levels")["data"][0] < -30
+    assert sample("RTCWheels0:ticks")["data"] == [0, 0] or len(sample("RTCWheels0:angles")["data"]) == 2
+    best = sample("RTCLocalization0:pose")["data"]
+    close([best["position"]["x"], best["position"]["y"], best["heading"]], [0, 0, 0], 0.6)
+    hypotheses = sample("RTCLocalization0:hypotheses")["hypotheses"]
+    assert len(hypotheses) == 3 and abs(sum(one["weight"] for one in hypotheses) - 1) < 1e-9, hypotheses
 
 
 def simulation():

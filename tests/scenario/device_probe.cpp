@@ -4,10 +4,12 @@
 #include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
+#include <rtm/ext/BumperSkel.h>
 #include <rtm/ext/CameraSkel.h>
 #include <rtm/ext/GPSSkel.h>
 #include <rtm/ext/IMUSkel.h>
 #include <rtm/ext/OdometrySkel.h>
+#include <rtm/ext/RFIDSkel.h>
 #include <rtm/ext/RangerSkel.h>
 #include <rtm/ext/VelocityControlSkel.h>
 
@@ -31,6 +33,8 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
         camera_port_("camera"),
         imu_port_("imu"),
         gps_port_("gps"),
+        rfid_port_("rfid"),
+        bumper_port_("bumper"),
         drive_port_("drive") {}
 
   RTC::ReturnCode_t onInitialize() override {
@@ -38,9 +42,11 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     camera_port_.registerConsumer("camera", "RTC::Camera", camera_);
     imu_port_.registerConsumer("imu", "RTC::IMU", imu_);
     gps_port_.registerConsumer("gps", "RTC::GPS", gps_);
+    rfid_port_.registerConsumer("rfid", "RTC::RFID", rfid_);
+    bumper_port_.registerConsumer("bumper", "RTC::Bumper", bumper_);
     drive_port_.registerConsumer("odometry", "RTC::Odometry2D", odometry_);
     drive_port_.registerConsumer("velocity_control", "RTC::VelocityControl2D", velocity_);
-    for (auto* port : {&ranger_port_, &camera_port_, &imu_port_, &gps_port_, &drive_port_}) addPort(*port);
+    for (auto* port : {&ranger_port_, &camera_port_, &imu_port_, &gps_port_, &rfid_port_, &bumper_port_, &drive_port_}) addPort(*port);
     bindParameter("call", call_, "");
     return RTC::RTC_OK;
   }
@@ -59,6 +65,12 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
         {"sonar", [this] { return is_sonar(); }},
         {"camera", [this] { return is_camera(); }},
         {"place", [this] { return is_at(imu_->GetGeometry(), 0.1) && is_at(gps_->GetGeometry(), 0.2); }},
+        {"tag", [this] { return is_tag(); }},
+        {"bumper",
+         [this] {
+           const RTC::BumperGeometry shape = bumper_->GetGeometry();
+           return is_near(shape.size.l, 0.3) && is_near(shape.size.h, 0.3) && is_near(shape.roc, 0);
+         }},
         {"odometry",
          [this] {
            return odometry_->SetOdometry({{7, -3}, 1}), true;
@@ -107,14 +119,33 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
            is_near(info.principalPoint.y, 8) && is_near(info.k1, -0.1) && is_near(info.p2, 0.01) && is_at(camera_->GetGeometry(), 0);
   }
 
+  // Of worlds/power.sdf; its data cannot be written, and there is no other one.
+  bool is_tag() {
+    const RTC::RFIDTagData_var data = rfid_->Read("E200-0017");
+    const std::string text(data->get_buffer(), data->get_buffer() + data->length());
+    try {
+      rfid_->Write("E200-0017", data);
+      return false;
+    } catch (const CORBA::NO_PERMISSION&) {
+    }
+    try {
+      RTC::RFIDTagData_var other = rfid_->Read("other");
+      return false;
+    } catch (const CORBA::BAD_PARAM&) {
+    }
+    return text == "shelf 3" && is_near(rfid_->GetGeometry().pose.position.z, 0.3);
+  }
+
   static bool is_at(const RTC::Geometry3D& geometry, double x) { return is_near(geometry.pose.position.x, x); }
 
   std::string call_;
-  RTC::CorbaPort ranger_port_, camera_port_, imu_port_, gps_port_, drive_port_;
+  RTC::CorbaPort ranger_port_, camera_port_, imu_port_, gps_port_, rfid_port_, bumper_port_, drive_port_;
   RTC::CorbaConsumer<RTC::Ranger> ranger_;
   RTC::CorbaConsumer<RTC::Camera> camera_;
   RTC::CorbaConsumer<RTC::IMU> imu_;
   RTC::CorbaConsumer<RTC::GPS> gps_;
+  RTC::CorbaConsumer<RTC::RFID> rfid_;
+  RTC::CorbaConsumer<RTC::Bumper> bumper_;
   RTC::CorbaConsumer<RTC::Odometry2D> odometry_;
   RTC::CorbaConsumer<RTC::VelocityControl2D> velocity_;
 };

@@ -455,4 +455,96 @@ def storm():
         rig.is_alive()
 
 
-run(identity, configure, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)
+# What does not look: a battery, a charger, tags, transmitters, an estimate; the ports are those of a configuration file of Player.
+def power():
+    with Rig() as rig:
+        rig.sim("--rtf", "4", world=f"{source}/worlds/power.sdf")
+        with open(f"{rig.work}/robots.cfg", "w") as file:
+            file.write('''
+driver ( name "stage" provides ["0:simulation:0"] plugin "stageplugin" worldfile "power.world" )
+driver ( name "stage" provides ["0:position2d:0" "0:power:0"] model "rover" )
+driver ( name "amcl" provides ["localize:1"] requires ["position2d:0"] )
+''')
+        port = rig.gateway("--config", f"{rig.work}/robots.cfg", robots=1)[0]
+        assert 'driver "amcl" is not started here; not served: localize:1' in rig.log(rig.process), rig.log(rig.process)
+        client, driver = Client(port), Client(port)
+        client.subscribe(POWER)
+        state = lambda payload: struct.unpack(">I4fi", payload)
+        valid, volts, percent, joules, watts, charging = state(client.read_until(POWER))
+        assert valid == 31 and abs(percent - 100 * 1.18 / 1.2009) < 0.01 and abs(volts - 12.592) < 1e-3 and charging == -1 and watts == 0, (volts, percent)
+        driver.subscribe(POSITION2D)
+        driver.command(POSITION2D, 0, 1, velocity(0.1, 0, 0))
+        used = state(client.read_until(POWER, good=lambda p: state(p)[2] < percent - 0.01 and state(p)[4] < -5))
+        assert used[3] < joules, (used, joules)
+        client.refused(POWER, 0, 1, struct.pack(">II", 1, 0))  # the output cannot be switched off
+        client.refused(POWER, 0, 1, b"")
+        client.demand(POWER, 0, 1, struct.pack(">II", 1, 1))
+        client.read_until(POWER, good=lambda p: state(p)[5] == 1 and state(p)[4] > 0)
+        client.unsubscribe(POWER)
+        client.subscribe(POWER)
+        client.read_until(POWER, good=lambda p: state(p)[5] == -1)
+
+
+def estimates():
+    with Rig() as rig:
+        rig.sim(world=f"{source}/worlds/power.sdf")
+        port = rig.gateway(robots=3)[0]
+        words = dict(word.split("=") for word in rig.lines()[0][2].split())
+        assert words["power:0"] == "rover::battery" and words["gps:0"] == "rover::ins" and words["aio:0"] == "rover::wheels", words
+        client = Client(port)
+        for interface in (LOCALIZE, RFID, WIFI, GPS, AIO):
+            client.subscribe(interface)
+        fields = Fields(client.read_until(LOCALIZE))
+        assert fields.take("I") == 0 and fields.take("d") > 0
+        hypotheses = [fields.take("3d6dd") for _ in range(fields.count())]
+        fields.finish()
+        assert len(hypotheses) == 3 and abs(sum(one[9] for one in hypotheses) - 1) < 1e-9, hypotheses
+        assert all(abs(one[0]) < 0.6 and abs(one[3] - 0.01) < 1e-9 and abs(one[5] - 0.0025) < 1e-9 for one in hypotheses), hypotheses
+        assert len(client.demand(LOCALIZE, 0, 2)) == 32 + 8 + 3 * 32
+        client.refused(LOCALIZE, 0, 1, struct.pack(">9d", *range(9)))
+        fields = Fields(client.read_until(RFID))
+        assert fields.count() == 1 and fields.take("I") == 0 and fields.raw() == b"E200-0017"
+        fields.finish()
+        fields = Fields(client.read_until(WIFI))
+        assert fields.count() == 1 and fields.raw() == b"access_point::radio\0" and fields.raw() == b"\0" and fields.raw() == b"lab\0"
+        _, frequency, _, _, level, _ = fields.take("6I")
+        distance = math.dist((-8, 0, 2), (0, 0, 0.3))
+        assert frequency == 2442 and abs(level - 256 - (19.5 - 20 * math.log10(4 * math.pi * distance * 2.442e9 / 299792458))) < 1, level
+        assert abs(struct.unpack(">2I2i", client.read_until(GPS)[:16])[2] - 36.06e7) < 200
+        assert len(Fields(client.read_until(AIO)).many("f")) == 2
+
+
+# Resets of an imu's orientation, JPEG of a camera, and what can be set of the world.
+def settings():
+    with started_with(meters.replace('type="depth_camera"', 'type="camera"')) as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(IMU)
+        angles = lambda payload: struct.unpack(">9f3d", payload)[9:]
+        client.demand(IMU, 0, 3, struct.pack(">6d", 0, 0, 0, 0.1, -0.2, 1.5))
+        client.read_until(IMU, subtype=4, good=lambda p: all(abs(a - b) < 1e-3 for a, b in zip(angles(p), (0.1, -0.2, 1.5))))
+        client.demand(IMU, 0, 2, struct.pack(">I", 0))
+        client.read_until(IMU, subtype=4, good=lambda p: all(abs(a) < 1e-3 for a in angles(p)))
+        client.refused(IMU, 0, 3, struct.pack(">6d", 0, 0, 0, math.nan, 0, 0))
+
+        client.subscribe(CAMERA)
+        raw = client.read_until(CAMERA)
+        assert struct.unpack(">6I", raw[:24]) == (32, 24, 24, 5, 1, 0)
+        client.demand(CAMERA, 0, 253, text("compression") + struct.pack(">i", 1))
+        fields = Fields(client.read_until(CAMERA, good=lambda p: struct.unpack(">6I", p[:24])[5] == 1))
+        assert fields.take("6I")[:5] == (32, 24, 24, 5, 1) and fields.raw()[:3] == b"\xff\xd8\xff"
+        client.refused(CAMERA, 0, 253, text("quality") + struct.pack(">i", 101))
+
+        def set_property(name, value):
+            return client.request(SIMULATION, 0, 6, text("world") + text(name) + struct.pack(">I", 0) + struct.pack(">II", len(value), len(value)) + value + b"\0" * (-len(value) % 4))[0]
+
+        paused = lambda: json.loads(rig.simctl("--json", "stats"))["paused"]
+        assert set_property("state", b"\0") == ACK and paused()
+        assert set_property("state", b"\1") == ACK and not paused()
+        assert set_property("real_time_factor", struct.pack("=d", 2)) == ACK
+        assert set_property("real_time_factor", struct.pack("=d", math.nan)) == NACK and set_property("gravity", b"\0") == NACK
+        client.subscribe(SIMULATION)
+        client.command(SIMULATION, 0, 3)
+        await_("the refusal", lambda: "SAVE of simulation is ignored" in rig.log(rig.process))
+
+
+run(identity, configure, power, estimates, settings, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)

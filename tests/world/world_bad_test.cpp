@@ -183,7 +183,7 @@ TEST(BadWorld, bad_numbers_cost_the_object_they_stand_in_and_nothing_else) {
        "number of pixels of sensor \"bad\" of link \"l\" of model \"m\" must be at most 67108864, got 1.44e+08"},
       {"<sensor name='bad' type='camera'><camera><horizontal_fov>7</horizontal_fov></camera></sensor>", "field of view"},
       {"<sensor name='bad' type='camera'/>", "has no <camera>"},
-      {"<sensor name='bad' type='rfid'/>", "sensors of type \"rfid\" are not simulated"},
+      {"<sensor name='bad' type='geiger'/>", "sensors of type \"geiger\" are not simulated"},
       {"<sensor name='bad'/>", "has no attribute \"type\""},
       {"<light name='bad' type='laser'/>", "lights of type \"laser\" are not known"},
   };

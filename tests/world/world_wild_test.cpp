@@ -112,10 +112,10 @@ TEST(WildWorlds, elements_that_only_name_topics_and_frames_of_messages_are_no_fi
 
 TEST(WildWorlds, sensors_of_unknown_types_are_one_line_with_all_they_hold) {
   const WorldFiles files;
-  const LoadResult result = files.load(model_of("<sensor name='s' type='air_speed'><air_speed><pressure/></air_speed></sensor>") +
+  const LoadResult result = files.load(model_of("<sensor name='s' type='geiger'><geiger><dose/></geiger></sensor>") +
                                        "<plugin name='gz::sim::systems::AirSpeed' filename='gz-sim-air-speed-system'/>");
   ASSERT_EQ(result.findings.size(), 1U) << all_findings(result);
-  EXPECT_THAT(result.findings[0].text(), HasSubstr("w.sdf:3: sensors of type \"air_speed\" are not simulated"));
+  EXPECT_THAT(result.findings[0].text(), HasSubstr("w.sdf:3: sensors of type \"geiger\" are not simulated"));
 }
 
 TEST(WildWorlds, models_around_a_lost_one_go_with_it_in_one_line) {

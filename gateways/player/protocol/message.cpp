@@ -11,6 +11,7 @@ namespace {
 
 constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::player, "player"},
+    {Interface::power, "power"},
     {Interface::gripper, "gripper"},
     {Interface::position2d, "position2d"},
     {Interface::sonar, "sonar"},
@@ -19,24 +20,25 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::gps, "gps"},
     {Interface::bumper, "bumper"},
     {Interface::aio, "aio"},
+    {Interface::wifi, "wifi"},
+    {Interface::localize, "localize"},
     {Interface::position3d, "position3d"},
     {Interface::simulation, "simulation"},
     {Interface::camera, "camera"},
     {Interface::actarray, "actarray"},
     {Interface::limb, "limb"},
+    {Interface::rfid, "rfid"},
     {Interface::imu, "imu"},
     {Interface::pointcloud3d, "pointcloud3d"},
     {Interface::ranger, "ranger"},
 });
 
 constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>(
-    {{2, "power"},       {7, "blobfinder"},  {9, "audio"},         {10, "fiducial"},
-     {12, "speech"},     {20, "dio"},        {22, "ir"},           {23, "wifi"},
-     {25, "localize"},   {26, "mcom"},       {33, "blinkenlight"}, {42, "map"},
-     {44, "planner"},    {45, "log"},        {49, "joystick"},     {50, "speech_recognition"},
-     {51, "opaque"},     {52, "position1d"}, {55, "graphics2d"},   {56, "rfid"},
-     {57, "wsn"},        {58, "graphics3d"}, {59, "health"},       {63, "vectormap"},
-     {64, "blackboard"}, {65, "stereo"},     {66, "coopobject"}});
+    {{7, "blobfinder"},  {9, "audio"},     {10, "fiducial"},           {12, "speech"}, {20, "dio"},
+     {22, "ir"},         {26, "mcom"},     {33, "blinkenlight"},       {42, "map"},    {44, "planner"},
+     {45, "log"},        {49, "joystick"}, {50, "speech_recognition"}, {51, "opaque"}, {52, "position1d"},
+     {55, "graphics2d"}, {57, "wsn"},      {58, "graphics3d"},         {59, "health"}, {63, "vectormap"},
+     {64, "blackboard"}, {65, "stereo"},   {66, "coopobject"}});
 
 }  // namespace
 

@@ -18,6 +18,7 @@ inline constexpr std::size_t max_message = 8'388'608;  // [bytes] decoded, of wh
 // Codes of interfaces. Others exist; these are served.
 enum class Interface : std::uint16_t {
   player = 1,
+  power = 2,
   gripper = 3,
   position2d = 4,
   sonar = 5,
@@ -26,11 +27,14 @@ enum class Interface : std::uint16_t {
   gps = 13,
   bumper = 14,
   aio = 21,
+  wifi = 23,
+  localize = 25,
   position3d = 30,
   simulation = 31,
   camera = 40,
   actarray = 53,
   limb = 54,
+  rfid = 56,
   imu = 60,
   pointcloud3d = 61,
   ranger = 62,

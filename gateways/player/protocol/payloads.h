@@ -234,7 +234,8 @@ enum class ImageFormat : std::uint32_t { mono8 = 1, mono16 = 2, rgb888 = 5 };
 struct Image {
   std::uint32_t width = 0, height = 0, bits = 0;
   ImageFormat format = ImageFormat::rgb888;
-  std::string pixels;  // rows from the top, without gaps
+  std::string pixels;  // rows from the top, without gaps; or a JPEG file, when it is compressed
+  bool is_compressed = false;
 };
 std::string encode(const Image& image);
 std::string encode_camera_source(std::string_view norm, std::int32_t source);
@@ -278,6 +279,38 @@ struct ImuCalibrated {
   float acceleration[3] = {}, angular_velocity[3] = {}, magnetic_field[3] = {};
 };
 void put(XdrWriter& out, const ImuCalibrated& values);
+
+// ---- power ----
+struct PowerState {
+  float volts = 0, percent = 0, joules = 0, watts = 0;  // stored; negative: taken
+  std::int32_t charging = 0;                            // 1 yes, -1 no, 0 not known
+};
+std::string encode(const PowerState& state);
+struct ChargingPolicy {
+  bool has_input = false, has_output = true;
+};
+std::optional<ChargingPolicy> decode_charging_policy(std::string_view payload);
+
+// ---- rfid ----
+std::string encode_tags(const std::vector<std::string>& ids);
+
+// ---- wifi ----
+struct WifiLink {
+  std::string name;  // of the transmitter, in place of its MAC address
+  std::string essid;
+  std::uint32_t frequency = 0;  // [MHz]
+  int level = 0;                // [dBm]
+};
+std::string encode_links(const std::vector<WifiLink>& links);
+
+// ---- localize ----
+struct Hypothesis {
+  Pose2d mean;
+  double covariance[6] = {};  // xx, yy, aa, xy, ya, xa
+  double weight = 0;
+};
+std::string encode_hypotheses(double time, const std::vector<Hypothesis>& hypotheses);
+std::string encode_particles(const std::vector<Hypothesis>& hypotheses);
 
 // ---- bumper ----
 std::string encode_bumpers(const std::vector<bool>& pressed);

@@ -1,4 +1,6 @@
 // Payloads of sensors.
+#include <algorithm>
+
 #include "protocol/payload_codec.h"
 #include "protocol/payloads.h"
 
@@ -131,7 +133,7 @@ std::string encode(const Image& image) {
     out.bytes().reserve(40 + image.pixels.size());
     for (const std::uint32_t value : {image.width, image.height, image.bits, static_cast<std::uint32_t>(image.format)}) out.u32(value);
     out.u32(1);  // fdiv
-    out.u32(0);  // not compressed
+    out.u32(image.is_compressed ? 1 : 0);
     out.counted_bytes(image.pixels);
   });
 }
@@ -161,6 +163,77 @@ void put(XdrWriter& out, const ImuCalibrated& values) {
   for (const float value : values.acceleration) out.f32(value);
   for (const float value : values.angular_velocity) out.f32(value);
   for (const float value : values.magnetic_field) out.f32(value);
+}
+
+// ---- power, rfid, wifi, localize ----
+
+std::string encode(const PowerState& state) {
+  constexpr std::uint32_t all = 1 | 2 | 4 | 8 | 16;  // values that are valid
+  return written([&](XdrWriter& out) {
+    out.u32(all);
+    for (const float value : {state.volts, state.percent, state.joules, state.watts}) out.f32(value);
+    out.i32(state.charging);
+  });
+}
+
+std::optional<ChargingPolicy> decode_charging_policy(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    const bool has_input = in.boolean();
+    return ChargingPolicy{has_input, in.boolean()};
+  });
+}
+
+std::string encode_tags(const std::vector<std::string>& ids) {
+  return written([&](XdrWriter& out) {
+    out.count(ids.size());
+    for (const std::string& id : ids) {
+      out.u32(0);  // type
+      out.counted_bytes(id);
+    }
+  });
+}
+
+std::string encode_links(const std::vector<WifiLink>& links) {
+  constexpr std::size_t longest = 31;
+  constexpr std::uint32_t mode_master = 3, in_dbm = 1;
+  constexpr int offset = 256;  // of levels [dBm]
+  return written([&](XdrWriter& out) {
+    out.count(links.size());
+    for (const WifiLink& link : links) {
+      out.counted_text(std::string_view(link.name).substr(0, longest));
+      out.counted_text("");  // IP address
+      out.counted_text(std::string_view(link.essid).substr(0, longest));
+      const auto level = static_cast<std::uint32_t>(std::clamp(link.level + offset, 0, offset));
+      for (const std::uint32_t value : {mode_master, link.frequency, 0U, level, level, 0U}) out.u32(value);
+    }
+    for (const std::uint32_t value : {0U, 0U, mode_master, in_dbm, 0U, 0U, 0U}) out.u32(value);
+    out.counted_text(links.empty() ? "" : std::string_view(links.front().name).substr(0, longest));
+  });
+}
+
+std::string encode_hypotheses(double time, const std::vector<Hypothesis>& hypotheses) {
+  return written([&](XdrWriter& out) {
+    out.u32(0);  // observations that wait
+    out.f64(time);
+    out.count(hypotheses.size());
+    for (const Hypothesis& one : hypotheses) {
+      put(out, one.mean);
+      for (const double value : one.covariance) out.f64(value);
+      out.f64(one.weight);
+    }
+  });
+}
+
+std::string encode_particles(const std::vector<Hypothesis>& hypotheses) {
+  return written([&](XdrWriter& out) {
+    put(out, hypotheses.empty() ? Pose2d{} : hypotheses.front().mean);
+    out.f64(hypotheses.empty() ? 0 : hypotheses.front().covariance[0]);
+    out.count(hypotheses.size());
+    for (const Hypothesis& one : hypotheses) {
+      put(out, one.mean);
+      out.f64(one.weight);
+    }
+  });
 }
 
 std::string encode_bumpers(const std::vector<bool>& pressed) {

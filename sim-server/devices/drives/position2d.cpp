@@ -41,7 +41,7 @@ void Position2d::before_step(const Moment& moment) {
       break;
   }
   const auto& followed = halted_at_ ? *halted_at_ : command_;
-  train_->drive(strength_ * followed[0], strength_ * followed[1], motors_enabled_, moment.dt);
+  train_->drive(strength_ * followed[0], strength_ * followed[1], can_drive(), moment.dt);
 }
 
 void Position2d::after_step(const Moment& moment) {
@@ -50,7 +50,7 @@ void Position2d::after_step(const Moment& moment) {
   odometry_[1] += travel.forward * std::sin(odometry_[2] + travel.turn / 2);
   odometry_[2] = wrapped(odometry_[2] + travel.turn);
   velocity_ = {travel.speed, travel.yaw_rate};
-  if (!traction_.follow(motors_enabled_ ? train_->followed() : std::array{0.0, 0.0}, travel, moment.dt)) return;
+  if (!traction_.follow(can_drive() ? train_->followed() : std::array{0.0, 0.0}, travel, moment.dt)) return;
   const std::string line = traction_.look(physics().model_pose(model()));
   if (!line.empty()) base::log(base::Level::warn, writer().name(), "{}", line);
 }
@@ -75,7 +75,7 @@ void Position2d::measure(const Moment&) const {
   out.command[1] = 0;
   out.command[2] = followed[1];
   out.stalled = traction_.is_stalled() ? 1 : 0;
-  out.motors_enabled = motors_enabled_ ? 1 : 0;
+  out.motors_enabled = can_drive() ? 1 : 0;
   out.commanded = is_commanded_ ? 1 : 0;
 }
 
@@ -83,7 +83,7 @@ void Position2d::restart() {
   odometry_ = {0, 0, 0};
   velocity_ = {0, 0};
   command_ = {0, 0};
-  motors_enabled_ = true;
+  motors_enabled_ = has_power_ = true;
   halted_at_.reset();
   traction_.restart();
   train_->reset();
@@ -105,6 +105,11 @@ void Position2d::set_fault(double strength, bool is_halted) {
   strength_ = strength;
   if (!is_halted) halted_at_.reset();
   if (is_halted && !halted_at_) halted_at_ = command_;
+}
+
+bool Position2d::is_working() const {
+  const auto followed = train_->followed();
+  return followed[0] != 0 || followed[1] != 0;
 }
 
 bool Position2d::set_motors(bool enabled) {

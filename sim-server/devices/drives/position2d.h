@@ -21,6 +21,8 @@ class Position2d final : public Sensor {
   void after_step(const Moment& moment) override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;
+  bool is_working() const override;
+  void set_power(bool has_power) override { has_power_ = has_power; }
   // Out of order on purpose: follows this fraction of what is asked for; goes on as it was told last, whatever it is told.
   void set_fault(double strength, bool is_halted);
 
@@ -28,12 +30,13 @@ class Position2d final : public Sensor {
   void measure(const Moment& moment) const override;
   void restart() override;
   void add_state_to(StateHash& hash) const override;
+  bool can_drive() const { return motors_enabled_ && has_power_; }
 
   std::unique_ptr<DriveTrain> train_;
   std::array<double, 2> command_{0, 0};  // vx, va as asked for
   std::array<double, 3> odometry_{0, 0, 0};
   std::array<double, 2> velocity_{0, 0};
-  bool motors_enabled_ = true, is_commanded_ = false;
+  bool motors_enabled_ = true, has_power_ = true, is_commanded_ = false;
   double strength_ = 1;
   std::optional<std::array<double, 2>> halted_at_;  // the command then
   Traction traction_;

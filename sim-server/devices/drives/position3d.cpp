@@ -108,7 +108,7 @@ void Position3d::before_step(const Moment& moment) {
     case shm::CommandChange::none:
       break;
   }
-  if (!motors_enabled_ || is_idle_) return;
+  if (!can_fly() || is_idle_) return;
   const Eigen::Isometry3d pose = physics().model_pose(model());
   const bool is_on_the_way = path_ && !is_commanded_;
   if (is_on_the_way && keep_to_path(moment, pose)) return;
@@ -141,14 +141,14 @@ void Position3d::measure(const Moment&) const {
     out.command[i + 3] = i == 2 ? velocity_[3] : 0;
   }
   out.stalled = velocity_.head<3>().norm() > 0.1 && v.norm() < 0.2 * velocity_.head<3>().norm() ? 1 : 0;
-  out.motors_enabled = motors_enabled_ ? 1 : 0;
+  out.motors_enabled = can_fly() ? 1 : 0;
   out.commanded = is_commanded_ ? 1 : 0;
 }
 
 // From now on it is moved. Until then it falls and rolls as any other body does.
 void Position3d::begin() {
   is_idle_ = false;
-  world().physics.set_gravity(model(), !motors_enabled_);
+  world().physics.set_gravity(model(), !can_fly());
 }
 
 void Position3d::restart() {
@@ -159,7 +159,7 @@ void Position3d::restart() {
   velocity_.setZero();
   goal_.reset();
   path_time_ = 0;
-  motors_enabled_ = true;
+  motors_enabled_ = has_power_ = true;
   odometry_origin_ = physics().model_pose(model()).inverse();
 }
 
@@ -178,9 +178,14 @@ bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
 // Without its motors it falls.
 bool Position3d::set_motors(bool enabled) {
   motors_enabled_ = enabled;
-  world().physics.set_gravity(model(), !enabled || is_idle_);
+  world().physics.set_gravity(model(), !can_fly() || is_idle_);
   velocity_.setZero();
   return true;
+}
+
+void Position3d::set_power(bool has_power) {
+  has_power_ = has_power;
+  (void)set_motors(motors_enabled_);
 }
 
 }  // namespace sim

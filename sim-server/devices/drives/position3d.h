@@ -22,11 +22,14 @@ class Position3d final : public Sensor {
   void before_step(const Moment& moment) override;
   bool set_odometry(const Eigen::Isometry3d& pose) override;
   bool set_motors(bool enabled) override;
+  bool is_working() const override { return !velocity_.isZero(); }
+  void set_power(bool has_power) override;
 
  private:
   void measure(const Moment& moment) const override;
   void restart() override;
   void begin();
+  bool can_fly() const { return motors_enabled_ && has_power_; }
   void add_state_to(StateHash& hash) const override;
   Eigen::Vector4d towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const;
   Eigen::Vector4d to_goal(const Eigen::Isometry3d& pose) const;
@@ -41,7 +44,7 @@ class Position3d final : public Sensor {
   Eigen::Isometry3d odometry_origin_ = Eigen::Isometry3d::Identity();  // odometry = origin * true pose
   std::optional<Path> path_;
   double path_time_ = 0;  // how far along the path it is; stands still while it is off the path
-  bool motors_enabled_ = true, is_commanded_ = false, is_kinematic_ = false;
+  bool motors_enabled_ = true, has_power_ = true, is_commanded_ = false, is_kinematic_ = false;
   bool is_idle_ = false;  // nobody has commanded it yet
 };
 

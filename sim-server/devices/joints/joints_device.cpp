@@ -209,7 +209,8 @@ base::Result<std::size_t> JointsDevice::find(std::string_view joint) const {
 
 void JointsDevice::set_fault(std::size_t joint, double strength, bool is_halted) {
   Axis& axis = axes_[joint];
-  axis.servo.set_strength(strength);
+  axis.strength = strength;
+  axis.servo.set_strength(has_power_ ? strength : 0);
   axis.is_halted = is_halted;
   if (is_halted || !axis.told) return;
   const Told told = *std::exchange(axis.told, std::nullopt);
@@ -217,10 +218,17 @@ void JointsDevice::set_fault(std::size_t joint, double strength, bool is_halted)
   order(axis, is_there ? told.owner : 0, is_there ? told.order : JointOrder{.mode = JointMode::brake});
 }
 
+void JointsDevice::set_power(bool has_power) {
+  has_power_ = has_power;
+  for (Axis& axis : axes_) axis.servo.set_strength(has_power_ ? axis.strength : 0);
+}
+
 void JointsDevice::restart() {
+  has_power_ = true;
   for (Axis& axis : axes_) {
     axis.told.reset();
     axis.servo.reset();
+    axis.strength = 1;
     axis.owner = 0;
     axis.was_within = true;
   }

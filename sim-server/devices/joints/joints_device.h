@@ -30,6 +30,9 @@ class JointsDevice final : public Sensor {
   // From the next step on: the part of its effort that a joint has left, and whether it goes on as it was told last. What it is told
   // meanwhile counts when that ends.
   void set_fault(std::size_t joint, double strength, bool is_halted);
+  bool is_working() const override { return is_active_; }
+  // Without power motors have no effort; brakes hold.
+  void set_power(bool has_power) override;
 
  private:
   struct Told {
@@ -40,6 +43,7 @@ class JointsDevice final : public Sensor {
     ListedJoint listed;
     JointServo servo;
     std::uint64_t owner = 0;  // the client that commands it; 0: none
+    double strength = 1;      // of a fault
     bool was_within = true;   // of the limits, the last command; said once
     bool is_halted = false;
     std::optional<Told> told{};  // while it was halted
@@ -59,6 +63,7 @@ class JointsDevice final : public Sensor {
   std::vector<Axis> axes_;
   JointDynamics dynamics_;
   bool is_active_ = false;  // a joint has been commanded
+  bool has_power_ = true;
   std::uint32_t owners_seen_ = 0;
   std::vector<double> positions_, gravity_;
 };

@@ -21,7 +21,7 @@ bool has_ranges(const shm::IfaceWriter& writer) { return writer.type() == shm::I
 
 // What is measured; not what the simulator says of itself beside it.
 bool is_measured(const shm::Field& field) {
-  return field.kind == shm::Field::Kind::f64 && !field.name.starts_with("true") && field.name != "command";
+  return field.kind == shm::Field::Kind::f64 && !field.name.starts_with("true") && field.name != "command" && field.name != "covariance";
 }
 
 bool has_joints(const shm::IfaceWriter& writer) { return writer.type() == shm::IfaceType::joints; }

@@ -16,6 +16,16 @@ MadeDevice make_force_torque(const SensorSite& site);
 MadeDevice make_altimeter(const SensorSite& site);
 MadeDevice make_magnetometer(const SensorSite& site);
 MadeDevice make_air_pressure(const SensorSite& site);
+MadeDevice make_dvl(const SensorSite& site);
+MadeDevice make_air_speed(const SensorSite& site);
+MadeDevice make_ins(const SensorSite& site);
+MadeDevice make_rfid(const SensorSite& site);
+MadeDevice make_wireless(const SensorSite& site);
+MadeDevice make_wheels(const SensorSite& site);
+MadeDevice make_localization(const SensorSite& site);
+
+// A joint that the sensor names and the model does not have, or that turns about no single axis; empty: none. Of wheel encoders.
+std::string missing_wheel(const ModelDef& model, const SensorDef& sensor);
 
 struct SensorMaker {
   SensorKind kind;
@@ -32,6 +42,13 @@ inline constexpr std::array sensor_makers{
     SensorMaker{SensorKind::altimeter, make_altimeter},
     SensorMaker{SensorKind::magnetometer, make_magnetometer},
     SensorMaker{SensorKind::air_pressure, make_air_pressure},
+    SensorMaker{SensorKind::dvl, make_dvl},
+    SensorMaker{SensorKind::air_speed, make_air_speed},
+    SensorMaker{SensorKind::ins, make_ins},
+    SensorMaker{SensorKind::rfid, make_rfid},
+    SensorMaker{SensorKind::wireless_receiver, make_wireless},
+    SensorMaker{SensorKind::wheels, make_wheels},
+    SensorMaker{SensorKind::localization, make_localization},
 };
 
 }  // namespace sim

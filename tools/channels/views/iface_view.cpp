@@ -9,39 +9,11 @@
 #include <span>
 
 #include "base/jpeg.h"
-#include "channels/ros_schema.h"
+#include "channels/views/view_parts.h"
 
 namespace channels {
 
 namespace {
-
-template <class Message>
-Channel channel(const shm::Iface& iface, const std::string& suffix = "") {
-  return {topic_of(iface.type(), iface.name()) + suffix,
-          "cdr",
-          channels::schema_of<Message>(),
-          {{"iface", iface.name()}, {"iface_type", std::string(shm::to_text(iface.type()))}}};
-}
-
-// A sensor on its model; its frame has the name of the iface.
-template <class Info>
-void place(IfaceView& view, const shm::Iface& iface) {
-  const Info& info = iface.info<Info>();
-  view.frames.push_back(transform_of({}, text_of(info.model), iface.name(), info.pose));
-  view.rate = info.rate;
-}
-
-// A view with one channel: `say` makes the message of the latest sample.
-template <class Message, class Info, class Sample, class Say>
-IfaceView simple_view(const shm::Iface& iface, Say say) {
-  IfaceView view;
-  view.channels = {channel<Message>(iface)};
-  place<Info>(view, iface);
-  view.tell = [say](shm::Iface& from, const shm::HeldFrame*, Said& said) {
-    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from, from.name()));
-  };
-  return view;
-}
 
 // ---- range finders ----
 
@@ -312,6 +284,15 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
       return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, ros::pressure_message);
     case joints:
       return joints_view(iface);
+    case battery:
+    case dvl:
+    case air_speed:
+    case ins:
+    case rfid:
+    case wireless:
+    case wheels:
+    case localization:
+      return plain_view(iface);
     case simulation:
     case truth:
       break;
