@@ -1,5 +1,6 @@
 // Batteries, sound, radio, wheels and fused estimates as channels.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numbers>
