@@ -1,6 +1,6 @@
 // The common part of device components with one iface: the configuration server_id and device_id, attaching on activation, detaching on
 // deactivation, changes of both while running, and the newest sample in onExecute. Ports have the names that the parameter port_names gives
-// them when the component is created ("range:ranges,ranger:svc"), so that it can stand in for a component of another maker.
+// them when the component is created ("range:ranges,ranger:svc"), so that it can replace a third-party component.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>
