@@ -1,5 +1,9 @@
 #include "iface_component.h"
 
+#include <base/text.h>
+
+#include <string_view>
+
 namespace iface {
 
 IfaceComponent::IfaceComponent(RTC::Manager* manager, const Specification& specification, shm::IfaceType type, bool subscribe)
@@ -13,6 +17,33 @@ Say IfaceComponent::say() {
       RTC_INFO(("%s", line.c_str()));
     }
   };
+}
+
+// Its own, unless port_names has another one; a pair that is none is skipped with a line.
+std::string IfaceComponent::port_name(const std::string& own) {
+  std::string name = own;
+  for (const std::string& pair : base::split_list(getProperties().getProperty("conf.default.port_names"))) {
+    const std::string_view words = base::trim(pair);
+    const auto colon = words.find(':');
+    if (words.empty()) continue;
+    if (colon == std::string_view::npos || colon == 0 || colon + 1 == words.size()) {
+      RTC_WARN(("port_names: expected OWN:OTHER, got \"%s\"", pair.c_str()));
+    } else if (base::trim(words.substr(0, colon)) == own) {
+      name = base::trim(words.substr(colon + 1));
+    }
+  }
+  return name;
+}
+
+bool IfaceComponent::addInPort(const char* name, RTC::InPortBase& port) {
+  return DataFlowComponentBase::addInPort(port_name(name).c_str(), port);
+}
+bool IfaceComponent::addOutPort(const char* name, RTC::OutPortBase& port) {
+  return DataFlowComponentBase::addOutPort(port_name(name).c_str(), port);
+}
+bool IfaceComponent::addPort(RTC::PortBase& port) {
+  port.setName(port_name(port.getName()).c_str());
+  return DataFlowComponentBase::addPort(port);
 }
 
 void IfaceComponent::bindDevice() {

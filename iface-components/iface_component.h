@@ -1,5 +1,6 @@
 // The common part of device components with one iface: the configuration server_id and device_id, attaching on activation, detaching on
-// deactivation, changes of both while running, and the newest sample in onExecute.
+// deactivation, changes of both while running, and the newest sample in onExecute. Ports have the names that the parameter port_names gives
+// them when the component is created ("range:ranges,ranger:svc"), so that it can replace a third-party component.
 #pragma once
 
 #include <rtm/DataFlowComponentBase.h>
@@ -25,6 +26,10 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   RTC::ReturnCode_t onFinalize() override;
 
  protected:
+  // As those of the base, which they hide.
+  bool addInPort(const char* name, RTC::InPortBase& port);
+  bool addOutPort(const char* name, RTC::OutPortBase& port);
+  bool addPort(RTC::PortBase& port);
   // To be called in onInitialize: server_id and device_id, and a parameter of the type's own. Defaults are those of the specification.
   void bindDevice();
   template <class Value>
@@ -46,6 +51,7 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   void publish_newest();
 
  private:
+  std::string port_name(const std::string& own);
   Device configured() const { return {server_id_, device_id_}; }
   bool attach();
   void detach();

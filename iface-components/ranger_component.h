@@ -59,6 +59,7 @@ class RangerComponent : public IfaceComponent {
   // To be called in onInitialize.
   void addRangerPort();
   RangerService& service() { return service_; }
+  const RangerService& service() const { return service_; }
 
  private:
   RTC::CorbaPort service_port_;

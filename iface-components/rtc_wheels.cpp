@@ -25,7 +25,7 @@ RTC::ReturnCode_t RTCWheels::onInitialize() {
 }
 
 void RTCWheels::publish(const shm::Iface& device) {
-  const auto encoders = device.elements<shm::Encoder>();
+  const auto encoders = device.elements<shm::WheelState>();
   angles_.tm = speeds_.tm = ticks_.tm = iface::to_time(device.sample<shm::WheelsSample>().stamp.sim_time_ns);
   const auto count = static_cast<CORBA::ULong>(encoders.size());
   angles_.data.length(count);

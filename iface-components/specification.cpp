@@ -38,6 +38,7 @@ coil::Properties properties_of(const Specification& specification) {
   const auto server = std::to_string(default_server()), range = "0<=x<=" + std::to_string(highest_server);
   std::vector<Parameter> parameters = {{"server_id", server.c_str(), "int", "spin", range.c_str()}};
   if (*specification.device) parameters.push_back({"device_id", specification.device, "string", "text"});
+  if (*specification.device) parameters.push_back({"port_names", "", "string", "text"});
   parameters.insert(parameters.end(), specification.parameters.begin(), specification.parameters.end());
 
   coil::Properties properties;

@@ -60,7 +60,7 @@ using WirelessSample = ::rtmsim_wireless_sample;
 using WheelsInfo = ::rtmsim_wheels_info;
 using Wheel = ::rtmsim_wheel;
 using WheelsSample = ::rtmsim_wheels_sample;
-using Encoder = ::rtmsim_encoder;
+using WheelState = ::rtmsim_wheel_state;
 using LocalizationInfo = ::rtmsim_localization_info;
 using Hypothesis = ::rtmsim_hypothesis;
 using LocalizationSample = ::rtmsim_localization_sample;
@@ -356,8 +356,8 @@ inline constexpr std::array wheels_info{field<&WheelsInfo::model>("model"), fiel
                                         field<&WheelsInfo::ticks>("ticks"), field<&WheelsInfo::count>("count"), followers("wheels", 0)};
 inline constexpr std::array wheel_fields{field<&Wheel::joint>("joint"), field<&Wheel::radius>("radius", "m")};
 inline constexpr std::array wheels_sample{field<&WheelsSample::stamp>("stamp"), followers("wheels", 0)};
-inline constexpr std::array encoder_fields{field<&Encoder::ticks>("ticks"), field<&Encoder::angle>("angle", "rad"),
-                                           field<&Encoder::speed>("speed", "rad/s")};
+inline constexpr std::array wheel_state_fields{field<&WheelState::ticks>("ticks"), field<&WheelState::angle>("angle", "rad"),
+                                               field<&WheelState::speed>("speed", "rad/s")};
 
 inline constexpr std::array localization_info{
     field<&LocalizationInfo::model>("model"), field<&LocalizationInfo::rate>("rate", "Hz"), field<&LocalizationInfo::capacity>("capacity"),
@@ -606,7 +606,7 @@ inline constexpr std::array iface_types{
              .count = detail::first_word,
              .most = detail::most_others,
              .info_tail = {1, detail::size<Wheel, 104>(), detail::wheel_fields},
-             .sample_tail = {1, detail::size<Encoder, 24>(), detail::encoder_fields},
+             .sample_tail = {1, detail::size<WheelState, 24>(), detail::wheel_state_fields},
              .filled = detail::part<&WheelsSample::count>(),
              .is_always_full = true},
     IfaceRow{.type = IfaceType::localization,

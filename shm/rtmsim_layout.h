@@ -640,7 +640,7 @@ typedef struct {
   double radius; /* [m]; 0: the wheel is not round */
 } rtmsim_wheel;
 
-/* `count` encoders (rtmsim_encoder) follow. */
+/* `count` states (rtmsim_wheel_state) follow. */
 typedef struct {
   rtmsim_stamp stamp;
   uint32_t count;
@@ -651,7 +651,7 @@ typedef struct {
   double ticks; /* whole; since the start */
   double angle; /* that they stand for [rad] */
   double speed; /* of the wheel [rad/s] */
-} rtmsim_encoder;
+} rtmsim_wheel_state;
 
 typedef struct {
   uint32_t capacity;

@@ -24,7 +24,7 @@ endforeach()
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
 rtmsim_component(DeviceProbe scenario/device_probe.cpp)
-foreach(case sonar imu gps bumper ranger places point_cloud odometry goals meters others simulation motors wrong_device camera_formats camera_parameters camera_service camera_jpeg depth_camera drone
+foreach(case sonar imu gps bumper ranger places point_cloud odometry goals meters others names simulation motors wrong_device camera_formats camera_parameters camera_service camera_jpeg depth_camera drone
     wrong_camera_device restarted_server)
   add_test(NAME components.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/components.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

@@ -26,7 +26,7 @@ std::vector<double> values_of(const shm::Iface& iface) {
     }
     case shm::IfaceType::wheels: {
       std::vector<double> angles;
-      for (const shm::Encoder& encoder : iface.elements<shm::Encoder>()) angles.push_back(encoder.angle);
+      for (const shm::WheelState& encoder : iface.elements<shm::WheelState>()) angles.push_back(encoder.angle);
       return angles;
     }
     default: {

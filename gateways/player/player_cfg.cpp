@@ -26,7 +26,7 @@ struct Token {
 };
 
 // Thrown by the readers below, caught in read_player_config.
-struct Wrong {
+struct CfgError {
   std::string place, what;
 };
 
@@ -54,7 +54,7 @@ std::vector<Token> tokens_of(const std::string& text, const std::string& file) {
       ++i;
     } else if (c == '"') {
       const auto end = text.find_first_of("\"\n", i + 1);
-      if (end == std::string::npos || text[end] == '\n') throw Wrong{place(), "a text has no closing quote"};
+      if (end == std::string::npos || text[end] == '\n') throw CfgError{place(), "a text has no closing quote"};
       tokens.push_back({Token::Kind::text, text.substr(i + 1, end - i - 1), place()});
       i = end + 1;
     } else if (std::string_view(" \t\r\n").find(c) != std::string_view::npos) {
@@ -79,10 +79,10 @@ class Reader {
  private:
   void read_file(const std::filesystem::path& path, int depth) {
     std::ifstream file(path);
-    if (!file) throw Wrong{path.string(), "can't be read"};
+    if (!file) throw CfgError{path.string(), "can't be read"};
     std::stringstream text;
     text << file.rdbuf();
-    if (text.str().size() > largest_file) throw Wrong{path.string(), "is larger than 4 MiB"};
+    if (text.str().size() > largest_file) throw CfgError{path.string(), "is larger than 4 MiB"};
     auto tokens = tokens_of(text.str(), path.string());
     std::size_t at = 0;
     while (at < tokens.size()) read_statement(tokens, at, path, depth);
@@ -91,11 +91,11 @@ class Reader {
   void read_statement(const std::vector<Token>& tokens, std::size_t& at, const std::filesystem::path& path, int depth) {
     const Token& first = tokens[at];
     if (first.kind != Token::Kind::word)
-      throw Wrong{first.place, "expected a section as in driver ( ... ), got " + base::in_quotes(first.value)};
+      throw CfgError{first.place, "expected a section as in driver ( ... ), got " + base::in_quotes(first.value)};
     if (first.value == "include") {
       if (at + 1 >= tokens.size() || tokens[at + 1].kind != Token::Kind::text)
-        throw Wrong{first.place, "include: expected a file in quotes"};
-      if (depth >= deepest_include) throw Wrong{first.place, "include: files include each other"};
+        throw CfgError{first.place, "include: expected a file in quotes"};
+      if (depth >= deepest_include) throw CfgError{first.place, "include: files include each other"};
       const std::string name = tokens[at + 1].value;
       at += 2;
       return read_file(path.parent_path() / name, depth + 1);
@@ -108,7 +108,7 @@ class Reader {
 
   void read_definition(const std::vector<Token>& tokens, std::size_t& at) {
     const Token& first = tokens[at];
-    if (at + 3 >= tokens.size() || !tokens[at + 3].is('(')) throw Wrong{first.place, "expected define NAME driver ( ... )"};
+    if (at + 3 >= tokens.size() || !tokens[at + 3].is('(')) throw CfgError{first.place, "expected define NAME driver ( ... )"};
     const std::string name = tokens[at + 1].value, base = tokens[at + 2].value;
     at += 3;
     Driver macro = base == "driver" ? Driver{} : defined_[base];
@@ -131,16 +131,16 @@ class Reader {
     const Token& open = tokens[at++];
     while (at < tokens.size() && !tokens[at].is(')')) {
       const Token& key = tokens[at++];
-      if (key.kind != Token::Kind::word) throw Wrong{key.place, "expected a key, got " + base::in_quotes(key.value)};
+      if (key.kind != Token::Kind::word) throw CfgError{key.place, "expected a key, got " + base::in_quotes(key.value)};
       driver.keys[key.value] = read_value(tokens, at, key);
     }
-    if (at >= tokens.size()) throw Wrong{open.place, "a bracket ( is not closed"};
+    if (at >= tokens.size()) throw CfgError{open.place, "a bracket ( is not closed"};
     ++at;
   }
 
   std::vector<std::string> read_value(const std::vector<Token>& tokens, std::size_t& at, const Token& key) {
     if (at >= tokens.size() || tokens[at].is(')') || tokens[at].is(']'))
-      throw Wrong{key.place, "key " + base::in_quotes(key.value) + " has no value"};
+      throw CfgError{key.place, "key " + base::in_quotes(key.value) + " has no value"};
     if (tokens[at].is('(')) {  // a section inside: nothing that is served has one
       Driver inner;
       read_keys(tokens, at, inner);
@@ -149,10 +149,10 @@ class Reader {
     if (!tokens[at].is('[')) return {tokens[at++].value};
     std::vector<std::string> list;
     for (++at; at < tokens.size() && !tokens[at].is(']'); ++at) {
-      if (tokens[at].kind == Token::Kind::mark) throw Wrong{tokens[at].place, "a list [ is not closed"};
+      if (tokens[at].kind == Token::Kind::mark) throw CfgError{tokens[at].place, "a list [ is not closed"};
       list.push_back(tokens[at].value);
     }
-    if (at >= tokens.size()) throw Wrong{key.place, "a list [ is not closed"};
+    if (at >= tokens.size()) throw CfgError{key.place, "a list [ is not closed"};
     ++at;
     return list;
   }
@@ -167,7 +167,7 @@ struct CfgAddress {
   std::string interface;
   std::uint16_t index = 0;
 };
-CfgAddress address_of(const std::string& text, const std::string& place) {
+CfgAddress cfg_address_of(const std::string& text, const std::string& place) {
   std::vector<std::string> parts;
   std::stringstream in(text);
   for (std::string part; std::getline(in, part, ':');) parts.push_back(part);
@@ -178,7 +178,7 @@ CfgAddress address_of(const std::string& text, const std::string& place) {
   const auto size = parts.size();
   const auto index = size >= 2 ? number(parts[size - 1]) : std::nullopt;
   const auto port = size >= 3 && !parts[size - 3].empty() ? number(parts[size - 3]) : std::optional(usual_port);
-  if (!index || !port || size > 5) throw Wrong{place, "expected an address as in laser:0 or 6665:laser:0, got " + base::in_quotes(text)};
+  if (!index || !port || size > 5) throw CfgError{place, "expected an address as in laser:0 or 6665:laser:0, got " + base::in_quotes(text)};
   return {*port, parts[size - 2], *index};
 }
 
@@ -205,11 +205,11 @@ class Ports {
 
  private:
   void add_device(const Driver& driver, const std::string& text) {
-    const CfgAddress address = address_of(text, driver.place);
+    const CfgAddress address = cfg_address_of(text, driver.place);
     const auto interface = player::parse_interface(address.interface);
     if (!interface || find_kind(*interface) == nullptr) {
       const bool is_known = player::is_interface_name(address.interface);
-      if (!is_known) throw Wrong{driver.place, base::in_quotes(address.interface) + " is no interface of Player"};
+      if (!is_known) throw CfgError{driver.place, base::in_quotes(address.interface) + " is no interface of Player"};
       notes_.push_back(driver.place + ": interface " + address.interface + " is not served");
       return;
     }
@@ -219,13 +219,14 @@ class Ports {
     device.iface = id;
     device.model = id.empty() ? driver.text("model") : id.substr(0, id.find("::"));
     if (*interface != player::Interface::simulation) {
-      if (device.model.empty()) throw Wrong{driver.place, text + ": the driver has no model (or gz_id)"};
+      if (device.model.empty()) throw CfgError{driver.place, text + ": the driver has no model (or gz_id)"};
       device.which = used_[{device.model, *interface}]++;
     }
     ConfiguredPort& port = port_of(address.port);
     const bool is_twice =
         std::any_of(port.devices.begin(), port.devices.end(), [&](const auto& one) { return one.address == device.address; });
-    if (is_twice) throw Wrong{driver.place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " is there twice"};
+    if (is_twice)
+      throw CfgError{driver.place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " is there twice"};
     port.devices.push_back(std::move(device));
   }
 
@@ -267,7 +268,7 @@ base::Result<std::vector<ConfiguredPort>> read_player_config(const std::string& 
     if (found.empty())
       return base::Error{path + ": no driver provides a device of a simulator (name \"stage\" or \"gazebo\", model or gz_id)"};
     return found;
-  } catch (const Wrong& wrong) {
+  } catch (const CfgError& wrong) {
     return base::Error{wrong.place + ": " + wrong.what};
   }
 }

@@ -13,7 +13,7 @@ class Power final : public Device {
   static constexpr std::array shows{shm::IfaceType::battery};
   static constexpr std::array table = std::to_array<Served>({
       {player::Type::data, 1, "voltage, charge in percent and joules, power (negative: taken), whether it is charged"},
-      {player::Type::request, 1, "charging: the input connects the charger until nobody is subscribed; the output is always on"},
+      {player::Type::request, 1, "charging: the input connects the charger until the last client unsubscribes; the output is always on"},
   });
 
  private:

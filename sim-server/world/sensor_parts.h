@@ -1,4 +1,4 @@
-// How parts that several kinds of sensors have are read. What is wrong is one line by the context's complaints. One thread at a time.
+// Readers of the parts that several kinds of sensors have. What is wrong is one line by the context's complaints. One thread at a time.
 #pragma once
 
 #include <array>

@@ -203,7 +203,7 @@ TEST(Wheels, count_the_ticks_that_a_wheel_has_turned) {
     f.run(0.001);
   }
   ASSERT_TRUE(iface.read());
-  const auto& encoder = iface.elements<shm::Encoder>()[0];
+  const auto& encoder = iface.elements<shm::WheelState>()[0];
   EXPECT_NEAR(encoder.angle, 10, 0.02) << "more than a turn";
   EXPECT_EQ(encoder.ticks, std::floor(encoder.ticks));
   EXPECT_NEAR(encoder.angle, encoder.ticks / 1000 * 2 * std::numbers::pi, 1e-9);

@@ -248,6 +248,30 @@ def meters():
     close([pose["position"]["x"], pose["position"]["y"], pose["position"]["z"], pose["orientation"]["y"]], [-4, 3, 0.15, 0.7], 0.02)
 
 
+# Ports with the names, and a scan with the parameters, that components of other makers have.
+def names():
+    rig.server()
+    rig.naming()
+    rig.host(device("RTCLaser", "instance_name=Hokuyo0", "conf.default.port_names=range:ranges,ranger:svc,nonsense", "conf.default.start_angle=-0.5",
+                    "conf.default.end_angle=0.5", "conf.default.cluster_count=2", "conf.default.enable_intensity=0"),
+             device("RTCPosition2d", "conf.default.port_names=velocity:vel_control, actual_velocity:current_vel"))
+    for component in ("Hokuyo0", "RTCPosition2d0"):
+        rig.there(component)
+        rig.rtse("act", component)
+    scan = sample("Hokuyo0:ranges")
+    assert -0.51 < scan["config"]["minAngle"] < -0.45 and 0.45 < scan["config"]["maxAngle"] < 0.51, scan["config"]
+    assert len(scan["ranges"]) == round((scan["config"]["maxAngle"] - scan["config"]["minAngle"]) / scan["config"]["angularRes"]) + 1
+    ports = {port["name"].split(".")[-1] for port in json.loads(rig.rtse("--json", "cat", "Hokuyo0"))["ports"]}
+    assert ports == {"ranges", "intensities", "svc"}, ports
+    assert 'port_names: expected OWN:OTHER, got "nonsense"' in rig.log(rig.running[-1])
+
+    def drives():
+        rig.rtse("inject", "RTCPosition2d0:vel_control", json.dumps({"tm": {"sec": 0, "nsec": 0}, "data": {"vx": 0.2, "vy": 0, "va": 0}}))
+        return sample("RTCPosition2d0:current_vel")["data"]["vx"] > 0.05
+
+    await_("a robot that drives", drives)
+
+
 # Each sensor of the world that does not look, against what its iface says of the same moment.
 def others():
     rig.server(world=f"{sys.argv[4]}/worlds/power.sdf")

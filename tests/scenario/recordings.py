@@ -49,7 +49,7 @@ def same(a, b):
         return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
     if isinstance(a, list):
         return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
-    return a == b or (isinstance(a, (int, float)) and isinstance(b, (int, float)) and abs(a - b) <= 1e-6 * max(abs(a), abs(b)))
+    return a == b or (a != a and b != b) or (isinstance(a, (int, float)) and isinstance(b, (int, float)) and abs(a - b) <= 1e-6 * max(abs(a), abs(b)))
 
 
 # The run is the same with a recorder as without.
@@ -235,7 +235,8 @@ def views():
     info = json.loads(rig.rtse("--json", "recording", "info", file))
     kinds = {c["type"].split("/")[-1] for c in info["channels"]}
     assert kinds == {"TFMessage", "Clock", "LaserScan", "Range", "Image", "CameraInfo", "PointCloud2", "MarkerArray", "Imu", "NavSatFix", "Float64",
-                     "MagneticField", "FluidPressure", "WrenchStamped", "Odometry", "JointState"}, kinds
+                     "MagneticField", "FluidPressure", "WrenchStamped", "Odometry", "JointState", "BatteryState", "TwistWithCovarianceStamped", "TwistStamped", "String",
+                     "PoseWithCovarianceStamped"}, kinds
     assert all(c["samples"] > 0 and c["missing"] == 0 for c in info["channels"]), info["channels"]
     ours, theirs = lines("cat", file), foreign(file)[:-1]
     assert len(ours) == len(theirs)

@@ -180,6 +180,7 @@ bool Position3d::set_motors(bool enabled) {
   motors_enabled_ = enabled;
   world().physics.set_gravity(model(), !can_fly() || is_idle_);
   velocity_.setZero();
+  if (is_kinematic_ && !can_fly()) (void)world().physics.set_model_twist(model(), {});  // it would go on as it was told last
   return true;
 }
 

@@ -41,7 +41,7 @@ class Wheels final : public Sensor {
 
   void measure(const Moment&) const override {
     auto& out = sample<shm::WheelsSample>();
-    const auto encoders = followers<shm::Encoder>(0);
+    const auto encoders = followers<shm::WheelState>(0);
     out.count = static_cast<std::uint32_t>(wheels_.size());
     for (std::size_t i = 0; i < wheels_.size(); ++i) {
       constexpr double turn = 2 * std::numbers::pi;

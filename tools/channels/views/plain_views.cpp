@@ -136,7 +136,7 @@ IfaceView wheels_view(const shm::Iface& iface) {
     const auto& sample = from.sample<shm::WheelsSample>();
     if (sample.stamp.valid == 0) return;
     ros::JointState message{.header = header_of(sample.stamp, from.name()), .names = names};
-    for (const auto& encoder : from.elements<shm::Encoder>()) {
+    for (const auto& encoder : from.elements<shm::WheelState>()) {
       message.position.push_back(encoder.angle);
       message.velocity.push_back(encoder.speed);
     }

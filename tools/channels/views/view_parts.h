@@ -1,4 +1,4 @@
-// What views of ifaces are made with. Values; any thread.
+// Parts of the views of ifaces. Values; any thread.
 #pragma once
 
 #include <optional>
