@@ -9,7 +9,7 @@ namespace {
 
 constexpr double turn_per_metre = 3;          // [rad/m]
 constexpr double time_to_speed = 0.5;         // [s] from rest to the highest speed
-constexpr double stop_time = 0.2;             // [s] of a motion of the joints
+constexpr double time_to_rest = 0.2;          // [s] of a motion of the joints
 constexpr double near_place = 1e-6;           // [m], [rad] from the goal
 constexpr double limb_standing = 0.005;       // [rad] or [m] of joints that have arrived
 constexpr double widest_step_of_joint = 0.5;  // [rad] or [m] in one step: another branch
@@ -266,7 +266,7 @@ void Limb::advance_line(double dt) {
 
 void Limb::advance_joints(double dt) {
   const Eigen::Isometry3d before = tip(commanded_);
-  if (is_stopping_) pace_ = std::max(0.0, pace_ - dt / stop_time);
+  if (is_stopping_) pace_ = std::max(0.0, pace_ - dt / time_to_rest);
   time_ += pace_ * dt;
   commanded_ = motion_->positions(time_);
   velocities_ = motion_->velocities(time_);

@@ -13,7 +13,7 @@
 namespace shm {
 namespace {
 
-constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4;
+constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4, flag_4 = 8;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
@@ -90,9 +90,11 @@ struct Encoder {
   void operator()(const ListRequest&) {}
   void operator()(const TreeRequest& r) { name(r.model); }
   void operator()(const SpawnRequest& r) {
+    const bool has_more = !r.gains.empty() || !r.joints.empty();
     raw.text = r.sdf;
+    if (has_more) raw.text += std::string(1, '\0') + r.gains + std::string(1, '\0') + r.joints;
     name(r.name);
-    raw.body.flags = (r.is_path ? flag_1 : 0) | (r.has_pose ? flag_2 : 0) | (r.is_confined ? flag_3 : 0);
+    raw.body.flags = (r.is_path ? flag_1 : 0) | (r.has_pose ? flag_2 : 0) | (r.is_confined ? flag_3 : 0) | (has_more ? flag_4 : 0);
     put_pose(raw.body, r.pose);
   }
   void operator()(const DeleteRequest& r) { name(r.model); }
@@ -240,9 +242,16 @@ base::Result<Request> Decoder::twist() const {
 }
 
 base::Result<Request> Decoder::spawn() const {
-  if (raw_.text.empty()) return fail("needs an SDF text or a path");
   SpawnRequest request{raw_.text,     (body().flags & flag_1) != 0, name_, (body().flags & flag_2) != 0,
                        identity_pose, (body().flags & flag_3) != 0};
+  if ((body().flags & flag_4) != 0) {
+    const auto first = raw_.text.find('\0'), second = first == std::string::npos ? first : raw_.text.find('\0', first + 1);
+    if (second == std::string::npos) return fail("expected a model, gains and joints, with zero bytes between them");
+    request.sdf = raw_.text.substr(0, first);
+    request.gains = raw_.text.substr(first + 1, second - first - 1);
+    request.joints = raw_.text.substr(second + 1);
+  }
+  if (request.sdf.empty()) return fail("needs an SDF text or a path");
   if (request.has_pose) {
     const auto wanted = pose();
     if (!wanted) return fail("the quaternion of the pose is zero");

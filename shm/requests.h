@@ -56,6 +56,8 @@ struct SpawnRequest {
   bool has_pose = false;
   Pose pose = identity_pose;
   bool is_confined = false;  // nothing outside of the model path is opened: on behalf of somebody who may not read all that the server may
+  std::string gains{};       // text of a YAML file of ros_control or ros2_control, before those of the model
+  std::string joints{};      // JOINT=POSITION, a line each: where these start [rad or m]
 };
 struct DeleteRequest {
   std::string model;
@@ -81,7 +83,7 @@ struct ResetOdometryRequest {
   Pose pose = identity_pose;  // for 3d
 };
 struct SetMotorsRequest {
-  std::string iface;
+  std::string iface;  // of a drive, or MODEL::GRIPPER, or MODEL::CHILD_MODEL of a detachable joint: on attaches, off detaches
   bool are_enabled = true;
 };
 struct SetRtfRequest {

@@ -7,6 +7,7 @@ rtmsim_test(tree_solver_test physics/tree_solver_test.cpp LIBRARIES simphysics L
 rtmsim_test(mesh_collision_test physics/mesh_collision_test.cpp LIBRARIES simserver png LABELS sim)
 rtmsim_test(free_rotation_test physics/free_rotation_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(impacts_test physics/impacts_test.cpp LIBRARIES simphysics LABELS sim)
+rtmsim_test(weld_test physics/weld_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(carried_loads_test physics/carried_loads_test.cpp LIBRARIES simphysics LABELS sim)
 # KDL is what it is compared with; no program uses it.
 find_package(orocos_kdl REQUIRED)

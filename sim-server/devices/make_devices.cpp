@@ -187,6 +187,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       return make_follower(m, plugin);
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
+    case PluginKind::detachable_joint:  // Attachments have it
     case PluginKind::buoyancy:
     case PluginKind::battery:  // after all that it drives
     case PluginKind::implied:

@@ -48,7 +48,17 @@ void ContactGroups::touch(ModelInstance& a, ModelInstance* b, bool has_mesh, dou
   if ((surface.mode & dContactSoftCFM) != 0 && surface.soft_erp < soft * lighter / physics_.step * surface.soft_cfm) group.is_exempt = true;
   if (b == nullptr) return;
   ++group.size.moving_contacts;
-  const auto i = root(a.group_place), k = root(b->group_place);
+  join(a, *b);
+}
+
+void ContactGroups::tie(ModelInstance& a, ModelInstance& b) {
+  constexpr std::uint32_t rows_of_weld = 6;
+  members_[root(a.group_place)].size.joint_rows += rows_of_weld;
+  join(a, b);
+}
+
+void ContactGroups::join(const ModelInstance& a, const ModelInstance& b) {
+  const auto i = root(a.group_place), k = root(b.group_place);
   if (i == k) return;
   Member &kept = members_[std::min(i, k)], &joined = members_[std::max(i, k)];
   joined.parent = std::min(i, k);

@@ -23,6 +23,9 @@ class ContactGroups {
   // A contact with a force; `b` is null for what does not move. Both have been added. `depth` [m] is what is to be pushed back.
   void touch(ModelInstance& a, ModelInstance* b, bool has_mesh, double depth, const dSurfaceParameters& surface);
 
+  // A weld between them. Both have been added.
+  void tie(ModelInstance& a, ModelInstance& b);
+
   // An exact solution for the models that touch this one makes no sense (solver_choice.h).
   void note_ill_conditioned(const ModelInstance& model) { members_[root(model.group_place)].size.is_ill_conditioned = true; }
 
@@ -63,6 +66,7 @@ class ContactGroups {
   };
   void note_pushes(std::uint32_t member);
   std::uint32_t root(std::uint32_t i);
+  void join(const ModelInstance& a, const ModelInstance& b);
   void slow_down_what_gained();
 
   const PhysicsDef& physics_;

@@ -15,6 +15,8 @@
 
 namespace sim {
 
+class Weld;
+
 struct Energy {
   double motion = 0, height = 0;  // [J]; the height's from the world's origin
   double sum() const { return motion + height; }
@@ -114,6 +116,7 @@ class ModelInstance {
   std::uint32_t group_place = 0;           // among those that take part
   bool is_iterative = false;               // the solver of this step
   bool is_tree_solved = false;             // of those that are exact: by tree_solver
+  std::vector<Weld*> welds;                // that hold it
   std::vector<ModelInstance*> neighbours;  // whose neighbourhoods meet its own, ascending by id
   Aabb neighbourhood;
   bool left_neighbourhood = true;

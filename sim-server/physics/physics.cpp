@@ -9,6 +9,7 @@
 #include "physics/joined_sets.h"
 #include "physics/neighbours.h"
 #include "physics/shard.h"
+#include "physics/weld.h"
 
 namespace sim {
 namespace {
@@ -38,6 +39,8 @@ class Physics::Impl {
   void share_out(std::vector<std::uint32_t>& parents);
   bool has_bodies(const ModelInstance& model) const { return !model.blueprint().is_static; }
   ModelInstance& at(ModelId id) const { return *models_[id]; }
+  template <class Condition>
+  void drop_welds(const Condition& condition);
 
   std::shared_ptr<const WorldDef> world_;
   WorkerPool& pool_;
@@ -46,6 +49,7 @@ class Physics::Impl {
   std::vector<std::shared_ptr<const Blueprint>> initial_;  // by ModelId; null: cannot be simulated
   std::vector<std::unique_ptr<Shard>> shards_;             // outlive the models
   std::vector<std::unique_ptr<ModelInstance>> models_;
+  std::vector<std::unique_ptr<Weld>> welds_;  // in the order in which they were made
   std::vector<ShapeInstance*> statics_;
   StaticIndex static_index_;
   std::uint64_t steps_ = 0;
@@ -55,6 +59,7 @@ class Physics::Impl {
 };
 
 void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::string>* dropped) {
+  welds_.clear();
   models_.clear();
   shards_.clear();
   statics_.clear();
@@ -155,7 +160,24 @@ void Physics::Impl::partition() {
       parents[std::max(x, y)] = std::min(x, y);
     }
   }
+  for (const auto& weld : welds_) {
+    const auto x = root(parents, weld->first().id()), y = root(parents, weld->second().id());
+    if (has_bodies(weld->first())) parents[std::max(x, y)] = std::min(x, y);
+  }
   if (shards_.size() > 1) share_out(parents);
+}
+
+// Those that hold what has gone, or been put elsewhere. Both models notice.
+template <class Condition>
+void Physics::Impl::drop_welds(const Condition& condition) {
+  std::erase_if(welds_, [&](const std::unique_ptr<Weld>& weld) {
+    if (!condition(*weld)) return false;
+    for (ModelInstance* model : {&weld->first(), &weld->second()}) {
+      std::erase(model->welds, weld.get());
+      if (has_bodies(*model)) model->wake();
+    }
+    return true;
+  });
 }
 
 // Models that may meet go to one shard; shards that have become too full give models away.
@@ -204,6 +226,7 @@ void Physics::Impl::put_back_insane(Shard& shard) {
       complaints_.push_back(
           fmt::format("model {}: left the range of numbers and was put back to where it started", model->blueprint().model->name));
     }
+    drop_welds([&](const Weld& weld) { return weld.is_of(*model); });
     model->enter(shard.world(), world_->physics);
     model->left_neighbourhood = true;
     shard.has_left = true;
@@ -239,6 +262,7 @@ void Physics::reset() {
 }
 
 void Physics::reset_poses() {
+  impl_->drop_welds([](const Weld&) { return true; });
   for (const auto& model : impl_->models_) {
     if (!model) continue;
     model->set_base(model->blueprint().model->pose);
@@ -293,6 +317,7 @@ base::Result<ModelId> Physics::spawn(std::shared_ptr<const ModelDef> model, std:
 
 void Physics::remove(ModelId model) {
   auto& instance = impl_->models_[model];
+  impl_->drop_welds([&](const Weld& weld) { return weld.is_of(*instance); });
   if (instance->shard >= 0) std::erase(impl_->shards_[static_cast<std::size_t>(instance->shard)]->models, instance.get());
   for (auto* neighbour : instance->neighbours) std::erase(neighbour->neighbours, instance.get());
   // What rested on it must notice.
@@ -345,6 +370,7 @@ base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3
   ModelInstance& instance = impl_->at(model);
   const bool has_anchors = std::any_of(instance.blueprint().assemblies.begin(), instance.blueprint().assemblies.end(),
                                        [](const Assembly& assembly) { return assembly.is_anchored; });
+  impl_->drop_welds([&](const Weld& weld) { return weld.is_of(instance); });
   const Eigen::Isometry3d old_pose = model_pose(model);
   if (!impl_->has_bodies(instance)) {
     instance.set_base(pose);
@@ -424,6 +450,34 @@ void Physics::set_row(JointId joint, const JointRow& row) {
   if (JointInstance* instance = model.joint(joint.joint)) model.set_row(*instance, row);
 }
 
+base::Result<void> Physics::attach(LinkId first, LinkId second) {
+  const auto name = [&](LinkId link) { return def(link.model).name + "::" + def(link.model).links[link.link].name; };
+  if (first.model == second.model) return base::Error{fmt::format("{} and {} are links of one model", name(first), name(second))};
+  if (!can_move(first) && !can_move(second)) return base::Error{fmt::format("neither {} nor {} can move", name(first), name(second))};
+  if (!can_move(second)) std::swap(first, second);
+  if (are_attached(first, second)) return base::Error{fmt::format("{} and {} are attached already", name(first), name(second))};
+  ModelInstance &a = impl_->at(first.model), &b = impl_->at(second.model);
+  auto weld = std::make_unique<Weld>(a, piece_of(first), b, piece_of(second));
+  for (ModelInstance* model : {&a, &b}) {
+    model->welds.push_back(weld.get());
+    if (!impl_->has_bodies(*model)) continue;
+    model->wake();
+    model->left_neighbourhood = true;
+  }
+  impl_->welds_.push_back(std::move(weld));
+  impl_->partition();
+  return {};
+}
+
+void Physics::detach(LinkId first, LinkId second) {
+  impl_->drop_welds([&](const Weld& weld) { return weld.joins(first.model, piece_of(first), second.model, piece_of(second)); });
+}
+
+bool Physics::are_attached(LinkId first, LinkId second) const {
+  return std::ranges::any_of(impl_->welds_,
+                             [&](const auto& weld) { return weld->joins(first.model, piece_of(first), second.model, piece_of(second)); });
+}
+
 std::optional<Wrench> Physics::joint_load(JointId joint) const {
   const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
   return instance == nullptr ? std::nullopt : instance->load();
@@ -459,6 +513,7 @@ void Physics::add_to(StateHash& hash) const {
   for (const auto& model : impl_->models_) {
     if (model) add_to(hash, model->id());
   }
+  for (const auto& weld : impl_->welds_) weld->add_to(hash);
 }
 
 void Physics::add_to(StateHash& hash, ModelId id) const {

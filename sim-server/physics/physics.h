@@ -135,6 +135,12 @@ class Physics {
   // the model is stepped along its tree of joints, where that is one.
   void set_row(JointId joint, const JointRow& row);
 
+  // Holds two links of different models together as they are now, until they are detached, one of the models is removed or put elsewhere,
+  // or the world is reset. Links that are held together do not collide. Fails when neither can move, or they are held together already.
+  base::Result<void> attach(LinkId first, LinkId second);
+  void detach(LinkId first, LinkId second);
+  bool are_attached(LinkId first, LinkId second) const;
+
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
   // <provide_feedback>; empty for others and for joints that are no more than a weld.
   std::optional<Wrench> joint_load(JointId joint) const;

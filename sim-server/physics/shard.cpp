@@ -5,6 +5,7 @@
 #include "base/guarded.h"
 #include "physics/contact_surface.h"
 #include "physics/mesh_contacts.h"
+#include "physics/weld.h"
 
 namespace sim {
 namespace {
@@ -54,6 +55,11 @@ bool may_touch_itself(const ModelInstance& model, const ShapeInstance& a, const 
   const ModelDef& def = *model.blueprint().model;
   if (!def.self_collide && !(def.links[a.link.link].self_collide && def.links[b.link.link].self_collide)) return false;
   return !are_joined(model, a.assembly, b.assembly);
+}
+
+bool are_welded(const ModelInstance& model, const ShapeInstance& a, const ShapeInstance& b) {
+  return std::any_of(model.welds.begin(), model.welds.end(),
+                     [&](const Weld* weld) { return weld->joins(a.link.model, a.assembly, b.link.model, b.assembly); });
 }
 
 bool can_be_pushed(dGeomID geom) { return is_pushable(dGeomGetBody(geom)); }
@@ -115,11 +121,17 @@ void Shard::find_active() {
   }
   const std::size_t awake = active_.size();
   // What an awake model may touch takes part, and what that may touch, and so on.
+  const auto add = [&](ModelInstance* other) {
+    other->is_active = true;
+    active_.push_back(other);
+  };
   for (std::size_t i = 0; i < active_.size(); ++i) {
     for (auto* other : active_[i]->neighbours) {
-      if (other->is_active || !active_[i]->moving_box().overlaps(other->moving_box())) continue;
-      other->is_active = true;
-      active_.push_back(other);
+      if (!other->is_active && active_[i]->moving_box().overlaps(other->moving_box())) add(other);
+    }
+    for (const Weld* weld : active_[i]->welds) {
+      ModelInstance& other = weld->other(*active_[i]);
+      if (!other.is_active && other.body_count() > 0) add(&other);
     }
   }
   if (active_.size() > awake) std::sort(active_.begin(), active_.end(), [](auto* a, auto* b) { return a->id() < b->id(); });
@@ -139,6 +151,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
     for (auto& shape : model->shapes()) shape.partners = shape.deep_partners = 0;
     groups_.add(*model);
   }
+  tie_welded();
   find_contacts(statics);
   for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
   impacts_.settle();
@@ -162,6 +175,16 @@ void Shard::find_turning() {
   for (auto* model : active_) {
     for (std::uint32_t i = 0; i < model->body_count(); ++i) {
       if (model->body(i) != nullptr) free_rotation_.add(model->body(i));
+    }
+  }
+}
+
+void Shard::tie_welded() {
+  for (auto* model : active_) {
+    for (Weld* weld : model->welds) {
+      if (!weld->is_counted_for(*model)) continue;
+      weld->prepare(world_.id());
+      if (weld->first().body_count() > 0) groups_.tie(weld->first(), *model);
     }
   }
 }
@@ -279,6 +302,7 @@ void Shard::collide_model(ModelInstance& model, const std::vector<ShapeInstance*
     for (auto& shape : shapes) {
       if (model.body(shape.assembly) == nullptr || !shape.box.overlaps(other.box)) continue;
       if (other.link.model == model.id() && !may_touch_itself(model, shape, other)) continue;
+      if (are_welded(model, shape, other)) continue;
       collide(model, shape, nullptr, other);
     }
   }
@@ -297,7 +321,8 @@ void Shard::collide_pair(ModelInstance& a, ModelInstance& b) {
   for (auto& shape_a : a.shapes()) {
     if (a.body(shape_a.assembly) == nullptr || !shape_a.box.overlaps(b.moving_box())) continue;
     for (auto& shape_b : b.shapes()) {
-      if (b.body(shape_b.assembly) != nullptr && shape_a.box.overlaps(shape_b.box)) collide(a, shape_a, &b, shape_b);
+      if (b.body(shape_b.assembly) != nullptr && shape_a.box.overlaps(shape_b.box) && !are_welded(a, shape_a, shape_b))
+        collide(a, shape_a, &b, shape_b);
     }
   }
 }

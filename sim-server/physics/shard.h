@@ -35,6 +35,7 @@ class Shard {
  private:
   void find_active();
   void find_turning();
+  void tie_welded();
   void find_contacts(const std::vector<ShapeInstance*>& statics);
   void solve(std::uint64_t step_count);
   void solve_trees();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/weld.h"
+
 namespace sim {
 namespace {
 
@@ -258,6 +260,40 @@ void TreeSolver::add_mimics(ModelInstance& model, std::size_t first) {
   }
 }
 
+// Six rows, as of a joint that cannot move. ODE's joint is switched off with the others.
+void TreeSolver::add_weld(Weld& weld) {
+  const dBodyID first = weld.first_body(), second = weld.second_body();
+  const Eigen::Isometry3d wanted = weld.wanted();
+  const Eigen::Vector3d place = ode::vector(dBodyGetPosition(second)), goal = wanted.translation();
+  const double correction = dWorldGetERP(world_) / physics_.step;
+  const Eigen::Quaterniond off = Eigen::Quaterniond(wanted.linear()) * ode::quaternion(dBodyGetQuaternion(second)).conjugate();
+  const Eigen::Vector3d turned = (off.w() < 0 ? -2.0 : 2.0) * off.vec();
+  const int node = node_of(second), other = first != nullptr ? node_of(first) : -1;
+  const auto add = [&](const Vector6& on_second, const Vector6& on_first, double target) {
+    ContactRow row;
+    row.a = node, row.b = other;
+    row.on_a = on_second;
+    row.on_b = first != nullptr ? on_first : Vector6(Vector6::Zero());
+    row.target = target;
+    if (node < 0) row.target -= on_second.dot(velocity_of(second));
+    if (other < 0 && first != nullptr) row.target -= on_first.dot(velocity_of(first));
+    row.give = dWorldGetCFM(world_) / physics_.step;
+    row.low = -infinite;
+    rows_.push_back(row);
+  };
+  const Eigen::Vector3d first_middle = first != nullptr ? ode::vector(dBodyGetPosition(first)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d line = Eigen::Vector3d::Unit(i);
+    add(wrench(line, {0, 0, 0}), wrench_at(-line, goal - first_middle), correction * (goal - place)[i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d line = Eigen::Vector3d::Unit(i);
+    add(wrench({0, 0, 0}, line), wrench({0, 0, 0}, -line), correction * turned[i]);
+  }
+  mark_touched(node);
+  mark_touched(other);
+}
+
 // --- the tree
 
 // The free rows of the node's joint, side by side.
@@ -427,8 +463,13 @@ bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vec
     add_model(*model);
     add_mimics(*model, first);
   }
-  mimic_rows_ = rows_.size();
   std::sort(places_.begin(), places_.end());
+  for (auto* model : models) {
+    for (Weld* weld : model->welds) {
+      if (weld->is_counted_for(*model)) add_weld(*weld);
+    }
+  }
+  tie_rows_ = rows_.size();
   for (const auto* contact : contacts) add_contact(*contact);
   for (int round = 0; round < most_rounds; ++round) {
     factor();
@@ -441,6 +482,11 @@ bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vec
     if (!is_finite()) return false;
     if (bind_joints(round >= at_once)) continue;
     put_forces();
+    for (auto* model : models) {
+      for (Weld* weld : model->welds) {
+        if (weld->is_counted_for(*model)) switch_off(weld->prepare(world_));
+      }
+    }
     return true;
   }
   return false;
@@ -465,10 +511,9 @@ void TreeSolver::put_forces() {
       copy(per_step * (is_first ? own : parent), feedback->f1, feedback->t1);
       copy(per_step * (is_first ? parent : own), feedback->f2, feedback->t2);
     }
-    dJointDisable(joint);
-    switched_off_.push_back(joint);
+    switch_off(joint);
   }
-  for (std::size_t i = 0; i < mimic_rows_; ++i) press(rows_[i], system_.x[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < tie_rows_; ++i) press(rows_[i], system_.x[static_cast<Eigen::Index>(i)]);
   for (const Touch& touch : touches_) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < touch.rows.size(); ++i) {
@@ -486,6 +531,11 @@ void TreeSolver::put_forces() {
     dBodyAddForce(node.body, w[0], w[1], w[2]);
     dBodyAddTorque(node.body, w[3], w[4], w[5]);
   }
+}
+
+void TreeSolver::switch_off(dJointID joint) {
+  dJointDisable(joint);
+  switched_off_.push_back(joint);
 }
 
 void TreeSolver::let_go() {

@@ -85,7 +85,7 @@ class TreeSolver {
     int a = -1, b = -1;
     Vector6 on_a, on_b;
     int c = -1, d = -1;  // of a joint that follows another one: the two bodies of the leader
-    Vector6 on_c, on_d;
+    Vector6 on_c = Vector6::Zero(), on_d = Vector6::Zero();
     double target = 0, give = 0;
     double low = 0, high = infinite;
     double friction = 0;  // times the impulse of `normal` is the bound; 0: bounds as they are
@@ -98,6 +98,7 @@ class TreeSolver {
   void add_axis(Node& node, const Vector6& of_child, const Vector6& of_parent);
   void add_contact(const MadeContact& contact);
   void add_mimics(ModelInstance& model, std::size_t first);
+  void add_weld(Weld& weld);
   void mark_touched(int node);
   void add_contact_row(Touch& touch, const Eigen::Vector3d& line, const ContactRow& row);
   int node_of(dBodyID body) const;
@@ -112,13 +113,14 @@ class TreeSolver {
   bool bind_joints(bool one_at_a_time);
   bool is_finite() const;
   void put_forces();
+  void switch_off(dJointID joint);
 
   dWorldID world_;
   const PhysicsDef& physics_;
   std::vector<Node> nodes_;
   std::vector<Touch> touches_;
-  std::vector<ContactRow> rows_;  // first those of joints that follow others
-  std::size_t mimic_rows_ = 0;
+  std::vector<ContactRow> rows_;                 // first those of joints that follow others, and of welds
+  std::size_t tie_rows_ = 0;                     // of these
   std::vector<std::pair<dBodyID, int>> places_;  // sorted
   BoundedSystem system_;
   std::vector<dJointID> switched_off_;

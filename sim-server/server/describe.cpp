@@ -119,7 +119,10 @@ std::string list_text(Simulation& simulation) {
                       {"subscribed", iface.is_subscribed()}});
     if (iface.type() == shm::IfaceType::joints) ifaces.back()["groups"] = groups_of(physics.def(device->model()));
   }
-  return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}});
+  Json attachments = Json::array();
+  for (const auto& one : simulation.attachments().states(physics))
+    attachments.push_back({{"name", one.name}, {"on", one.is_on}, {"holds", one.holds}});
+  return text({{"world", simulation.world().name}, {"models", models}, {"ifaces", ifaces}, {"attachments", attachments}});
 }
 
 namespace {

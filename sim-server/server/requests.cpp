@@ -165,6 +165,8 @@ struct ServerLoop::Handler {
                      "name of a model must have at most " + std::to_string(shm::max_name_length) + " bytes");
     }
     constexpr std::string_view deleted = "deleted://";
+    if (request.sdf.starts_with(deleted) && !(request.gains.empty() && request.joints.empty()))
+      return refused(shm::RequestStatus::bad_request, "a deleted model comes back as it was; gains and joints cannot be given");
     if (request.is_path && request.sdf.starts_with(deleted)) return restore(request.sdf.substr(deleted.size()));
     // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
@@ -253,6 +255,8 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::SetMotorsRequest& request) {
+    if (const auto turned = simulation.turn_attachment(request.iface, request.are_enabled))
+      return *turned ? shm::Reply{} : failed(turned->error());
     Device* device = simulation.device(request.iface);
     if (device == nullptr) return no_iface(simulation, request.iface);
     if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");

@@ -85,6 +85,7 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
     devices_.push_back(std::move(device));
   }
   for (const JointHold& hold : joint_holds_of(*physics_, model, left_out)) holds_.push_back(hold);
+  attachments_.add(*physics_, model, left_out);
   return {};
 }
 
@@ -119,6 +120,7 @@ void Simulation::for_followers(const std::function<void(Device&)>& work) {
 void Simulation::step(PartTimes& times) {
   const Moment moment{time_, world_->physics.step};
   for (const JointHold& hold : holds_) hold.before_step(*physics_);  // a drive that has the same joint wins
+  attachments_.before_step(*physics_, time_);
   for_followers([&](Device& device) { device.before_step(moment); });
   for (const auto& wrench : wrenches_) {
     if (physics_->exists(wrench.link.model)) (void)physics_->add_wrench(wrench.link, wrench.force, wrench.torque);
@@ -236,6 +238,7 @@ base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
   std::erase_if(devices_, [&](const auto& device) { return device->model() >= initial_models_; });
   std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model >= initial_models_; });
   physics_->reset();
+  attachments_.reset(static_cast<ModelId>(initial_models_));
   wrenches_.clear();
   trails_.clear();
   time_ = std::chrono::nanoseconds(0);
@@ -312,6 +315,7 @@ std::vector<FaultOrder> Simulation::faults() const {
 
 void Simulation::reset_poses() {
   physics_->reset_poses();
+  attachments_.reset(static_cast<ModelId>(physics_->model_slots()));
   for (ModelId id = 0; id < physics_->model_slots(); ++id) {
     if (physics_->exists(id)) rays_->moved(id);
   }
@@ -347,6 +351,7 @@ void Simulation::remove(ModelId model) {
   sort_devices();
   std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model == model; });
   std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.link.model == model; });
+  attachments_.remove(model);
   if (model < trails_.size()) trails_[model] = Trail();
   rays_->remove(model);
   physics_->remove(model);
@@ -370,12 +375,18 @@ base::Result<void> Simulation::add_wrench(LinkId link, const Eigen::Vector3d& fo
   return {};
 }
 
+std::optional<base::Result<void>> Simulation::turn_attachment(std::string_view name, bool is_on) {
+  if (!attachments_.knows(name)) return std::nullopt;
+  return attachments_.turn(*physics_, name, is_on);
+}
+
 std::uint64_t Simulation::hash() const {
   StateHash hash;
   hash.add(options_.seed);
   hash.add(static_cast<std::uint64_t>(time_.count()));
   physics_->add_to(hash);
   for (const auto& device : devices_) device->add_to(hash);
+  attachments_.add_to(hash);
   return hash.value();
 }
 

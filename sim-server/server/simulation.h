@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "devices/device.h"
 #include "devices/drives/joint_hold.h"
+#include "devices/joints/attachments.h"
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
 #include "devices/sensors/sensor_fault.h"
@@ -79,6 +80,10 @@ class Simulation {
   // Those that have not ended, by device.
   std::vector<FaultOrder> faults() const;
 
+  // Of grippers and detachable joints; error: there is nothing to hold. Nothing: there is none of that name.
+  std::optional<base::Result<void>> turn_attachment(std::string_view name, bool is_on);
+  const Attachments& attachments() const { return attachments_; }
+
   std::uint64_t hash() const;
   Physics& physics() { return *physics_; }
   const Physics& physics() const { return *physics_; }
@@ -127,6 +132,7 @@ class Simulation {
   std::vector<std::size_t> shares_;  // of the followers; where each ends
   WorkerPool::Pace commands_pace_;
   std::vector<JointHold> holds_;
+  Attachments attachments_;
   std::vector<Device*> due_;
   std::vector<Wrench> wrenches_;
   std::vector<Trail> trails_;

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "reader/asset_reader.h"
+#include "world/joint_gains.h"
 
 namespace sim {
 namespace {
@@ -33,6 +34,13 @@ std::unique_ptr<Assets> pictures_of(const ModelDef& model, const SpawnDesk::Orde
   return assets;
 }
 
+base::Result<void> add_joint_settings(const SpawnDesk::Order& order, LoadedModel& loaded) {
+  std::vector<std::string> left_out;
+  if (const auto added = add_named_gains(order.gains, loaded.model, left_out); !added) return added;
+  for (const std::string& line : left_out) loaded.findings.push_back({Finding::Severity::warning, "", 0, line});
+  return set_initial_positions(order.joints, loaded.model);
+}
+
 SpawnDesk::Done read(const SpawnDesk::Order& order) {
   const ReadDeadline deadline(std::chrono::steady_clock::now() + time_to_read);
   SpawnDesk::Done done{order.ticket, base::Error{}, order.name.empty(), {}, {}, order.drawn};
@@ -40,6 +48,10 @@ SpawnDesk::Done read(const SpawnDesk::Order& order) {
   try {
     done.model = load_model(order.model, order.name, order.pose, order.model_path);
     if (!done.model) return done;
+    if (const auto added = add_joint_settings(order, *done.model); !added) {
+      done.model = added.error();
+      return done;
+    }
     done.triangles.prepare(done.model.value().model);
     if (std::ranges::count(order.drawn, Scene::Content::visuals) > 0) set_versions(done.model.value().model, order.world_path);
     done.pictures = pictures_of(done.model.value().model, order);

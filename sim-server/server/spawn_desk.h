@@ -39,6 +39,7 @@ class SpawnDesk {
     ModelPath model_path;
     ModelPath world_path;               // of pictures that mesh files name
     std::vector<Scene::Content> drawn;  // now: their files are read, too
+    std::string gains{}, joints{};      // as in shm::SpawnRequest
   };
   void take(Order order);
 

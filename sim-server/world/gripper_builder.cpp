@@ -23,11 +23,9 @@ std::optional<std::string> link_named(const ModelDef& model, const std::string& 
   }
 }
 
-}  // namespace
-
-void add_gripper(pugi::xml_node node, const std::string& scope, ModelDef& model, Complaints& complaints) {
+void add_named(pugi::xml_node node, const std::string& name, const std::string& scope, ModelDef& model, Complaints& complaints) {
   GripperDef gripper;
-  gripper.name = scoped(scope, node.attribute("name").value());
+  gripper.name = scoped(scope, name);
   const auto link = [&](pugi::xml_node element) {
     const auto found = link_named(model, scope, text_of(element));
     if (!found)
@@ -51,7 +49,29 @@ void add_gripper(pugi::xml_node node, const std::string& scope, ModelDef& model,
   gripper.attach_checks = count("grasp_check/attach_steps", gripper.attach_checks);
   gripper.detach_checks = count("grasp_check/detach_steps", gripper.detach_checks);
   gripper.contacts = count("grasp_check/min_contact_count", gripper.contacts);
+  gripper.attaches = bool_at(node, "rtmsim:attach", false);
   model.grippers.push_back(std::move(gripper));
+}
+
+}  // namespace
+
+void add_gripper(pugi::xml_node node, const std::string& scope, ModelDef& model, Complaints& complaints) {
+  add_named(node, node.attribute("name").value(), scope, model, complaints);
+}
+
+void add_grasp_fix(pugi::xml_node plugin, const std::string& scope, ModelDef& model, Complaints& complaints) {
+  for (pugi::xml_node arm : plugin.children("arm")) {
+    if (!arm.child("gripper_link")) continue;
+    const auto palm = link_named(model, scope, text_at(arm, "palm_link"));
+    const auto same = std::ranges::find_if(model.grippers, [&](const GripperDef& one) { return palm && one.palm == *palm; });
+    if (same != model.grippers.end()) {
+      same->attaches = true;
+      continue;
+    }
+    const std::size_t before = model.grippers.size();
+    add_named(arm, text_at(arm, "arm_name", "gripper"), scope, model, complaints);
+    if (model.grippers.size() > before) model.grippers.back().attaches = true;
+  }
 }
 
 }  // namespace sim

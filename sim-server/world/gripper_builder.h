@@ -10,7 +10,11 @@
 
 namespace sim {
 
-// `model` has all links of this scope already.
+// `model` has all links of this scope already. One with <rtmsim:attach>true</rtmsim:attach> fixes to its palm what it holds.
 void add_gripper(pugi::xml_node node, const std::string& scope, ModelDef& model, Complaints& complaints);
+
+// The same of the grasp fix plugin of Gazebo classic, which files have so that what is held is fixed: <arm> with <arm_name>, <palm_link>
+// and <gripper_link>s. Of a palm that has a gripper already only that it does so.
+void add_grasp_fix(pugi::xml_node plugin, const std::string& scope, ModelDef& model, Complaints& complaints);
 
 }  // namespace sim

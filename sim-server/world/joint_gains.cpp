@@ -124,17 +124,55 @@ fs::path folder_of(const std::string& source) {
 
 }  // namespace
 
-base::Result<std::vector<GainsDef>> read_gains(const fs::path& file, std::vector<std::string>& left_out) {
-  const auto fail = [&](const std::string& why) { return base::Error{"gains " + base::in_quotes(file.string()) + ": " + why}; };
-  const auto text = base::read_plain_file(file, largest_file);
-  if (!text) return fail(text.error().message);
+base::Result<std::vector<GainsDef>> read_gains_text(const std::string& text, const std::string& name, std::vector<std::string>& left_out) {
   try {
-    GainsReader reader(file.string(), left_out);
-    for (const auto& document : YAML::LoadAll(*text)) reader.look(document, 0);
+    GainsReader reader(name, left_out);
+    for (const auto& document : YAML::LoadAll(text)) reader.look(document, 0);
     return reader.take();
   } catch (const YAML::Exception& problem) {
-    return fail("is no YAML: line " + std::to_string(problem.mark.line + 1) + ": " + problem.msg);
+    return base::Error{"gains " + base::in_quotes(name) + ": is no YAML: line " + std::to_string(problem.mark.line + 1) + ": " +
+                       problem.msg};
   }
+}
+
+base::Result<std::vector<GainsDef>> read_gains(const fs::path& file, std::vector<std::string>& left_out) {
+  const auto text = base::read_plain_file(file, largest_file);
+  if (!text) return base::Error{"gains " + base::in_quotes(file.string()) + ": " + text.error().message};
+  return read_gains_text(*text, file.string(), left_out);
+}
+
+base::Result<void> add_named_gains(const std::string& text, ModelDef& model, std::vector<std::string>& left_out) {
+  if (text.empty()) return {};
+  auto gains = read_gains_text(text, "--gains", left_out);
+  if (!gains) return gains.error();
+  for (auto& one : *gains) one.is_named = true;
+  if (add_gains(*gains, model) > 0) return {};
+  return base::Error{"gains: they are of no joint of model " + model.name};
+}
+
+base::Result<void> set_initial_positions(const std::string& lines, ModelDef& model) {
+  for (const std::string& line : base::split_list(lines, '\n')) {
+    const auto equals = line.rfind('=');
+    const auto value = equals == std::string::npos ? std::nullopt : base::parse_number(line.substr(equals + 1));
+    if (!value || !(std::abs(*value) < 1e6)) return base::Error{"joint " + base::in_quotes(line) + ": expected JOINT=NUMBER"};
+    const std::string name = line.substr(0, equals);
+    std::vector<std::string> movable;
+    JointDef* found = nullptr;
+    for (JointDef& joint : model.joints) {
+      if (joint.axes.empty()) continue;
+      movable.push_back(joint.name);
+      if (joint.name == name) found = &joint;
+    }
+    if (found == nullptr)
+      return base::Error{"model " + model.name + " has no joint " + base::in_quotes(name) + " that moves; it has " +
+                         base::join(movable, ", ")};
+    AxisDef& axis = found->axes[0];
+    if (*value < axis.lower || *value > axis.upper)
+      return base::Error{"joint " + name + ": a position must be within " + base::format_number(axis.lower) + " and " +
+                         base::format_number(axis.upper) + ", got " + base::format_number(*value)};
+    axis.initial_position = *value;
+  }
+  return {};
 }
 
 std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model) {

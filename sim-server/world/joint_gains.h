@@ -22,11 +22,18 @@ namespace sim {
 
 // In the order of the file. What is left out adds a line to `left_out`. Fails when the file cannot be read, or is no YAML.
 base::Result<std::vector<GainsDef>> read_gains(const std::filesystem::path& file, std::vector<std::string>& left_out);
+// The same of a text; `name` stands for the file in messages.
+base::Result<std::vector<GainsDef>> read_gains_text(const std::string& text, const std::string& name, std::vector<std::string>& left_out);
 
 // Those of the model's joints; how many there are. Gains that a joint has already from the same kind of source stay.
 std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model);
 
 // Those of the files that the model's ros_control and ros2_control plugins name in <parameters>. A file that is not there is a line.
 void add_plugin_gains(const ModelPath& model_path, ModelDef& model, Complaints& complaints);
+
+// Of a model that is spawned: the text of a file that the user names, and where joints start, as JOINT=POSITION a line. Fails when neither
+// is of a joint of the model, or a position is no number.
+base::Result<void> add_named_gains(const std::string& text, ModelDef& model, std::vector<std::string>& left_out);
+base::Result<void> set_initial_positions(const std::string& lines, ModelDef& model);
 
 }  // namespace sim

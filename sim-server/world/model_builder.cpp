@@ -230,6 +230,7 @@ class ModelBuilder {
       if (is_imu_without_sensor(model_.plugins.back())) add_imu(plugin, model_.plugins.back());
     }
     for (pugi::xml_node gripper : node.children("gripper")) add_gripper(gripper, scope, model_, context_.complaints);
+    for (pugi::xml_node plugin : node.children("plugin")) add_grasp_fix(plugin, scope, model_, context_.complaints);
   }
 
   // Wheels without <inertial>: those of a small robot would keep it from turning with the specification's 1 kg m^2.

@@ -12,6 +12,7 @@ enum class PluginKind {
   velocity_control,     // the model moves as it is told, without wheels
   trajectory_follower,  // the model follows way points
   joint_controller,     // joints keep the position or speed that it starts with until they are commanded
+  detachable_joint,     // a link of the model holds one of another model
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   buoyancy,             // of the world
   battery,              // drives the motors of the model until it is empty

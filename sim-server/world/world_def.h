@@ -247,6 +247,7 @@ struct GripperDef {
   int attach_checks = 20;            // in a row with contacts
   int detach_checks = 40;            // in a row without
   int contacts = 2;                  // fewest of a check that counts
+  bool attaches = false;             // from the start on, without a request
 };
 
 // Gains of a controller from a file beside the model.

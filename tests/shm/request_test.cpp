@@ -39,6 +39,13 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_TRUE(spawn.has_pose);
   EXPECT_FALSE(spawn.is_confined);
   EXPECT_TRUE(there_and_back(SpawnRequest{"m", true, "", false, identity_pose, true}).is_confined);
+  SpawnRequest with_joints{"model://arm", true};
+  with_joints.gains = "elbow: {p: 1}\n", with_joints.joints = "elbow=1\nwaist=2";
+  const auto spawned = there_and_back(with_joints);
+  EXPECT_EQ(spawned.sdf, "model://arm");
+  EXPECT_EQ(spawned.gains, "elbow: {p: 1}\n");
+  EXPECT_EQ(spawned.joints, "elbow=1\nwaist=2");
+  EXPECT_TRUE(spawned.is_path);
   ScreenshotRequest shot;
   shot.path = "/tmp/x.png";
   shot.view = ScreenshotRequest::View::follow;

@@ -116,5 +116,24 @@ TEST_F(JointGains, of_a_file_that_is_not_there_are_missed_in_one_line) {
   EXPECT_EQ(text.find(line), text.rfind(line));
 }
 
+TEST_F(JointGains, and_positions_can_be_given_to_a_model_that_is_spawned) {
+  auto loaded = model("");
+  std::vector<std::string> left_out;
+  ASSERT_TRUE(add_named_gains(of_ros2, loaded.model, left_out));
+  ASSERT_EQ(loaded.model.gains.size(), 2U);
+  EXPECT_TRUE(loaded.model.gains[0].is_named);
+  EXPECT_EQ(loaded.model.gains[0].source, "--gains:6");
+  EXPECT_EQ(add_named_gains("pid_gains: {nose: {p: 1}}", loaded.model, left_out).error().message,
+            "gains: they are of no joint of model arm");
+  EXPECT_NE(add_named_gains("a: [1, 2", loaded.model, left_out).error().message.find("is no YAML: line"), std::string::npos);
+  ASSERT_TRUE(set_initial_positions("elbow=0.5\nwaist=-1", loaded.model));
+  EXPECT_EQ(loaded.model.joint("elbow")->axes[0].initial_position, 0.5);
+  EXPECT_EQ(loaded.model.joint("waist")->axes[0].initial_position, -1);
+  EXPECT_EQ(set_initial_positions("nose=1", loaded.model).error().message,
+            "model arm has no joint \"nose\" that moves; it has waist, elbow");
+  EXPECT_EQ(set_initial_positions("elbow=up", loaded.model).error().message, "joint \"elbow=up\": expected JOINT=NUMBER");
+  EXPECT_EQ(set_initial_positions("elbow", loaded.model).error().message, "joint \"elbow\": expected JOINT=NUMBER");
+}
+
 }  // namespace
 }  // namespace sim

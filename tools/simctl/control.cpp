@@ -2,10 +2,12 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/name_list.h"
+#include "base/plain_file.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/whole_file.h"
@@ -164,6 +166,13 @@ std::optional<std::string> spawn_one(Control& control, const shm::Iface& simulat
   request->name = options.name;
   request->has_pose = pose.has_value();
   if (pose) request->pose = *pose;
+  if (!options.gains.empty()) {
+    constexpr std::uintmax_t largest = std::uintmax_t{1} << 20U;
+    auto text = base::read_plain_file(options.gains, largest);
+    if (!text) return control.fail("gains " + base::in_quotes(options.gains) + ": " + text.error().message), std::nullopt;
+    request->gains = std::move(*text);
+  }
+  request->joints = base::join(options.joints, "\n");
   const auto reply = control.ask(*request);
   return reply ? std::optional(reply->message) : std::nullopt;
 }
@@ -199,6 +208,19 @@ void spawn(Control& control, const SpawnOptions& options) {
     if (!control.json()) std::cout << *name << '\n';
   }
   if (control.json()) control.print({{"names", names}});
+}
+
+void attach(Control& control, const std::string& name, bool is_on) {
+  if (!name.empty()) return static_cast<void>(control.ask(shm::SetMotorsRequest{name, is_on}));
+  const auto reply = control.ask(shm::ListRequest{});
+  if (!reply) return;
+  const auto json = Json::parse(reply->text, nullptr, false);
+  const auto all = json.is_object() ? json.value("attachments", Json::array()) : Json::array();
+  if (control.json()) return control.print(all);
+  if (all.empty()) return static_cast<void>(std::printf("no grippers or detachable joints\n"));
+  std::printf("%-40s %-4s %s\n", "NAME", "ON", "HOLDS");
+  for (const auto& one : all)
+    std::printf("%-40s %-4s %s\n", one.value("name", "?").c_str(), one.value("on", false) ? "on" : "off", one.value("holds", "").c_str());
 }
 
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::string& text) {

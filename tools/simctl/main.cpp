@@ -180,6 +180,16 @@ void add_control(base::Command& app, Work& work) {
   motors->add_option("HOW", *how, "on or off")->required()->check(base::one_of({"on", "off"}));
   motors->callback([&work, driven, how] { work = [=](Control& c) { c.ask(shm::SetMotorsRequest{*driven, *how == "on"}); }; });
 
+  auto* attach = app.add_subcommand("attach", "Attach what a gripper or a detachable joint holds; without NAME show all: attach [NAME]");
+  auto held = option_value<std::string>();
+  attach->add_option("NAME", *held, "MODEL::GRIPPER, or MODEL::CHILD_MODEL of a detachable joint");
+  attach->callback([&work, held] { work = [=](Control& c) { simctl::attach(c, *held, true); }; });
+
+  auto* detach = app.add_subcommand("detach", "Detach what a gripper or a detachable joint holds");
+  auto released = option_value<std::string>();
+  detach->add_option("NAME", *released, "MODEL::GRIPPER, or MODEL::CHILD_MODEL of a detachable joint")->required();
+  detach->callback([&work, released] { work = [=](Control& c) { simctl::attach(c, *released, false); }; });
+
   auto* spawn = app.add_subcommand("spawn", "Add a model");
   auto options = option_value<simctl::SpawnOptions>();
   spawn->add_option("FILE", options->file, "SDF file, model folder, model://NAME, deleted://NAME (a deleted model as it was), or SDF text")
@@ -194,6 +204,9 @@ void add_control(base::Command& app, Work& work) {
       ->capture_default_str()
       ->check(base::number_between(0.0, 1e6))
       ->needs("--for");
+  spawn->add_option("--joint", options->joints, "Start a joint at a position: JOINT=POSITION [rad, m]; can be repeated")->take_all();
+  spawn->add_option("--gains", options->gains,
+                    "Take the gains of joint controllers from a YAML file of ros_control or ros2_control, before those of the model");
   spawn->callback([&work, options] {
     if (const auto n = options->pose.size(); n == 1 || n == 2 || n == 5 || n > 6) {
       base::reject_command_line("--pose",
@@ -388,7 +401,8 @@ int main(int argc, char** argv) {
   add_pictures(app, work);
   app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts", "wait"})
       ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
-      ->group_subcommands("Robots and models", {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "spawn", "delete"})
+      ->group_subcommands("Robots and models",
+                          {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "attach", "detach", "spawn", "delete"})
       ->group_subcommands("Record", {"screenshot", "record", "export", "map"})
       ->group_subcommands("Clean up", {"clean"});
   const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes

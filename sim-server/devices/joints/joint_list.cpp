@@ -24,7 +24,8 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  return kind != PluginKind::joint_controller && kind != PluginKind::implied && kind != PluginKind::unknown && kind != PluginKind::buoyancy;
+  return kind != PluginKind::joint_controller && kind != PluginKind::detachable_joint && kind != PluginKind::implied &&
+         kind != PluginKind::unknown && kind != PluginKind::buoyancy;
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {
