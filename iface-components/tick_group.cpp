@@ -82,7 +82,7 @@ struct TickGroup::Impl {
   void gather(Data& data, bool looks_at_all);
   void call_helpers(Data& data, std::size_t ticks, bool was_long);
   std::optional<Job> try_job(Data& data);
-  Job next_job();
+  Job next_job(bool rests_first);
   void rest(Shared::Lock& data);
   void call(const Call& call);
   void await(const std::shared_ptr<Node>& node);
@@ -164,43 +164,44 @@ std::optional<TickGroup::Impl::Job> TickGroup::Impl::try_job(Data& data) {
   return Job{.awaits = std::move(node)};
 }
 
-TickGroup::Impl::Job TickGroup::Impl::next_job() {
+TickGroup::Impl::Job TickGroup::Impl::next_job(bool rests_first) {
   auto data = shared.lock();
   while (!data->is_ending) {
-    if (auto job = try_job(*data)) return std::move(*job);
+    if (!std::exchange(rests_first, false)) {
+      if (auto job = try_job(*data)) return std::move(*job);
+    }
     rest(data);
+    // One thread is there to see that a call lasts.
+    if (data->resting == 0 && data->asleep == 0 && data->threads.size() <= data->nodes.size()) start_thread(*data);
   }
   return {};
 }
 
-// Until there is something to do for this thread. One whose call lasts is replaced.
+// Until there is something to do for this thread: it is called, nobody is there, or the calls of others last while nobody waits for the
+// next tick.
 void TickGroup::Impl::rest(Shared::Lock& data) {
-  const auto is_idle = [&] { return data->busy == 0 && !data->awaited && waitable(*data); };  // nobody does it
-  const auto is_needed = [&] { return data->is_ending || data->wanted > 0 || is_idle(); };
-  for (int quiet = 0;;) {
+  const auto is_deserted = [&] { return data->busy == 0 && !data->awaited && waitable(*data); };
+  const auto is_needed = [&] { return data->is_ending || data->wanted > 0 || is_deserted(); };
+  int quiet = 0;
+  while (true) {
     const auto seen = data->calls;
     ++data->resting;
-    data.wait_for(work, group_patience, is_needed);
+    const bool is_called = data.wait_for(work, group_patience, is_needed);
     --data->resting;
-    if (data->wanted > 0)
-      --data->wanted;
-    else if (!data->is_ending && !is_idle()) {
-      const bool is_stuck = !data->awaited && data->calls == seen && (data->next < data->due.size() || waitable(*data));
-      if (!is_stuck) {
-        quiet = data->calls == seen ? quiet + 1 : 0;
-        if (quiet < quiet_looks) continue;
-        quiet = 0;
-        ++data->asleep;
-        data.wait(work, [&] { return is_needed() || !data->is_watched; });
-        --data->asleep;
-        data->is_watched = true;
-        continue;
-      }
+    if (is_called) break;
+    if (!data->awaited && data->calls == seen && (data->next < data->due.size() || waitable(*data))) {
       ++data->taken_over;
-      if (data->resting == 0 && data->asleep == 0) start_thread(*data);
+      return;
     }
-    return;
+    quiet = data->calls == seen ? quiet + 1 : 0;
+    if (quiet < quiet_looks) continue;
+    quiet = 0;
+    ++data->asleep;
+    data.wait(work, [&] { return is_needed() || !data->is_watched; });
+    --data->asleep;
+    data->is_watched = true;
   }
+  if (data->wanted > 0) --data->wanted;
 }
 
 void TickGroup::Impl::call(const Call& call) {
@@ -229,8 +230,8 @@ void TickGroup::Impl::await(const std::shared_ptr<Node>& node) {
 }
 
 void TickGroup::Impl::serve() {
-  while (true) {
-    const Job job = next_job();
+  for (bool is_new = true;; is_new = false) {
+    const Job job = next_job(is_new);
     if (job.call.node) {
       call(job.call);
     } else if (job.awaits) {

@@ -6,6 +6,9 @@ set(course ${PROJECT_SOURCE_DIR}/worlds/obstacle_course.sdf)
 add_test(NAME integration.obstacle_avoidance_explores_without_touching
   COMMAND ${rtse} run ${avoidance} --world ${course} --duration 120 --seeds 1..10 -j 2
           --expect ${CMAKE_CURRENT_SOURCE_DIR}/scenario/obstacle_avoidance.yaml)
+add_test(NAME integration.fifty_robots_bring_boxes_to_doors_and_do_not_touch
+  COMMAND ${rtse} run ${PROJECT_SOURCE_DIR}/worlds/systems/warehouse.xml --world ${PROJECT_SOURCE_DIR}/worlds/warehouse.sdf --for robot=porter_0..porter_49 --hosts 3
+          --duration 50 --expect ${PROJECT_SOURCE_DIR}/worlds/systems/warehouse.expect.yaml)
 add_test(NAME integration.the_same_run_in_one_process_and_in_three
   COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/same_state.py ${rtse} ${avoidance} ${course})
 add_test(NAME integration.an_arm_stacks_boxes_alike_in_20_runs
@@ -18,7 +21,7 @@ add_test(NAME integration.the_farm_is_seen_from_the_helicopter
 add_test(NAME integration.unmet_expectations_fail_the_run
   COMMAND ${rtse} run ${avoidance} --world ${course} --duration 5 --expect ${CMAKE_CURRENT_SOURCE_DIR}/scenario/impossible.yaml)
 set_tests_properties(integration.unmet_expectations_fail_the_run PROPERTIES PASS_REGULAR_EXPRESSION "expected at least 1000.*path_length")
-set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.the_same_run_in_one_process_and_in_three
+set_tests_properties(integration.obstacle_avoidance_explores_without_touching integration.fifty_robots_bring_boxes_to_doors_and_do_not_touch integration.the_same_run_in_one_process_and_in_three
                      integration.free_run_in_real_time integration.the_farm_is_seen_from_the_helicopter integration.unmet_expectations_fail_the_run PROPERTIES LABELS integration TIMEOUT 300)
 
 foreach(case kill_simulator kill_host kill_avoider kill_sensor kill_naming one_process four_processes late_naming late_simulator two_robots save_and_load waiting_is_no_fault server_of_the_environment hidden_sets)

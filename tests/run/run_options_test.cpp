@@ -25,6 +25,8 @@ RunOptions all_different() {
   options.start = {"./alien --port 5", "two\nlines"};
   options.start_folder = "/f";
   options.run_file = "/r.yaml";
+  options.lists = {"robot=a,b"};
+  options.hosts = 3;
   options.module_paths = {"/m1", "/m2"};
   options.resource_paths = {"/res"};
   options.properties = {"A0:exec_cxt.sim_time.phase=3", "B0:text=a \"quoted\" word"};
@@ -68,7 +70,7 @@ TEST(RunOptions, those_that_repeat_a_run_are_in_a_recording_and_others_are_not) 
   std::set<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.insert(key);
   EXPECT_EQ(keys, (std::set<std::string>{"duration", "seed", "one_process_each", "start", "start_folder", "run_file", "module_path",
-                                         "resource_path", "property"}));
+                                         "resource_path", "property", "hosts"}));
   const auto read = recorded_run_options({{"options", json.dump()}, {"world_file", "/w.sdf"}});
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->start, all_different().start);

@@ -144,6 +144,18 @@ export function many_components(count) {
   return { op: 'system', revision: 2, problem: '', managers: [], components, connections };
 }
 
+// Robots of three components each, that a dispatcher sends orders to; one of them has no laser.
+export function fleet(count) {
+  const components = [component('Dispatcher', 'Dispatcher', 'Active', [['orders', 'out', range]])], connections = [];
+  for (let i = 0; i < count; ++i) {
+    if (i !== 2) components.push(component(`Laser_r${i}`, 'RTCLaser', 'Active', [['range', 'out', range]]));
+    components.push(component(`Avoid_r${i}`, 'LaserObstacleAvoid', 'Active', [['range', 'in', range], ['orders', 'in', range]]));
+    if (i !== 2) connections.push({ id: `l${i}`, name: `l${i}`, ports: [`${host}/Laser_r${i}.rtc:range`, `${host}/Avoid_r${i}.rtc:range`], properties: {} });
+    connections.push({ id: `o${i}`, name: `o${i}`, ports: [`${host}/Dispatcher.rtc:orders`, `${host}/Avoid_r${i}.rtc:orders`], properties: {} });
+  }
+  return { op: 'system', revision: 2, problem: '', managers: [], components, connections };
+}
+
 export const hello = (more = {}) => ({ op: 'hello', version: '0.1.0', read_only: false, name_server: 'localhost:2809', server_id: 0, ...more });
 export const time = (more = {}) => ({ op: 'time', sim_time: 12.34, steps: 12340, paused: true, waiting_for: 0, rtf: 1, rtf_wanted: 1, load: 0.1, parts: [{ name: 'physics', calls: 100, total_ms: 12, max_us: 300 }], participants: [], ...more });
 

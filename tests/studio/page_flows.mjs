@@ -3,7 +3,7 @@ import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
-import { component, demo_system, hello, many_components, Mock, poses, time, world_of } from './mock.mjs';
+import { component, demo_system, fleet, hello, many_components, Mock, poses, time, world_of } from './mock.mjs';
 import { answer, asked, avoid, built, choose, detail, glb, host, laser, set_up } from './mock_page.mjs';
 import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
@@ -748,6 +748,24 @@ const flows = [
     await until('no notice', async () => (await page.locator('.world .card').count()) === 0);
     await page.context().close();
     again.stop();
+  }],
+  ['equal robots of a fleet are folded into one, and what concerns one of them is seen', async ({ browser }) => {
+    const mock = new Mock({ page: built, glb });
+    for (const event of [hello(), fleet(100), time()]) mock.say(event);
+    const page = await open(browser, await mock.start());
+    await until('all', async () => (await page.locator('.diagram .box').count()) === 200);
+    await page.getByRole('button', { name: 'Fold equal robots' }).click();
+    await until('folded', async () => (await page.locator('.diagram .box').count()) === 4);
+    same(await page.locator('.diagram .box .name').allTextContents(), ['Dispatcher', 'Laser_r0', 'Avoid_r0', 'Avoid_r2'], 'boxes');
+    same(await page.locator('.diagram .box .count').allTextContents(), ['× 99', '× 99'], 'numbers');
+    same(await page.locator('.diagram .edge').count(), 3, 'lines');
+    mock.say({ op: 'states', revision: 2, states: { [`${host}/Laser_r77.rtc`]: 'Error' }, rates: {} });
+    await until('error', async () => (await page.locator(`.box.state-error[data-path="${host}/Laser_r0.rtc"]`).count()) === 1);
+    check((await page.locator(`[data-path="${host}/Laser_r0.rtc"] > title`).textContent()).includes('98 active, 1 in error'), 'its title counts them');
+    await page.getByRole('button', { name: 'Fold equal robots' }).click();
+    await until('all again', async () => (await page.locator('.diagram .box').count()) === 200);
+    await page.context().close();
+    mock.stop();
   }],
   ['a thousand components can be panned', async ({ browser }) => {
     const mock = new Mock({ page: built, glb });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <ranges>
 #include <set>
 
 #include "base/text.h"
@@ -127,7 +128,7 @@ base::Result<void> check_names(const SavedSystem& system, const std::string& fil
 
 base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::string>& lists, const std::string& file) {
   std::set<std::string> names;
-  for (const auto& text : lists) {
+  for (const auto& text : std::views::reverse(lists)) {  // the first list is the outer one
     const auto list = base::NameList::parse(text);
     if (!list) return list.error();
     if (!names.insert(list->name).second) return base::Error{"--for " + base::in_quotes(text) + ": " + list->name + " has a list already"};
@@ -143,7 +144,7 @@ base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::s
 }
 
 base::Result<std::vector<std::string>> filled_in(std::vector<std::string> texts, const std::vector<std::string>& lists) {
-  for (const auto& text : lists) {
+  for (const auto& text : std::views::reverse(lists)) {  // the first list is the outer one
     const auto list = base::NameList::parse(text);
     if (!list) return list.error();
     bool is_used = false;  // need not be: the names of the system count

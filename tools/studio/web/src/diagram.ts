@@ -1,6 +1,7 @@
 // The system as RTSystemEditor draws it: boxes with ports, lines between them; live.
 import { button, h, once_a_frame, put, s, unless_pressed, with_code } from './dom';
 import { connect_dialog } from './connect_dialog';
+import { count_of_states, equal_robots, state_of_all } from './diagram_groups';
 import { arrange, Place } from './diagram_layout';
 import { curve, rate_text, short_type, type_text } from './diagram_parts';
 import { component_menu, port_menu, wire_menu } from './menus';
@@ -9,7 +10,7 @@ import { state_class, state_shape, state_words } from './states';
 import {
   component, component_of_port, components_of, connections_of, is_selected, link_problem, name_of_port, on, port_of, read_only, select, selected_model, shown_state, store, wire,
 } from './store';
-import type { Component, Connection, Port } from './wire';
+import type { Component, Connection, Port, State } from './wire';
 
 interface Shape { element: SVGGElement; width: number; height: number; ports: Map<string, { x: number; y: number; element: SVGGElement; port: Port }>; component: Component; mark: SVGPathElement; rate: SVGTextElement; is_out: boolean }
 
@@ -26,6 +27,7 @@ export class Diagram {
   private shapes = new Map<string, Shape>();
   private edges = new Map<string, { element: SVGGElement; paths: SVGPathElement[]; connection: Connection }>();
   private places = new Map<string, Place>();
+  private groups = equal_robots({ ...store.system, components: [], connections: [] }); // folded
   private pan = { x: 20, y: 20, scale: 1 };
   private slid = { x: 0, y: 0 };
   private has_panned = false; // by a person: the view stays
@@ -54,7 +56,8 @@ export class Diagram {
     this.lines.replaceChildren();
     this.shapes.clear();
     this.edges.clear();
-    for (const one of system.components) this.add_box(one);
+    this.groups = equal_robots(settings.folded ? system : { ...system, components: [], connections: [] });
+    for (const one of system.components) if (!this.groups.hidden.has(one.path)) this.add_box(one);
     this.place_boxes();
     for (const one of system.connections) this.add_line(one);
     this.show_selection();
@@ -75,20 +78,32 @@ export class Diagram {
     put(this.notice, text ? h('div', { class: 'card' }, h('p', null, ...with_code(text))) : null);
   }
 
+  // Of all that the box stands for.
+  private states_of(one: Component): State[] {
+    return (this.groups.members.get(one.path) ?? [one]).map((each) => shown_state(component(each.path) ?? each));
+  }
+
+  private title_of(one: Component, states: State[]): string {
+    if (states.length > 1) return `${one.instance} and ${states.length - 1} like it (${one.type}): ${count_of_states(states, state_words)}`;
+    return `${one.instance} (${one.type}) is ${state_words[states[0]] ?? states[0]}${one.problem ? `: ${one.problem}` : ''}`;
+  }
+
   private add_box(one: Component): void {
     const ins = one.ports.filter((p) => p.kind === 'in'), outs = one.ports.filter((p) => p.kind === 'out'), services = one.ports.filter((p) => p.kind === 'service');
     const long = (ports: Port[]) => Math.max(0, ...ports.map((p) => p.name.length)) * letter;
     const service_width = services.reduce((sum, p) => sum + Math.max(30, p.name.length * 5.6 + 16), 8);
-    const width = Math.ceil(Math.max(118, one.instance.length * 7.2 + 40, type_text(one).length * 5.8 + 70, long(ins) + long(outs) + 48, service_width));
+    const width = Math.ceil(Math.max(118, one.instance.length * 7.2 + (this.groups.members.has(one.path) ? 74 : 40), type_text(one).length * 5.8 + 70, long(ins) + long(outs) + 48, service_width));
     const height = head + Math.max(1, Math.max(ins.length, outs.length)) * row + 6 + (services.length > 0 ? 22 : 0);
-    const state = shown_state(one);
+    const states = this.states_of(one), state = state_of_all(states), is_folded = states.length > 1;
     const mark = s('path', { class: 'shape', d: state_shape(state), transform: 'translate(8 8) scale(1.1)' });
     const rate = s('text', { class: 'rate', x: width - 9, y: 32, 'text-anchor': 'end' }, rate_text(one));
-    const element = s('g', { class: `box ${state_class(state)}${one.composite ? ' composite' : ''}`, 'data-path': one.path },
+    const element = s('g', { class: `box ${state_class(state)}${one.composite ? ' composite' : ''}${is_folded ? ' folded' : ''}`, 'data-path': one.path },
+      is_folded ? s('rect', { class: 'outer', x: 5, y: 5, width, height, rx: 3 }) : null,
       one.composite ? s('rect', { class: 'outer', x: -3, y: -3, width: width + 6, height: height + 6, rx: 5 }) : null,
       s('rect', { class: 'frame', width, height, rx: 3 }), s('path', { class: 'band', d: `M0 3a3 3 0 0 1 3-3h${width - 6}a3 3 0 0 1 3 3v21H0z` }), mark,
-      s('text', { class: 'name', x: 24, y: 17 }, one.instance), s('text', { class: 'type', x: 9, y: 32 }, type_text(one)), rate,
-      s('title', null, `${one.instance} (${one.type}) is ${state_words[state] ?? state}${one.problem ? `: ${one.problem}` : ''}`));
+      s('text', { class: 'name', x: 24, y: 17 }, one.instance), is_folded ? s('text', { class: 'count', x: width - 9, y: 17, 'text-anchor': 'end' }, `× ${states.length}`) : null,
+      s('text', { class: 'type', x: 9, y: 32 }, type_text(one)), rate,
+      s('title', null, this.title_of(one, states)));
     const shape: Shape = { element, width, height, ports: new Map(), component: one, mark, rate, is_out: false };
     ins.forEach((port, i) => this.add_port(shape, port, 0, head + 9 + i * row));
     outs.forEach((port, i) => this.add_port(shape, port, width, head + 9 + i * row));
@@ -180,11 +195,11 @@ export class Diagram {
       const now = component(path);
       if (!now) continue;
       shape.component = now;
-      const state = shown_state(now);
-      shape.element.setAttribute('class', `box ${state_class(state)}${now.composite ? ' composite' : ''}${shape.element.classList.contains('chosen') ? ' chosen' : ''}${shape.element.classList.contains('related') ? ' related' : ''}`);
+      const states = this.states_of(now), state = state_of_all(states);
+      shape.element.setAttribute('class', `box ${state_class(state)}${now.composite ? ' composite' : ''}${states.length > 1 ? ' folded' : ''}${shape.element.classList.contains('chosen') ? ' chosen' : ''}${shape.element.classList.contains('related') ? ' related' : ''}`);
       shape.mark.setAttribute('d', state_shape(state));
       shape.rate.textContent = rate_text(now);
-      shape.element.querySelector(':scope > title')!.textContent = `${now.instance} (${now.type}) is ${state_words[state] ?? state}`;
+      shape.element.querySelector(':scope > title')!.textContent = this.title_of(now, states);
     }
   }
 
@@ -253,6 +268,14 @@ export class Diagram {
     const scale = Math.min(1.15, (width - 28) / (right - left), (height - 28) / (bottom - top));
     this.pan = { scale, x: (width - (right + left) * scale) / 2, y: (height - (bottom + top) * scale) / 2 };
     this.apply_pan();
+  }
+
+  // Robots that are equal but for their number are one, or are shown one by one again.
+  fold(): void {
+    settings.folded = !settings.folded;
+    keep();
+    this.has_panned = false;
+    this.build();
   }
 
   private show_all(): void {
@@ -455,6 +478,10 @@ export class Diagram {
     return [
       button('Show the whole system', { icon: 'whole', key: '0' }, () => this.show_all()),
       button('Arrange automatically', { icon: 'arrange' }, () => this.arrange()),
+      button('Fold equal robots', { icon: 'fold', pressed: settings.folded }, (event) => {
+        this.fold();
+        (event.currentTarget as Element).setAttribute('aria-pressed', String(settings.folded));
+      }),
     ];
   }
 }

@@ -66,6 +66,7 @@ const icons: { [name: string]: string } = {
   copy: 'M5.5 5.5h7v7h-7zM3.5 10.5v-7h7',
   undo: 'M4 6h6a3 3 0 1 1 0 6H6M6.5 3.5L4 6l2.5 2.5',
   plus: 'M8 3v10M3 8h10',
+  fold: 'M2.5 2.5h7v5h-7zM4.5 7.5v2h7v-5h-2M6.5 9.5v3h7v-5h-2',
   arrange: 'M2.5 3h3v3h-3zM2.5 10h3v3h-3zM10.5 6.5h3v3h-3zM5.5 4.5h3v7h-3M8.5 8h2',
   broom: 'M9.5 2.5L7 8M4.5 7.5l5.5 2.5M4 8.5L2.5 13h5.5l1.5-2.5M5 13l1-2',
   save: 'M8 2.5v7M5 7l3 3 3-3M3 13.5h10',

@@ -8,6 +8,7 @@ export interface Settings {
   layout: { root: unknown }; // a Split of layout.ts, when it is checked
   layouts: { [name: string]: { root: unknown; panels: Settings['panels'] } };
   tab: 'plots' | 'logs' | 'images' | 'step';
+  folded: boolean; // equal robots in the diagram
   positions: { [path: string]: [number, number] };
   plots: { series: { topic: string; member: string }[] }[];
 }
@@ -16,7 +17,7 @@ const usual: Settings = {
   theme: 'auto', lasers: true, sonars: false, names: true, trails: true, collisions: false, contacts: false, frames: false,
   panels: { tree: true, world: true, system: true, inspector: true, bottom: true },
   layout: { root: null }, layouts: {},
-  tab: 'plots', positions: {}, plots: [],
+  tab: 'plots', folded: false, positions: {}, plots: [],
 };
 
 const key = 'rtm-studio';
