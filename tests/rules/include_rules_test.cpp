@@ -53,6 +53,8 @@ const std::vector<Layer> layers = {
      {"Eigen", "JSON", "PNG", "spdlog"}},
     {"iface-components", {"rtm", "coil", "shm", "base", "stubs"}, {"Eigen"}},
     {"gateways/common", {"common", "shm", "base"}},
+    {"gateways/ros2/dds", {"dds", "base"}, {"FastDDS"}},
+    {"gateways/ros2", {"dds", "common", "ros", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"gateways/player/protocol", {"protocol", "base"}},
     {"gateways/player", {"protocol", "common", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
@@ -74,7 +76,7 @@ const std::vector<Layer> layers = {
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
     {"clients/box-stacker", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
-    {"clients/follow", {"protocol", "base"}},
+    {"clients/follow", {"protocol", "dds", "ros", "base"}},
     {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
 };
 
@@ -103,6 +105,9 @@ std::string owner(const std::string& header) {
       {"physics/", "physics"},
       {"protocol/", "protocol"},
       {"common/", "common"},
+      {"dds/", "dds"},
+      {"fastdds/", "FastDDS"},
+      {"fastrtps/", "FastDDS"},
       {"ros/", "ros"},
       {"system/", "system"},
       {"channels/", "channels"},
