@@ -1,7 +1,7 @@
 // Commands for one robot: velocities and joints, from topics to ifaces. One thread at a time.
 //
-// The newest command counts, whoever sends it and on whichever topic. It ends after a time without another one, in simulated time; then the
-// robot stops as if its commander had left. Values that are no numbers are refused and counted.
+// The newest command of any client and topic counts. It ends after a time without another one, in simulated time; then the
+// robot stops. Values that are no numbers are refused and counted.
 #pragma once
 
 #include <chrono>

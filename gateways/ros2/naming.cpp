@@ -38,9 +38,9 @@ bool naming_flag(const YAML::Node& node) {
 std::string full_name(const YAML::Node& node, bool may_be_root) {
   std::string name = naming_text(node, "a name");
   if (may_be_root && (name.empty() || name == "/")) return "/";
-  const auto problem = problem_of_name(name.front() == '/' ? name : "/" + name);
+  const auto problem = problem_of_name(name.starts_with('/') ? name : "/" + name);
   if (problem) throw WrongEntry{node.Mark(), "name " + base::in_quotes(name) + " " + *problem};
-  return may_be_root && name.front() != '/' ? "/" + name : name;
+  return may_be_root && !name.starts_with('/') ? "/" + name : name;
 }
 
 RobotNames robot_names(const std::string& model, const YAML::Node& node) {

@@ -39,11 +39,12 @@ ListedModel listed_model(const Json& json) {
 std::optional<Listed> parse_listed(const std::string& list, const std::string& tree) {
   try {
     Listed listed;
-    for (const auto& one : Json::parse(list).at("ifaces")) {
+    const Json ifaces = Json::parse(list), models = Json::parse(tree);
+    for (const auto& one : ifaces.at("ifaces")) {
       const auto type = shm::parse_type(one.value("type", ""));
       if (type) listed.ifaces.push_back({*type, one.value("name", ""), one.value("model", "")});
     }
-    for (const auto& model : Json::parse(tree).at("models")) listed.models.push_back(listed_model(model));
+    for (const auto& model : models.at("models")) listed.models.push_back(listed_model(model));
     return listed;
   } catch (const Json::exception&) {
     return std::nullopt;

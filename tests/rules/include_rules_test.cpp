@@ -54,6 +54,8 @@ const std::vector<Layer> layers = {
     {"arms", {"arms", "shm", "base"}, {"Eigen"}},
     {"iface-components", {"rtm", "coil", "arms", "shm", "base", "stubs"}, {"Eigen"}},
     {"gateways/common", {"common", "shm", "base"}},
+    {"gateways/ros2/dds", {"dds", "base"}, {"FastDDS"}},
+    {"gateways/ros2", {"dds", "common", "ros", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"gateways/player/protocol", {"protocol", "base"}},
     {"gateways/player", {"protocol", "common", "arms", "shm", "base"}, {"Eigen", "JSON", "YAML", "spdlog"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},
@@ -76,7 +78,7 @@ const std::vector<Layer> layers = {
     {"clients/box-stacker", {"rtm", "coil", "stubs"}},
     {"clients/warehouse", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
-    {"clients/follow", {"protocol", "base"}},
+    {"clients/follow", {"protocol", "dds", "ros", "base"}},
     {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
 };
 
@@ -106,6 +108,9 @@ std::string owner(const std::string& header) {
       {"physics/", "physics"},
       {"protocol/", "protocol"},
       {"common/", "common"},
+      {"dds/", "dds"},
+      {"fastdds/", "FastDDS"},
+      {"fastrtps/", "FastDDS"},
       {"ros/", "ros"},
       {"system/", "system"},
       {"channels/", "channels"},

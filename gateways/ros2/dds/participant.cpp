@@ -406,8 +406,10 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   // ---- threads of Fast DDS ----
   template <class Info>
   void put_peer(const Info& info, bool is_writer, bool is_gone) {
+    const Guid guid = to_guid(info.guid());
+    if (std::equal(guid.begin(), guid.begin() + 12, guid_.begin())) return;  // one of ours
     const auto& data = info.m_qos.m_userData;
-    inbox_.put(Peer{to_guid(info.guid()), is_writer, is_gone, info.topicName().to_string(), info.typeName().to_string(),
+    inbox_.put(Peer{guid, is_writer, is_gone, info.topicName().to_string(), info.typeName().to_string(),
                     std::string(data.begin(), data.end()), info.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
                     info.m_qos.m_durability.kind != dds::VOLATILE_DURABILITY_QOS});
   }

@@ -35,8 +35,8 @@ struct ParticipantSettings {
 };
 
 struct EndpointSettings {
-  std::string topic, type;  // as on the wire: "rt/scan", "sensor_msgs::msg::dds_::LaserScan_"
-  std::string user_data;
+  std::string topic{}, type{};  // as on the wire: "rt/scan", "sensor_msgs::msg::dds_::LaserScan_"
+  std::string user_data{};
   bool is_transient = false;  // readers that come late receive the last samples
   std::size_t depth = 10;     // samples that are kept; readers: all, as deliver() takes them
   bool is_large = false;      // sent by a thread of its own

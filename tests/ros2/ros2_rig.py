@@ -1,0 +1,162 @@
+# What the scenarios of ros2-gateway share: a simulator, the gateway and peers by Cyclone DDS, in a DDS domain of their own on 127.0.0.1.
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+sys.path.insert(0, f"{source}/tests/scenario")
+sys.dont_write_bytecode = True
+
+import wire
+from system import System, await_
+
+cyclone = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces><AllowMulticast>false</AllowMulticast></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers>
+<SPDPInterval>1s</SPDPInterval></Discovery></Domain></CycloneDDS>"""
+
+claims = []
+
+
+# A domain that no other test of this machine uses now: a bound socket says that it is taken.
+def claim_domain():
+    begin = 10 + os.getpid() % 90
+    for domain in list(range(begin, 100)) + list(range(10, begin)):
+        claim = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            claim.bind(("127.0.0.1", 16000 + domain))
+        except OSError:
+            claim.close()
+            continue
+        claims.append(claim)
+        return str(domain)
+    raise RuntimeError("no DDS domain is free")
+
+
+jazzy_hash = "typehash=RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e;"
+
+
+class Peer:
+    def __init__(self, domain, user_data="enclave=/;"):
+        self.process = subprocess.Popen([f"{bin_dir}/ros2_peer", domain, user_data], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                        env={**os.environ, "CYCLONEDDS_URI": cyclone})
+        self.samples, self.guids, self.counts, self.peers, self.list = {}, {}, {}, None, []
+        self.is_ready = False
+        self.thread = threading.Thread(target=self.listen, daemon=True)
+        self.thread.start()
+        await_("the peer", lambda: self.is_ready)
+
+    def listen(self):
+        for line in self.process.stdout:
+            words = line.rstrip("\n").split(" ", 5)
+            if words[0] == "ready":
+                self.is_ready = True
+            elif words[0] == "sample":
+                self.samples[words[1]].append(bytes.fromhex(words[2]))
+            elif words[0] in ("reader", "writer"):
+                self.guids[words[1]] = words[2]
+            elif words[0] == "matched":
+                self.counts[words[1]] = int(words[2])
+            elif words[0] == "peer":
+                self.list.append(words[1:])
+            elif words[0] == "end":
+                self.peers, self.list = self.list, []
+
+    def say(self, line):
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+
+    def reader(self, name, topic, kind, reliability="reliable", durability="volatile", user_data="-"):
+        self.samples[name] = []
+        self.say(f"reader {name} {topic} {kind} {reliability} {durability} {user_data}")
+        return await_(f"reader {name}", lambda: self.guids[name])
+
+    def writer(self, name, topic, kind, reliability="reliable", durability="volatile", user_data="-"):
+        self.say(f"writer {name} {topic} {kind} {reliability} {durability} {user_data}")
+        return await_(f"writer {name}", lambda: self.guids[name])
+
+    # A topic of ROS, by its full name.
+    def subscribe(self, topic, kind, reliability="reliable", durability="volatile"):
+        self.reader(topic, "rt" + topic, wire.type_on_wire(kind), reliability, durability)
+
+    def advertise(self, topic, kind, reliability="reliable"):
+        self.writer(topic, "rt" + topic, wire.type_on_wire(kind), reliability)
+
+    def put(self, name, kind, value):
+        self.say(f"put {name} {wire.encode(kind, value).hex()}")
+
+    # Messages that came so far.
+    def messages(self, topic, kind):
+        return [wire.decode(kind, data) for data in list(self.samples[topic])]
+
+    # The first message, or the first that is good.
+    def message(self, topic, kind, good=lambda message: True):
+        def found():
+            return next(message for message in reversed(self.messages(topic, kind)) if good(message))
+
+        def ready():
+            try:
+                return found()
+            except StopIteration:
+                return None
+
+        return await_(f"a message on {topic}", ready)
+
+    def await_matched(self, name, count=1):
+        def is_matched():
+            self.say(f"matched {name}")
+            return self.counts.get(name, 0) >= count
+
+        await_(f"a match of {name}", is_matched, 0.05)
+
+    # All endpoints of others: [reader or writer, topic, type, guid, user data].
+    def endpoints(self, good):
+        def ready():
+            self.peers = None
+            self.say("peers")
+            listed = await_("the list of endpoints", lambda: self.peers if self.peers is not None else None)
+            return listed if good(listed) else None
+
+        return await_("endpoints", ready, 0.1)
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.wait(20)
+
+
+class Rig(System):
+    def __init__(self):
+        super().__init__(bin_dir, lib_dir)
+        self.domain = claim_domain()
+        self.peers = []
+
+    def __exit__(self, *words):
+        for peer in self.peers:
+            peer.end()
+        super().__exit__(*words)
+
+    def sim(self, world, *options):
+        path = world
+        if world.startswith("<"):
+            path = f"{self.work}/world.sdf"
+            with open(path, "w") as file:
+                file.write(world)
+        self.simulator = self.server(path, *options)
+
+    def gateway(self, *options, robots=1, **environment):
+        self.process = self.start(f"{bin_dir}/ros2-gateway", "--domain", self.domain, "--network", "loopback", *options, **environment)
+        await_("the gateway", lambda: self.is_serving(robots))
+
+    def is_serving(self, robots):
+        assert self.process.poll() is None, self.log(self.process)
+        return f"domain {self.domain}: {robots} robots" in self.log(self.process)
+
+    # The robots that have an iface of this type.
+    def models_with(self, kind):
+        return [one["name"].split("::")[0] for one in json.loads(self.simctl("--json", "list")) if one["type"] == kind]
+
+    def peer(self, user_data="enclave=/;"):
+        self.peers.append(Peer(self.domain, user_data))
+        return self.peers[-1]
