@@ -14,7 +14,7 @@ add_test(NAME docs.help COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hel
 set_tests_properties(docs.help PROPERTIES LABELS docs)
 add_test(NAME docs.commands COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/scenario/docs_commands.py ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 set_tests_properties(docs.commands PROPERTIES LABELS docs)
-set(pages README.md docs/arms.md docs/campaigns.md docs/hash-logs.md docs/jara.md docs/pictures.md docs/player.md docs/recordings.md docs/security.md docs/simulator.md
+set(pages README.md docs/arms.md docs/campaigns.md docs/fleets.md docs/hash-logs.md docs/jara.md docs/pictures.md docs/player.md docs/recordings.md docs/security.md docs/simulator.md
   docs/testing-a-robot-system.md docs/third-party-components.md docs/tutorial-first-system.md docs/worlds.md)
 if(RTMSIM_STUDIO_PAGE)
   list(APPEND pages docs/run-page.md docs/studio.md)

@@ -49,6 +49,7 @@ for side, way_out in (("east", 1), ("west", -1)):
     for post in range(lanes + 1):
         y = post * pitch - half
         lines.append(static(f"post_{side}_{post}", f"{sdf_text.numbers((way_out * door, y, 0.5))} 0 0 0", box(0.08, 0.08, 1), grey))
+    lines.append(static(f"lintel_{side}", f"{sdf_text.numbers((way_out * door, 0, 1.15))} 0 0 0", box(0.12, 2 * half + 0.12, 0.3), yellow))
 for i in range(6):
     lines.append(static(f"rack_{i}", f"{sdf_text.numbers((0, (i - 2.5) * 3.6, 0.6))} 0 0 0", box(2.4, 2.4, 1.2), steel))
 

@@ -36,6 +36,7 @@ executed = {
     "docs/simulator.md": "",
     "docs/worlds.md": "cp worlds/obstacle_course.sdf my.world",
     "docs/campaigns.md": "",
+    "docs/fleets.md": "",
     "docs/player.md": "",
     "docs/security.md": "",
     "docs/studio.md": "",

@@ -56,7 +56,7 @@ def fleets():
         text = "    <rts:Components ".join(parts).split("    <rts:DataPortConnectors ")[0] + "    <rts:DataPortConnectors " + rest
         file.write(text.replace("SourceAll0", "SourceAll_{robot}").replace("SinkAll0", "SinkAll_{robot}"))
     lists = ["--for", f"robot=r0..r{count - 1}"]
-    refused("load", template, says="component SourceAll_{robot} is a template; expected --for robot=LIST")
+    refused("load", template, says="_{robot} is a template; expected --for robot=LIST")
     refused("load", template, *lists, "--for", "side=l,r", says="does not contain {side}")
     refused("load", template, "--for", "robot=r9..r0", says="is not a range")
     dry = rig.rtse("load", template, *lists, "--dry-run")

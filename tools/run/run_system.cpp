@@ -342,6 +342,7 @@ class Run final : public RunningSystem {
   // What makes the run again, beside the profile and the world.
   std::vector<std::pair<std::string, std::string>> notes() const {
     RunOptions options = options_;
+    if (auto filled = filled_in(options.properties, options.lists)) options.properties = std::move(*filled);  // as the recorded system is
     if (options.start_folder.empty()) options.start_folder = std::filesystem::current_path().string();
     return {
         {options_note, to_json(options, RunOptionSet::repeats_run).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)},
