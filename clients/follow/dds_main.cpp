@@ -114,7 +114,8 @@ class Follower {
   void steer() {
     if (!scan_ || !mount_ || odometry_.empty()) return;
     const auto time = nanoseconds_of(scan_->header.stamp);
-    if (last_odometry_ < time) return;
+    if (time == 0) scan_.reset();  // a stamp of 0 is none: nobody waits for the answer
+    if (!scan_ || last_odometry_ < time) return;
     const auto after = odometry_.upper_bound(time);
     if (after == odometry_.begin()) return;
     const follow::Pose place = std::prev(after)->second;

@@ -49,12 +49,12 @@ void Commands::take_drive(std::shared_ptr<Source> source, const std::string& top
 }
 
 void Commands::drive(const ros::Twist& twist, const std::string& topic, std::optional<std::chrono::nanoseconds> stamp) {
+  if (!on_arrival_({topic, stamp})) return;
   const bool is_3d = drive_->iface().type() == shm::IfaceType::position3d;
   const std::array<double, 6> all = {twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y, twist.angular.z};
   const std::array<double, 3> flat = {twist.linear.x, twist.linear.y, twist.angular.z};
   const auto values = is_3d ? std::span<const double>(all) : std::span<const double>(flat);
-  if (auto done = drive_->iface().command(shm::CommandKind::velocity, values, timeout_); !done) return refuse(topic, done.error().message);
-  on_arrival_({topic, stamp});
+  if (auto done = drive_->iface().command(shm::CommandKind::velocity, values, timeout_); !done) refuse(topic, done.error().message);
 }
 
 void Commands::refuse(const std::string& topic, const std::string& why) {
@@ -109,17 +109,16 @@ base::Result<void> Commands::set(std::uint32_t mode, std::size_t joint, double v
 }
 
 void Commands::set_all(std::uint32_t mode, const std::vector<double>& values, std::size_t first, const std::string& topic) {
-  if (!is_ready()) return;
+  if (!is_ready() || !on_arrival_({topic, std::nullopt})) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (auto done = set(mode, first + i, values[i]); !done) return refuse(topic, done.error().message);
   }
   trajectory_.reset();
   send();
-  on_arrival_({topic, std::nullopt});
 }
 
 void Commands::start(const ros::JointTrajectory& message, const std::string& topic) {
-  if (!is_ready()) return;
+  if (!is_ready() || !on_arrival_({topic, stamp_of(message.header)})) return;
   if (message.points.empty()) {
     trajectory_.reset();
     return;
@@ -141,7 +140,6 @@ void Commands::start(const ros::JointTrajectory& message, const std::string& top
   }
   trajectory.start_ns = stamp_of(message.header).value_or(std::chrono::nanoseconds(-1)).count();
   trajectory_ = std::move(trajectory);
-  on_arrival_({topic, stamp_of(message.header)});
 }
 
 void Commands::advance() {

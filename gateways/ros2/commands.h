@@ -31,7 +31,8 @@ struct Arrival {
 
 class Commands {
  public:
-  using OnArrival = std::function<void(const Arrival&)>;
+  // False: the command does not count now.
+  using OnArrival = std::function<bool(const Arrival&)>;
 
   Commands(Node& node, std::chrono::nanoseconds timeout, OnArrival on_arrival)
       : node_(node), timeout_(timeout), on_arrival_(std::move(on_arrival)) {}

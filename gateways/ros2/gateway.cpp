@@ -21,9 +21,9 @@ namespace {
 
 enum Event : std::uint64_t { signal_event, dds_event, alarm_event, errand_event, turn_event };
 
-constexpr std::chrono::milliseconds look_period{200}, resend_period{50};
+constexpr std::chrono::milliseconds look_period{200}, resend_period{50}, tend_period{10};
 constexpr std::chrono::seconds report_period{10}, paused_clock_period{1};
-constexpr int idle_wait = 20;  // [ms]: the graph and replies that wait for a reader
+constexpr int idle_wait = 20;  // [ms]
 
 std::set<std::string> robots_in(const Listed& listed) {
   std::set<std::string> robots;
@@ -76,7 +76,7 @@ base::Result<void> Gateway::open() {
   if (options_.has_parameters) serve_parameters(*node_, gateway_node);
   services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, options_.service_prefix);
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
-                                            [this](const Arrival& arrival) { waits_.arrive(arrival); }, options_.has_joint_tf});
+                                            [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
   if (options_.is_lockstep) {
     const double rate = options_.clock_rate > 0 ? options_.clock_rate : 1000;
     turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)));
@@ -110,31 +110,60 @@ void Gateway::turn_loop() {
   const int count = ::epoll_wait(epoll_, events.data(), events.size(), idle_wait);
   for (int i = 0; i < count; ++i) handle(events[static_cast<std::size_t>(i)].data.u64);
   const auto now = std::chrono::steady_clock::now();
+  if (now >= next_tend_) tend(now);
+  if (are_sources_due_) choose_sources();
+  tend_tick(now);
+}
+
+void Gateway::tend(Time now) {
+  next_tend_ = now + tend_period;
+  node_->tend();
+  for (const auto& robot : robots_) robot->node().tend();
+  graph_->tend(now);
   if (now >= next_look_) {
     next_look_ = now + look_period;
+    are_sources_due_ = true;
     world_.look();
+    watch_other_clocks();
     send_clock(false);
   }
   if (now >= next_report_) {
     next_report_ = now + report_period;
     report_losses();
   }
-  for (const auto& robot : robots_) is_sources_changed_ = robot->choose_sources() || is_sources_changed_;
-  if (is_sources_changed_) {
-    is_sources_changed_ = false;
-    watched_.clear();
-    if (world_.clock()) watched_.push_back(world_.clock()->segment());
-    for (const auto& source : world_.sources()) {
-      if (source->is_read()) watched_.push_back(source->segment());
-    }
-    std::erase(watched_, nullptr);
-    // In lock step the ticks say when there is something new.
-    alarm_.watch(turns_ ? std::vector<SharedSegment>{} : watched_);
+}
+
+void Gateway::choose_sources() {
+  are_sources_due_ = false;
+  bool has_changed = false;
+  for (const auto& robot : robots_) has_changed = robot->choose_sources() || has_changed;
+  std::vector<SharedSegment> watched;
+  if (world_.clock()) watched.push_back(world_.clock()->segment());
+  for (const auto& source : world_.sources()) {
+    if (source->is_read()) watched.push_back(source->segment());
   }
-  tend_tick(now);
-  node_->tend();
-  for (const auto& robot : robots_) robot->node().tend();
-  graph_->tend(now);
+  std::erase(watched, nullptr);
+  if (turns_) watched.clear();  // the ticks say when there is something new
+  if (has_changed && !turns_ && is_paused()) errands_.post(shm::ShowRequest{}, [](const base::Result<shm::Reply>&) {});
+  if (!has_changed && watched == watched_) return;
+  watched_ = watched;
+  alarm_.watch(std::move(watched));
+}
+
+bool Gateway::is_paused() const {
+  return world_.clock() && world_.clock()->iface().read() && world_.clock()->iface().sample<shm::SimulationSample>().paused != 0;
+}
+
+// Time would jump to and fro between two of them.
+void Gateway::watch_other_clocks() {
+  const auto peers = graph_->peers_of("rt/clock");
+  const auto other = std::ranges::find_if(peers, [](const Peer* peer) { return peer->is_writer; });
+  const bool is_foreign = other != peers.end() && clock_ != nullptr;
+  if (is_foreign && !is_clock_foreign_)
+    base::log(base::Level::error, "ros2-gateway",
+              "another node publishes /clock: {}. This gateway does not publish it until that one has ended",
+              graph_->node_of((*other)->guid));
+  is_clock_foreign_ = is_foreign;
 }
 
 void Gateway::handle(std::uint64_t what) {
@@ -143,6 +172,7 @@ void Gateway::handle(std::uint64_t what) {
       is_over_ = true;
       return;
     case dds_event:
+      are_sources_due_ = true;
       return participant_->deliver();
     case alarm_event:
       alarm_.clear();
@@ -161,6 +191,15 @@ void Gateway::arrange(const Listed& listed) {
   std::erase_if(robots_, [&](const auto& robot) { return !wanted.contains(robot->model()); });
   for (const auto& model : wanted) {
     if (std::ranges::any_of(robots_, [&](const auto& robot) { return robot->model() == model; })) continue;
+    const auto has_names = [&](const auto& robot) {
+      return options_.naming.names_of(robot->model()).space == options_.naming.names_of(model).space;
+    };
+    if (const auto same = std::ranges::find_if(robots_, has_names); same != robots_.end()) {
+      base::log(base::Level::error, "ros2-gateway",
+                "robot {} is not served: robot {} has the namespace {} already; give it another one with --config", model, (*same)->model(),
+                options_.naming.names_of(model).space);
+      continue;
+    }
     robots_.push_back(std::make_unique<Robot>(*shared_, model, listed));
     if (options_.has_parameters && !options_.naming.is_one_node) serve_parameters(robots_.back()->node(), robots_.back()->node().name());
     std::string line = "node " + robots_.back()->node().name().full() + ":";
@@ -169,7 +208,7 @@ void Gateway::arrange(const Listed& listed) {
   }
   std::printf("domain %u: %zu robots\n", options_.dds.domain, robots_.size());
   std::fflush(stdout);
-  is_sources_changed_ = true;
+  are_sources_due_ = true;
   send_static_transforms();
 }
 
@@ -185,7 +224,7 @@ void Gateway::send_static_transforms() {
 void Gateway::lose() {
   robots_.clear();
   clock_ns_ = -1;
-  is_sources_changed_ = true;
+  are_sources_due_ = true;
 }
 
 void Gateway::take_samples() {
@@ -198,7 +237,7 @@ void Gateway::take_samples() {
 
 void Gateway::send_clock(bool is_forced) {
   const auto& source = world_.clock();
-  if (!source || !source->iface().read() || clock_ == nullptr) return;
+  if (!source || !source->iface().read() || clock_ == nullptr || is_clock_foreign_) return;
   const auto& sample = source->iface().sample<shm::SimulationSample>();
   const std::int64_t now = tick_ ? tick_->now.count() : sample.stamp.sim_time_ns;
   const auto wall = std::chrono::steady_clock::now();

@@ -1,5 +1,5 @@
-// The gateway: robots, clock and services in one event loop. One thread; Fast DDS has its own (dds/participant.h), and so have the alarm,
-// the errands and the turns.
+// The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, common/alarm.h,
+// common/errands.h and turns.h.
 #pragma once
 
 #include <chrono>
@@ -61,6 +61,10 @@ class Gateway {
   void begin_tick(const shm::Tick& tick);
   void tend_tick(Time now);
   void report_losses();
+  void tend(Time now);
+  void choose_sources();
+  void watch_other_clocks();
+  bool is_paused() const;
   std::vector<std::string> command_topics() const;
 
   Options options_;
@@ -84,9 +88,10 @@ class Gateway {
   Time tick_start_{}, clock_sent_{};
   std::int64_t clock_ns_ = -1;
   std::uint32_t resets_ = 0;
-  bool is_sources_changed_ = false;
+  bool are_sources_due_ = false;
+  bool is_clock_foreign_ = false;
   std::map<std::string, std::uint64_t> lost_;  // by topic: as reported
-  Time next_look_{}, next_report_{};
+  Time next_look_{}, next_report_{}, next_tend_{};
   bool is_over_ = false;
   std::optional<base::Error> failed_;
 };

@@ -29,18 +29,24 @@ void Waits::begin(std::chrono::nanoseconds now, const std::vector<std::string>& 
     if (now < due_[i]) continue;
     due_[i] = (now / wanted_[i].period + 1) * wanted_[i].period;
     for (const auto& topic : topics) {
-      if (topic == wanted_[i].topic || topic.ends_with("/" + wanted_[i].topic)) missing_.insert(topic);
+      if (is_of(wanted_[i], topic)) missing_.insert(topic);
     }
   }
 }
 
-void Waits::arrive(const Arrival& arrival) {
-  if (!arrival.stamp || *arrival.stamp == now_) missing_.erase(arrival.topic);
+bool Waits::is_of(const WaitFor& wanted, const std::string& topic) { return topic == wanted.topic || topic.ends_with("/" + wanted.topic); }
+
+bool Waits::arrive(const Arrival& arrival) {
+  const bool is_awaited = std::ranges::any_of(wanted_, [&](const WaitFor& wanted) { return is_of(wanted, arrival.topic); });
+  if (!is_awaited) return true;
+  if (arrival.stamp && *arrival.stamp != now_) return false;
+  return missing_.erase(arrival.topic) > 0;
 }
 
 void Waits::rewind() {
   missing_.clear();
-  std::ranges::fill(due_, std::chrono::nanoseconds(0));
+  due_.clear();
+  for (const auto& wanted : wanted_) due_.push_back(wanted.period);
 }
 
 }  // namespace ros2

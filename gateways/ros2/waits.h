@@ -1,7 +1,8 @@
 // Commands that a tick waits for (--wait-for cmd_vel=20Hz). Pure but for the clock that it is given; one thread at a time.
 //
-// A tick waits for a topic at each multiple of its period, at the first tick at or after it. A command with a stamp must carry the time of
-// the tick; one without a stamp must come after the tick's clock was sent.
+// A tick waits for a topic at each multiple of its period but 0, at the first tick at or after it. A command with a stamp must carry the
+// time of the tick; one without a stamp must come after the tick's clock was sent. Other commands of such a topic do not count, so that
+// the moment at which they come changes nothing. At time 0 the timers of ROS do not run yet, and a stamp of 0 is none.
 #pragma once
 
 #include <chrono>
@@ -24,11 +25,12 @@ base::Result<WaitFor> parse_wait_for(const std::string& text);
 
 class Waits {
  public:
-  explicit Waits(std::vector<WaitFor> wanted) : wanted_(std::move(wanted)), due_(wanted_.size()) {}
+  explicit Waits(std::vector<WaitFor> wanted) : wanted_(std::move(wanted)) { rewind(); }
 
   // `topics`: all command topics there are.
   void begin(std::chrono::nanoseconds now, const std::vector<std::string>& topics);
-  void arrive(const Arrival& arrival);
+  // True when the command counts.
+  bool arrive(const Arrival& arrival);
   bool is_waiting() const { return !missing_.empty(); }
   const std::set<std::string>& missing() const { return missing_; }
   void give_up() { missing_.clear(); }
@@ -36,6 +38,8 @@ class Waits {
   void rewind();
 
  private:
+  static bool is_of(const WaitFor& wanted, const std::string& topic);
+
   const std::vector<WaitFor> wanted_;
   std::vector<std::chrono::nanoseconds> due_;
   std::chrono::nanoseconds now_{0};

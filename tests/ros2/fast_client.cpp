@@ -31,7 +31,12 @@ bool deliver_until(ros2::Participant& participant, Done done) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) return 2;
+  if (argc != 6) {
+    const bool is_asked = argc == 2 && std::strcmp(argv[1], "--help") == 0;
+    std::fprintf(is_asked ? stdout : stderr,
+                 "usage: ros2_fast_client DOMAIN SERVICE REQUEST_TYPE RESPONSE_TYPE HEX    call a service once\n");
+    return is_asked ? 0 : 2;
+  }
   const std::string hex = argv[5];
   std::vector<char> request;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2) request.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));

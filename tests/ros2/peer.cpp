@@ -280,8 +280,10 @@ class Peer {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: ros2_peer DOMAIN USER_DATA|-\n");
-    return 2;
+    const bool is_asked = argc == 2 && std::strcmp(argv[1], "--help") == 0;
+    std::fprintf(is_asked ? stdout : stderr,
+                 "usage: ros2_peer DOMAIN USER_DATA|-    read and write topics of DDS, as standard input says\n");
+    return is_asked ? 0 : 2;
   }
   Peer peer(static_cast<dds_domainid_t>(std::atoi(argv[1])), argv[2]);
   if (!peer.is_good()) {

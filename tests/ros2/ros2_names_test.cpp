@@ -44,14 +44,19 @@ TEST(Ros2Names, user_data_is_read_by_its_keys) {
 
 TEST(Ros2Waits, a_tick_waits_at_multiples_of_the_period) {
   Waits waits({{"cmd_vel", milliseconds(50)}});
-  waits.begin(milliseconds(0), {"/a/cmd_vel", "/b/cmd_vel", "/b/joint_trajectory"});
+  waits.begin(milliseconds(0), {"/a/cmd_vel"});
+  EXPECT_FALSE(waits.is_waiting());
+  waits.begin(milliseconds(50), {"/a/cmd_vel", "/b/cmd_vel", "/b/joint_trajectory"});
   EXPECT_EQ(waits.missing(), (std::set<std::string>{"/a/cmd_vel", "/b/cmd_vel"}));
-  waits.arrive({"/a/cmd_vel", std::nullopt});
+  EXPECT_TRUE(waits.arrive({"/a/cmd_vel", std::nullopt}));
   EXPECT_TRUE(waits.is_waiting());
-  waits.arrive({"/b/cmd_vel", std::nullopt});
+  EXPECT_TRUE(waits.arrive({"/b/cmd_vel", std::nullopt}));
   EXPECT_FALSE(waits.is_waiting());
-  waits.begin(milliseconds(40), {"/a/cmd_vel"});
+  waits.begin(milliseconds(90), {"/a/cmd_vel"});
   EXPECT_FALSE(waits.is_waiting());
+  waits.begin(milliseconds(100), {"/a/cmd_vel"});
+  EXPECT_TRUE(waits.is_waiting());
+  waits.rewind();
   waits.begin(milliseconds(50), {"/a/cmd_vel"});
   EXPECT_TRUE(waits.is_waiting());
 }
@@ -59,10 +64,17 @@ TEST(Ros2Waits, a_tick_waits_at_multiples_of_the_period) {
 TEST(Ros2Waits, a_stamp_must_be_that_of_the_tick) {
   Waits waits({{"/a/cmd_vel", milliseconds(50)}});
   waits.begin(milliseconds(100), {"/a/cmd_vel"});
-  waits.arrive({"/a/cmd_vel", milliseconds(50)});
+  EXPECT_FALSE(waits.arrive({"/a/cmd_vel", milliseconds(50)}));
   EXPECT_TRUE(waits.is_waiting());
-  waits.arrive({"/a/cmd_vel", milliseconds(100)});
+  EXPECT_TRUE(waits.arrive({"/a/cmd_vel", milliseconds(100)}));
   EXPECT_FALSE(waits.is_waiting());
+}
+
+TEST(Ros2Waits, a_command_that_no_tick_waits_for_does_not_count) {
+  Waits waits({{"cmd_vel", milliseconds(50)}});
+  waits.begin(milliseconds(0), {"/a/cmd_vel"});
+  EXPECT_FALSE(waits.arrive({"/a/cmd_vel", std::nullopt}));
+  EXPECT_TRUE(waits.arrive({"/a/joint_trajectory", std::nullopt}));
 }
 
 TEST(Ros2Waits, a_rate_is_read_with_and_without_its_unit) {

@@ -149,7 +149,11 @@ void describe(Qos& qos, const EndpointSettings& settings) {
 class FastWriter final : public Writer, private rtps::WriterListener, private eprosima::fastdds::rtps::IReaderDataFilter {
  public:
   FastWriter(EndpointSettings settings, Inbox& inbox, Endpoints& endpoints, std::uint64_t id, std::function<void()> on_match)
-      : settings_(std::move(settings)), inbox_(inbox), endpoints_(endpoints), id_(id) {
+      : settings_(std::move(settings)),
+        capacity_(settings_.is_transient || settings_.is_large ? settings_.depth : std::max(settings_.depth, least_capacity)),
+        inbox_(inbox),
+        endpoints_(endpoints),
+        id_(id) {
     endpoint_.on_match = std::move(on_match);
     endpoints_[id_] = &endpoint_;
   }
@@ -159,14 +163,14 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
   }
 
   bool open(rtps::RTPSParticipant& participant) {
-    const auto depth = static_cast<std::int32_t>(settings_.depth);
-    const rtps::HistoryAttributes attributes(rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, 256, std::min(depth, 10), depth);
+    const auto most = static_cast<std::int32_t>(capacity_);
+    const rtps::HistoryAttributes attributes(rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, 256, std::min(most, 10), most);
     history_ = std::make_unique<rtps::WriterHistory>(attributes);
     rtps::WriterAttributes wanted;
     wanted.endpoint.reliabilityKind = rtps::RELIABLE;
     wanted.endpoint.durabilityKind = settings_.is_transient ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
     wanted.endpoint.topicKind = rtps::NO_KEY;
-    wanted.times.heartbeatPeriod = {0, 200'000'000};
+    wanted.times.heartbeatPeriod = {0, 50'000'000};
     wanted.mode = settings_.is_large ? rtps::ASYNCHRONOUS_WRITER : rtps::SYNCHRONOUS_WRITER;
     writer_ = rtps::RTPSDomain::createRTPSWriter(&participant, wanted, history_.get(), this);
     if (writer_ == nullptr) return false;
@@ -210,11 +214,14 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
     ++lost_;
     return false;
   }
+  // What every reader has confirmed is not needed any more, except by readers that come later.
   void make_room() {
-    while (history_->getHistorySize() >= settings_.depth) {
-      rtps::CacheChange_t* oldest = nullptr;
-      if (!history_->get_min_change(&oldest)) return;
-      if (!writer_->is_acked_by_all(oldest)) ++lost_;
+    rtps::CacheChange_t* oldest = nullptr;
+    while (history_->get_min_change(&oldest)) {
+      const bool is_confirmed = writer_->is_acked_by_all(oldest);
+      const bool is_full = history_->getHistorySize() >= capacity_;
+      if (!is_full && (settings_.is_transient || !is_confirmed)) return;
+      if (!is_confirmed) ++lost_;
       if (!history_->remove_min_change()) return;
     }
   }
@@ -229,7 +236,11 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
     return has_identity == is_fast_dds(to_guid(reader));
   }
 
+  // Readers confirm samples some heartbeats later: until then there is room for those of a fast topic.
+  static constexpr std::size_t least_capacity = 100;
+
   const EndpointSettings settings_;
+  const std::size_t capacity_;
   Inbox& inbox_;
   Endpoints& endpoints_;
   const std::uint64_t id_;
