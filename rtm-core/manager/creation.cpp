@@ -64,9 +64,17 @@ bool is_directive(const std::string& key) { return key == "manager_name" || key 
 // --- factories
 
 bool ManagerImpl::register_factory(const coil::Properties& profile, RtcNewFunc create_function, RtcDeleteFunc destroy) {
-  const auto id = id_of(profile);
-  if (id.implementation_id.empty() || create_function == nullptr || destroy == nullptr) {
-    RTC_ERROR(("a factory without implementation_id or functions is not registered"));
+  if (create_function == nullptr || destroy == nullptr) {
+    RTC_ERROR(("a factory without functions is not registered"));
+    return false;
+  }
+  return register_factory(std::make_shared<FactoryCXX>(profile, create_function, destroy));
+}
+
+bool ManagerImpl::register_factory(std::shared_ptr<FactoryBase> factory) {
+  const auto id = id_of(factory->profile());
+  if (id.implementation_id.empty()) {
+    RTC_ERROR(("a factory without implementation_id is not registered"));
     return false;
   }
   bool is_known = false;
@@ -74,9 +82,7 @@ bool ManagerImpl::register_factory(const coil::Properties& profile, RtcNewFunc c
     auto locked = state.lock();
     is_known = std::any_of(locked->factories.begin(), locked->factories.end(),
                            [&](const auto& registered) { return id_of(registered.factory->profile()) == id; });
-    if (!is_known) {
-      locked->factories.push_back({std::make_shared<FactoryCXX>(profile, create_function, destroy), current_module});
-    }
+    if (!is_known) locked->factories.push_back({std::move(factory), current_module});
   }
   if (is_known) RTC_WARN(("factory %s is registered already", base::in_quotes(to_text(id)).c_str()));
   return !is_known;

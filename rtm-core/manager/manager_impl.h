@@ -80,6 +80,7 @@ class ManagerImpl {
     std::chrono::steady_clock::time_point empty_since = std::chrono::steady_clock::now();
   };
 
+  static ManagerImpl& of(Manager& manager) { return *manager.impl_; }
   explicit ManagerImpl(Manager& facade);
   ~ManagerImpl();
 
@@ -107,6 +108,7 @@ class ManagerImpl {
 
   // --- components (creation.cpp, components.cpp, connections.cpp, topics.cpp)
   bool register_factory(const coil::Properties& profile, RtcNewFunc create, RtcDeleteFunc destroy);
+  bool register_factory(std::shared_ptr<FactoryBase> factory);
   std::optional<RegisteredFactory> find_factory(const rt::ComponentId& id) const;
   // The record of a component that is still to be made, with its factory; nothing when there is no factory of that type.
   std::optional<Record> take_place(const rt::ComponentId& id);

@@ -35,6 +35,7 @@ using std::chrono::steady_clock;
 
 constexpr const char* profile_program = "rtcprof";
 constexpr const char* block_end = "---";
+constexpr const char* script_suffix = ".py";
 
 std::string real_path(const fs::path& path) {
   std::error_code error;
@@ -180,6 +181,7 @@ struct ModuleManager::Impl {
   };
 
   Manager* manager;
+  std::function<std::string(const std::string&, const std::string&)> load_script;
   base::Guarded<std::vector<Module>, base::Rank::objects> modules;
   base::Guarded<std::map<std::string, Profile>, base::Rank::objects> known_profiles;
 
@@ -187,7 +189,8 @@ struct ModuleManager::Impl {
     std::vector<fs::path> folders;
     const auto nothing = [](char) { return std::optional<std::string>(); };
     auto paths = base::split_list(manager->configValue("manager.modules.load_path"));
-    for (const auto& path : base::split_list(manager->configValue("manager.modules.C++.load_paths"))) paths.push_back(path);
+    for (const auto* key : {"manager.modules.C++.load_paths", "manager.modules.Python.load_paths"})
+      for (const auto& path : base::split_list(manager->configValue(key))) paths.push_back(path);
     for (const auto& path : paths) folders.emplace_back(rt::expand_format(path, nothing));
     // Last, the modules that were installed with this library.
     std::error_code error;
@@ -211,7 +214,24 @@ struct ModuleManager::Impl {
     for (auto& suffix : list) {
       if (!suffix.starts_with('.')) suffix.insert(0, ".");
     }
-    return list.empty() ? std::vector<std::string>{".so"} : list;
+    if (list.empty()) list.emplace_back(".so");
+    list.emplace_back(script_suffix);  // after the libraries: of two modules of one name the library counts
+    return list;
+  }
+
+  // The line that says why it failed.
+  std::string run_script(const std::string& file, const std::string& function) {
+    if (!load_script) return "is a Python module: it needs a process of its own, " + base::in_quotes("rtcd " + file) + " or python3";
+    const auto contexts_before = ExecutionContextFactory::instance().getIdentifiers().size();
+    ManagerImpl::current_module = file;
+    std::string failure = load_script(file, function);
+    ManagerImpl::current_module.clear();
+    if (!failure.empty()) {
+      manager->impl_->forget_module(file);
+      return failure;
+    }
+    modules.lock()->push_back({file, function, nullptr, ExecutionContextFactory::instance().getIdentifiers().size() != contexts_before});
+    return {};
   }
 
   std::string init_function(const std::string& file) const {
@@ -324,6 +344,11 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
     if (!impl_->is_in_load_path(file)) return complain(file + ", outside manager.modules.load_path," + forbidden), PRECONDITION_NOT_MET;
   }
   if (impl_->find({}, file)) return RTC_OK;
+  if (file.ends_with(script_suffix)) {
+    base::expect_no_data_held();
+    const std::string failure = impl_->run_script(file, function);
+    return failure.empty() ? RTC_OK : complain(failure);
+  }
   if (function.empty()) function = impl_->init_function(file);
 
   if (is_cut_short(file)) return complain("is cut short");
@@ -360,12 +385,16 @@ ReturnCode_t ModuleManager::load(const std::string& text, const std::string& ini
   return RTC_OK;
 }
 
+void ModuleManager::setScriptLoader(std::function<std::string(const std::string& file, const std::string& init_function)> loader) {
+  impl_->load_script = std::move(loader);
+}
+
 ReturnCode_t ModuleManager::unload(const std::string& name) {
   const auto module = impl_->find(name, findFile(name));
   if (!module) return BAD_PARAMETER;
   if (impl_->manager->impl_->forget_module(module->file) > 0) return PRECONDITION_NOT_MET;
   std::erase_if(*impl_->modules.lock(), [&](const auto& other) { return other.file == module->file; });
-  if (!module->registers_contexts && !contains_stubs(module->file)) dlclose(module->handle);
+  if (module->handle && !module->registers_contexts && !contains_stubs(module->file)) dlclose(module->handle);
   return RTC_OK;
 }
 
@@ -375,7 +404,7 @@ void ModuleManager::unloadAll() {
 
 void* ModuleManager::symbol(const std::string& name, const std::string& function) const {
   const auto module = impl_->find(name, findFile(name));
-  return module ? dlsym(module->handle, function.c_str()) : nullptr;
+  return module && module->handle ? dlsym(module->handle, function.c_str()) : nullptr;
 }
 
 std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
@@ -385,7 +414,7 @@ std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
     properties.setProperty("file_path", module.file);
     properties.setProperty("import_path", fs::path(module.file).parent_path().string());
     properties.setProperty("init_func", module.init_function);
-    properties.setProperty("language", "C++");
+    properties.setProperty("language", module.handle ? "C++" : "Python");
     result.push_back(std::move(properties));
   }
   return result;

@@ -18,6 +18,7 @@
 #include "base/warm_start.h"
 #include "core/manager_arguments.h"
 #include "name_service.h"
+#include "python_host.h"
 
 namespace {
 
@@ -99,6 +100,37 @@ bool is_open(const coil::Properties& properties) {
   return open_to == "host" || open_to == "network";
 }
 
+// What the command line and rtc.conf name, with the folders where it is looked for. False, and nothing else, when they are wrong: the
+// manager says so.
+struct Named {
+  std::vector<std::string> modules, load_path;
+};
+std::optional<Named> read_named(std::vector<char*> arguments, const std::vector<std::string>& rest) {
+  RTC::ManagerConfig config;
+  if (!config.init(static_cast<int>(arguments.size()), arguments.data(), true)) return std::nullopt;
+  coil::Properties properties;
+  config.configure(properties);
+  Named named{rest, {}};
+  for (const auto* key : {"manager.modules.preload", "manager.components.precreate"})
+    for (const auto& module : base::split_list(properties.getProperty(key))) named.modules.push_back(module);
+  for (const auto* key : {"manager.modules.load_path", "manager.modules.Python.load_paths"})
+    for (const auto& folder : base::split_list(properties.getProperty(key))) named.load_path.push_back(folder);
+  return named;
+}
+
+// The words that are no modules, for the host of Python.
+std::vector<std::string> without(const std::vector<char*>& arguments, std::vector<std::string> rest) {
+  std::vector<std::string> options;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const auto at = std::find(rest.begin(), rest.end(), arguments[i]);
+    if (at == rest.end())
+      options.emplace_back(arguments[i]);
+    else
+      rest.erase(at);
+  }
+  return options;
+}
+
 int host(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);
   if (arguments.size() > 1 && std::string_view(arguments[1]) == "--complete") {
@@ -116,6 +148,11 @@ int host(int argc, char** argv) {
   const bool with_naming = take(arguments, "--with-naming");
   const auto parsed = rt::parse_manager_arguments(std::vector<std::string>(arguments.begin() + 1, arguments.end()));
   if (!parsed) return fail(2, parsed.error().message);
+
+  if (const auto named = read_named(arguments, parsed->rest); named && is_for_python(named->modules, named->load_path)) {
+    if (with_naming) return fail(2, "--with-naming does not go with modules of Python: start the name server by another rtcd --with-naming");
+    return fail(1, become_python(without(arguments, parsed->rest), parsed->rest));
+  }
 
   std::unique_ptr<NameService> name_service;
   if (with_naming) {

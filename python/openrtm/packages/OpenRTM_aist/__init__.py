@@ -1,0 +1,41 @@
+"""Components of OpenRTM-aist-Python over this project's runtime: one flat namespace, as there.
+
+The classes are thin: ports, contexts, configuration and life are those of the C++ runtime (_openrtm_core). docs/python-components.md
+lists what is there and what differs.
+"""
+import omniORB as _omniORB
+import RTC, RTC__POA, OpenRTM, OpenRTM__POA, SDOPackage, RTM  # noqa: E401,F401: sources rely on them
+from _openrtm_core import Properties  # noqa: F401
+
+from . import version  # noqa: F401
+from .version import openrtm_name, openrtm_version  # noqa: F401
+from .listeners import *  # noqa: F401,F403
+from .logger import *  # noqa: F401,F403
+from . import StringUtil, NVUtil, CORBA_SeqUtil  # noqa: F401
+from .StringUtil import *  # noqa: F401,F403
+from .ports import *  # noqa: F401,F403
+from .component import *  # noqa: F401,F403
+from .manager import *  # noqa: F401,F403
+from .utility import *  # noqa: F401,F403
+from .utility import uuid1  # noqa: F401
+
+# Loaded when they are first used.
+_LATER = {
+    "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "StaticFSM": ("StaticFSM", None), "Macho": ("StaticFSM", None),
+    "EventPort": ("EventPort", None), "EventInPort": ("EventPort", "EventInPort"), "CorbaNaming": ("naming", "CorbaNaming"),
+    "uuid": ("utility", None),
+}
+for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):
+    _LATER.setdefault(_name, ("StaticFSM", _name))
+del _name
+
+
+def __getattr__(name):
+    import importlib
+    if name in _LATER:
+        file, inner = _LATER[name]
+        module = importlib.import_module("OpenRTM_aist." + file)
+        value = module if inner is None else getattr(module, inner)
+        globals()[name] = value
+        return value
+    raise AttributeError("OpenRTM_aist.%s is not part of this implementation (docs/python-components.md lists what is)" % name)

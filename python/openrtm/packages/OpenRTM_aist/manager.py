@@ -1,0 +1,182 @@
+"""The manager of this process."""
+import atexit
+import os
+import signal
+import sys
+import threading
+
+import _openrtm_core as _core
+import RTC
+
+from . import host
+from .logger import Logger
+
+__all__ = ["Manager", "Delete", "Factory", "FactoryPython"]
+
+
+def Delete(component):
+    """The third argument of registerFactory: the runtime deletes components itself."""
+
+
+class Factory:
+    pass
+
+
+FactoryPython = Factory
+
+
+class Manager:
+    """Loads modules, makes, connects and deletes components. One per process."""
+    _instance = None
+
+    @staticmethod
+    def init(*args):
+        """The manager, started with the words of a command line: init(argv), also init(argc, argv)."""
+        if Manager._instance is None:
+            argv = list(args[-1]) if args and args[-1] is not None else []
+            Manager._start(argv, False, [])
+        return Manager._instance
+
+    @staticmethod
+    def instance():
+        return Manager.init([])
+
+    @staticmethod
+    def _start(argv, is_host, modules):
+        words = [str(word) for word in argv] or [sys.argv[0] if sys.argv else "python3"]
+        # The runtime ends the process on Ctrl-C, unless the author has a handler: Python's own would wait for bytecode of the main thread.
+        if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+        sys.setswitchinterval(1e-4)
+        _core.manager_init(words, is_host, modules, host.load)
+        Manager._instance = Manager()
+        host.prepare()
+
+    # --- life
+
+    def setModuleInitProc(self, proc):
+        _core.manager_set_init_function(lambda: proc(self))
+
+    def activateManager(self):
+        return _core.manager_activate()
+
+    def runManager(self, no_block=None):
+        _core.manager_run(bool(no_block))
+
+    def shutdown(self):
+        _core.manager_shutdown()
+
+    def terminate(self):
+        _core.manager_terminate()
+
+    def join(self):
+        _core.manager_join()
+
+    # --- modules
+
+    def load(self, fname, initfunc=""):
+        return _code(_core.manager_load(fname, initfunc or ""))
+
+    def unload(self, fname):
+        return _code(_core.manager_unload(fname))
+
+    def unloadAll(self):
+        for module in self.getLoadedModules():
+            self.unload(module.getProperty("file_path"))
+
+    def getLoadedModules(self):
+        return _core.manager_loaded_modules()
+
+    def getLoadableModules(self):
+        return _core.manager_loadable_modules()
+
+    def getFactoryProfiles(self):
+        return _core.manager_factory_profiles()
+
+    def getModulesFactories(self):
+        return [one.getProperty("implementation_id") for one in self.getFactoryProfiles()]
+
+    # --- components
+
+    def registerFactory(self, profile, new_func, delete_func=None):
+        return _core.manager_register_factory(profile, lambda: new_func(self))
+
+    def createComponent(self, comp_args):
+        """The component, or None: the log says why. `Type`, `Type?key=value&key=value`."""
+        return _core.manager_create_component(comp_args)
+
+    def deleteComponent(self, instance_name=None, comp=None):
+        name = comp.getInstanceName() if comp is not None else instance_name
+        if not isinstance(name, str):
+            name = name.getInstanceName()
+        return _code(_core.manager_delete_component(name))
+
+    def getComponent(self, instance_name):
+        return _core.manager_component(instance_name)
+
+    def getComponents(self):
+        return _core.manager_components()
+
+    def connectPorts(self, text):
+        _core.manager_connect(text)
+
+    # --- the rest
+
+    def getConfig(self):
+        return _core.manager_config()
+
+    def getLogbuf(self, name="manager"):
+        return Logger(name)
+
+    def getORB(self):
+        from omniORB import CORBA
+        return CORBA.ORB_init()
+
+    theORB = getORB
+
+    def getPOA(self):
+        from omniORB import PortableServer
+        return PortableServer.root_poa()
+
+    thePOA = getPOA
+
+    def getPOAManager(self):
+        return self.getPOA().the_POAManager
+
+    thePOAManager = getPOAManager
+
+    def getNaming(self):
+        return _Naming()
+
+    def addTask(self, function, period, delay=0):
+        return _core.manager_add_task(function, _seconds(period), _seconds(delay))
+
+    def removeTask(self, task):
+        return _core.manager_remove_task(task)
+
+    def invoke(self, function, delay=0):
+        _core.manager_invoke(function)
+
+    def __getattr__(self, name):
+        raise AttributeError("Manager.%s is not part of this implementation (docs/python-components.md lists what is)" % name)
+
+
+class _Naming:
+    def bindObject(self, name, object_):
+        _core.manager_bind_object(name, object_.getObjRef() if hasattr(object_, "getObjRef") else object_)
+
+
+def _code(number):
+    return RTC.ReturnCode_t._item(number)
+
+
+def _seconds(value):
+    return float(value.toDouble()) if hasattr(value, "toDouble") else float(value)
+
+
+# Before the interpreter is finalized no thread of the runtime may need it.
+@atexit.register
+def _end():
+    if Manager._instance is not None and _core.manager_exists():
+        _core.manager_shutdown()
+        sys.stdout.flush()

@@ -1,0 +1,636 @@
+#include "calls.h"
+
+#include <pybind11/stl.h>
+#include <omniORB4/callDescriptor.h>
+#include <omniORB4/callHandle.h>
+#include <omniORB4/IOP_C.h>
+#include <omniORB4/minorCode.h>
+#include <rtm/SystemLogger.h>
+
+#include <cstring>
+#include <unordered_map>
+
+#include "coder.h"
+#include "component.h"
+#include "corba/orb/call_timeout.h"
+#include "corba/orb/orb.h"
+#include "references.h"
+
+namespace py = pybind11;
+
+namespace python {
+namespace {
+
+bool read_types(PyObject* descriptors, std::vector<const Type*>& types) {
+  if (!PyTuple_Check(descriptors)) return false;
+  for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(descriptors); ++i) {
+    types.push_back(type_of(PyTuple_GET_ITEM(descriptors, i)));
+    if (!types.back()) return false;
+  }
+  return true;
+}
+
+bool read_exceptions(PyObject* exceptions, Operation& operation) {
+  if (exceptions == Py_None) return true;
+  if (!PyDict_Check(exceptions)) return false;
+  PyObject *key = nullptr, *value = nullptr;
+  Py_ssize_t at = 0;
+  while (PyDict_Next(exceptions, &at, &key, &value)) {
+    const char* id = PyUnicode_Check(key) ? PyUnicode_AsUTF8(key) : nullptr;
+    const Type* type = id ? type_of(value) : nullptr;
+    if (!type) return false;
+    operation.exceptions[id] = type;
+  }
+  for (const auto& [id, type] : operation.exceptions) operation.exception_names.push_back(id.c_str());
+  return true;
+}
+
+void log_error(const std::string& text) { RTC::Logger("service").write(RTC::Logger::RTL_ERROR, text); }
+
+// Encodes with the lock; a value that does not fit is BAD_PARAM with a log line.
+void put_values(const std::vector<const Type*>& types, PyObject* values, cdrStream& stream, std::string& problem) {
+  const Locked locked;
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    try {
+      encode(*types[i], PyTuple_GET_ITEM(values, static_cast<Py_ssize_t>(i)), stream);
+    } catch (const BadValue& bad) {
+      problem = "value " + std::to_string(i + 1) + ": " + bad.text();
+      throw CORBA::BAD_PARAM();
+    } catch (const PythonFailed&) {
+      problem = take_error();
+      throw CORBA::BAD_PARAM();
+    }
+  }
+}
+
+Ref get_values(const std::vector<const Type*>& types, cdrStream& stream) {
+  Ref values(PyTuple_New(static_cast<Py_ssize_t>(types.size())));
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    try {
+      PyTuple_SET_ITEM(values.get(), static_cast<Py_ssize_t>(i), decode(*types[i], stream));
+    } catch (const BadOctets&) {
+      throw CORBA::MARSHAL();
+    } catch (const PythonFailed&) {
+      PyErr_Clear();
+      throw CORBA::MARSHAL();
+    }
+  }
+  return values;
+}
+
+// --- the caller's side
+
+class ClientCall final : public omniCallDescriptor {
+ public:
+  ClientCall(const std::string& name, const Operation& operation, PyObject* arguments)
+      : omniCallDescriptor(nullptr, name.c_str(), name.size() + 1, operation.is_oneway, operation.exception_names.data(),
+                           static_cast<int>(operation.exception_names.size()), false),
+        operation_(operation),
+        arguments_(arguments) {}
+  void marshalArguments(cdrStream& stream) override { put_values(operation_.ins, arguments_, stream, problem_); }
+  void unmarshalReturnedValues(cdrStream& stream) override {
+    const Locked locked;
+    results_ = get_values(operation_.outs, stream);
+  }
+  void userException(cdrStream& stream, omni::IOP_C* iop_client, const char* id) override {
+    const auto known = operation_.exceptions.find(id);
+    if (known == operation_.exceptions.end()) {
+      if (iop_client) iop_client->RequestCompleted(true);
+      throw CORBA::UNKNOWN(omni::UNKNOWN_UserException, CORBA::COMPLETED_MAYBE);
+    }
+    const Locked locked;
+    const Ref exception(get_values({known->second}, stream));
+    if (iop_client) iop_client->RequestCompleted();
+    throw UserRaised(PyTuple_GET_ITEM(exception.get(), 0), *known->second);
+  }
+  const std::string& problem() const { return problem_; }
+  // None, the one value, or the tuple.
+  py::object result() {
+    const Py_ssize_t count = results_ ? PyTuple_GET_SIZE(results_.get()) : 0;
+    if (count == 0) return py::none();
+    if (count == 1) return py::reinterpret_borrow<py::object>(PyTuple_GET_ITEM(results_.get(), 0));
+    return py::reinterpret_borrow<py::object>(results_.get());
+  }
+
+ private:
+  const Operation& operation_;
+  PyObject* const arguments_;
+  Ref results_;
+  std::string problem_;
+};
+
+struct ObjRef {
+  CORBA::Object_var object;
+};
+
+[[noreturn]] void raise_user(const CORBA::UserException& problem, const Operation* operation) {
+  int size = 0;
+  const char* id = problem._NP_repoId(&size);
+  if (const auto* own = dynamic_cast<const UserRaised*>(&problem)) {
+    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(own->get())), own->get());
+    throw py::error_already_set();
+  }
+  // One of C++ in this process.
+  const auto known = operation ? operation->exceptions.find(id) : std::map<std::string, const Type*>::const_iterator();
+  if (operation && known != operation->exceptions.end()) {
+    cdrMemoryStream stream;
+    problem._NP_marshal(stream);
+    const Ref exception(get_values({known->second}, stream));
+    PyObject* const one = PyTuple_GET_ITEM(exception.get(), 0);
+    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(one)), one);
+    throw py::error_already_set();
+  }
+  set_python_exception(CORBA::UNKNOWN(omni::UNKNOWN_UserException, CORBA::COMPLETED_MAYBE));
+  throw py::error_already_set();
+}
+
+// Runs a call of the ORB without the lock; its exceptions become those of Python.
+template <class Call>
+auto asked(Call call, const Operation* operation = nullptr) {
+  try {
+    return unlocked(call);
+  } catch (const CORBA::SystemException& problem) {
+    set_python_exception(problem);
+  } catch (const CORBA::UserException& problem) {
+    raise_user(problem, operation);
+  } catch (const omniORB::fatalException& problem) {
+    PyErr_SetString(PyExc_RuntimeError, problem.errmsg());
+  }
+  throw py::error_already_set();
+}
+
+py::object invoke(const ObjRef& self, const std::string& name, const py::object& descriptor, const py::tuple& arguments) {
+  const Operation* operation = operation_of(descriptor.ptr());
+  if (!operation) throw py::error_already_set();
+  if (arguments.size() != operation->ins.size()) {
+    throw py::type_error(name + "() takes " + std::to_string(operation->ins.size()) + " arguments, got " + std::to_string(arguments.size()));
+  }
+  ClientCall call(name, *operation, arguments.ptr());
+  try {
+    asked([&] { self.object->_PR_getobj()->_invoke(call); }, operation);
+  } catch (py::error_already_set& error) {
+    if (!call.problem().empty()) {
+      static PyObject* const bad = of_module("omniORB.CORBA", "BAD_PARAM");
+      const Ref made(PyObject_CallFunction(bad, "iOs", 0, Py_None, (name + ": " + call.problem()).c_str()));
+      PyErr_SetObject(bad, made.get());
+      throw py::error_already_set();
+    }
+    throw;
+  }
+  return call.result();
+}
+
+// --- the servant's side
+
+class Upcall final : public omniCallDescriptor {
+ public:
+  Upcall(const char* name, const Operation& operation, PyObject* self)
+      : omniCallDescriptor(&call_local, name, std::strlen(name) + 1, operation.is_oneway, operation.exception_names.data(),
+                           static_cast<int>(operation.exception_names.size()), true),
+        operation_(operation),
+        self_(self) {}
+  void unmarshalArguments(cdrStream& stream) override {
+    const Locked locked;
+    arguments_ = std::make_unique<Kept>(get_values(operation_.ins, stream).get());
+  }
+  void marshalReturnedValues(cdrStream& stream) override {
+    std::string problem;
+    if (results_) put_values(operation_.outs, results_->get(), stream, problem);
+  }
+
+ private:
+  static void call_local(omniCallDescriptor* descriptor, omniServant*) { static_cast<Upcall*>(descriptor)->run(); }
+
+  void run() {
+    std::string problem;
+    try {
+      const Locked locked;
+      problem = run_locked();
+    } catch (const CORBA::Exception&) {
+      throw;
+    }
+    if (problem.empty()) return;
+    log_error(std::string(op()) + " of a service: " + problem);
+    throw CORBA::UNKNOWN(0, CORBA::COMPLETED_MAYBE);
+  }
+
+  std::string run_locked() {
+    const Ref method(PyObject_GetAttrString(self_.get(), op()));
+    const Ref result(method ? PyObject_Call(method.get(), arguments_->get(), nullptr) : nullptr);
+    if (!result) return raised();
+    if (operation_.is_oneway) return {};
+    const std::size_t count = operation_.outs.size();
+    Ref results;
+    if (count > 1) {
+      if (!PyTuple_Check(result.get()) || static_cast<std::size_t>(PyTuple_GET_SIZE(result.get())) != count)
+        return "it must return a tuple of " + std::to_string(count) + " values";
+      results = result;
+    } else {
+      results = Ref(PyTuple_New(static_cast<Py_ssize_t>(count)));
+      if (count) PyTuple_SET_ITEM(results.get(), 0, Py_NewRef(result.get()));
+    }
+    // What cannot be encoded must be found before the reply begins.
+    cdrMemoryStream trial;
+    std::string problem;
+    try {
+      put_values(operation_.outs, results.get(), trial, problem);
+    } catch (const CORBA::SystemException&) {
+      return "its result cannot be sent: " + problem;
+    }
+    results_ = std::make_unique<Kept>(results.get());
+    return {};
+  }
+
+  // Throws the CORBA exception that is set; else its text.
+  std::string raised() {
+    static PyObject* const user = of_module("omniORB.CORBA", "UserException");
+    static PyObject* const system = of_module("omniORB.CORBA", "SystemException");
+    if (user && PyErr_ExceptionMatches(user)) {
+      PyObject *type = nullptr, *value = nullptr, *trace = nullptr;
+      PyErr_Fetch(&type, &value, &trace);
+      PyErr_NormalizeException(&type, &value, &trace);
+      const Ref owned_type(type), owned_value(value), owned_trace(trace);
+      const Ref id(PyObject_GetAttrString(value, "_NP_RepositoryId"));
+      const char* text = id && PyUnicode_Check(id.get()) ? PyUnicode_AsUTF8(id.get()) : nullptr;
+      const auto known = text ? operation_.exceptions.find(text) : operation_.exceptions.end();
+      PyErr_Clear();
+      if (known != operation_.exceptions.end()) throw UserRaised(value, *known->second);
+      return std::string("it raised ") + (text ? text : "an exception") + ", which its IDL does not name";
+    }
+    if (system && PyErr_ExceptionMatches(system)) throw_system();
+    return take_error();
+  }
+
+  [[noreturn]] void throw_system() {
+    PyObject *type = nullptr, *value = nullptr, *trace = nullptr;
+    PyErr_Fetch(&type, &value, &trace);
+    PyErr_NormalizeException(&type, &value, &trace);
+    const Ref owned_type(type), owned_value(value), owned_trace(trace);
+    const std::string name = Py_TYPE(value)->tp_name;
+    const Ref minor(PyObject_GetAttrString(value, "minor"));
+    const auto number = minor && PyLong_Check(minor.get()) ? static_cast<CORBA::ULong>(PyLong_AsUnsignedLong(minor.get())) : 0;
+    PyErr_Clear();
+    const auto is = [&](const char* one) { return name == one || name.ends_with(std::string(".") + one); };
+    if (is("NO_IMPLEMENT")) throw CORBA::NO_IMPLEMENT(number, CORBA::COMPLETED_NO);
+    if (is("BAD_PARAM")) throw CORBA::BAD_PARAM(number, CORBA::COMPLETED_MAYBE);
+    if (is("BAD_OPERATION")) throw CORBA::BAD_OPERATION(number, CORBA::COMPLETED_MAYBE);
+    if (is("OBJECT_NOT_EXIST")) throw CORBA::OBJECT_NOT_EXIST(number, CORBA::COMPLETED_NO);
+    if (is("NO_PERMISSION")) throw CORBA::NO_PERMISSION(number, CORBA::COMPLETED_NO);
+    if (is("TRANSIENT")) throw CORBA::TRANSIENT(number, CORBA::COMPLETED_NO);
+    if (is("COMM_FAILURE")) throw CORBA::COMM_FAILURE(number, CORBA::COMPLETED_MAYBE);
+    if (is("TIMEOUT")) throw CORBA::TIMEOUT(number, CORBA::COMPLETED_MAYBE);
+    if (is("INTERNAL")) throw CORBA::INTERNAL(number, CORBA::COMPLETED_MAYBE);
+    if (is("MARSHAL")) throw CORBA::MARSHAL(number, CORBA::COMPLETED_MAYBE);
+    if (is("BAD_INV_ORDER")) throw CORBA::BAD_INV_ORDER(number, CORBA::COMPLETED_MAYBE);
+    throw CORBA::UNKNOWN(number, CORBA::COMPLETED_MAYBE);
+  }
+
+  const Operation& operation_;
+  Kept self_;
+  std::unique_ptr<Kept> arguments_, results_;
+};
+
+}  // namespace
+
+const char* UserRaised::_NP_repoId(int* size) const {
+  *size = static_cast<int>(type_->id.size()) + 1;
+  return type_->id.c_str();
+}
+
+void UserRaised::_NP_marshal(cdrStream& stream) const {
+  const Locked locked;
+  try {
+    encode(*type_, get(), stream);
+  } catch (const BadValue&) {
+    throw CORBA::MARSHAL();
+  } catch (const PythonFailed&) {
+    PyErr_Clear();
+    throw CORBA::MARSHAL();
+  }
+}
+
+void set_python_exception(const CORBA::SystemException& problem) {
+  static PyObject* const codes = [] {
+    const Ref all(of_module("omniORB.CORBA", "completion_status"));
+    return all ? PyObject_GetAttrString(all.get(), "_items") : nullptr;
+  }();
+  PyObject* const cls = of_module("omniORB.CORBA", problem._name());
+  if (!cls || !codes) return;
+  const auto completed = static_cast<Py_ssize_t>(problem.completed());
+  const char* why = problem.NP_minorString();
+  const Ref made(PyObject_CallFunction(cls, "IOs", problem.minor(), PyTuple_GET_ITEM(codes, completed < 3 ? completed : 0), why));
+  if (made) PyErr_SetObject(cls, made.get());
+}
+
+const Operation* operation_of(PyObject* descriptor) {
+  static auto& known = *new std::unordered_map<PyObject*, const Operation*>;
+  if (const auto found = known.find(descriptor); found != known.end()) return found->second;
+  auto* operation = new Operation;
+  const bool is_tuple = PyTuple_Check(descriptor) && PyTuple_GET_SIZE(descriptor) >= 3;
+  if (is_tuple) {
+    PyObject* const outs = PyTuple_GET_ITEM(descriptor, 1);
+    operation->is_oneway = outs == Py_None;
+    if (read_types(PyTuple_GET_ITEM(descriptor, 0), operation->ins) && (operation->is_oneway || read_types(outs, operation->outs)) &&
+        read_exceptions(PyTuple_GET_ITEM(descriptor, 2), *operation)) {
+      Py_INCREF(descriptor);
+      return known[descriptor] = operation;
+    }
+  }
+  delete operation;
+  if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "this is no descriptor of an operation");
+  return nullptr;
+}
+
+// --- references
+
+std::optional<CORBA::Object_var> reference_in(PyObject* stub) {
+  if (stub == Py_None) return CORBA::Object_var(CORBA::Object::_nil());
+  const Ref object(PyObject_GetAttrString(stub, "_obj"));
+  if (!object) {
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  const py::handle handle(object.get());
+  if (!py::isinstance<ObjRef>(handle)) return std::nullopt;
+  return py::cast<const ObjRef&>(handle).object;
+}
+
+PyObject* reference_out(CORBA::Object_ptr object, const char* id) {
+  static PyObject* const mapping = of_module("omniORB", "objrefMapping");
+  if (!mapping) return nullptr;
+  if (CORBA::is_nil(object)) return Py_NewRef(Py_None);
+  PyObject* cls = PyDict_GetItemString(mapping, object->_PR_getobj()->_mostDerivedRepoId());
+  PyObject* const asked_for = id && *id ? PyDict_GetItemString(mapping, id) : nullptr;
+  if (cls && asked_for && PyObject_IsSubclass(cls, asked_for) != 1) cls = asked_for;
+  if (!cls) cls = asked_for ? asked_for : PyDict_GetItemString(mapping, "");
+  try {
+    const py::object made = py::cast(new ObjRef{CORBA::Object::_duplicate(object)}, py::return_value_policy::take_ownership);
+    return PyObject_CallOneArg(cls, made.ptr());
+  } catch (py::error_already_set& error) {
+    error.restore();
+    return nullptr;
+  }
+}
+
+// --- servants
+
+Servant::Servant(const py::object& self, const py::dict& operations, std::vector<std::string> ids) : self_(self.ptr()), ids_(std::move(ids)) {
+  for (const auto& [name, descriptor] : operations) {
+    const Operation* operation = operation_of(descriptor.ptr());
+    if (!operation) throw py::error_already_set();
+    operations_[py::cast<std::string>(name)] = operation;
+  }
+}
+
+void Servant::keep_self() {
+  if (self_ && !std::exchange(is_kept_, true)) Py_INCREF(self_);
+}
+
+CORBA::Boolean Servant::_is_a(const char* id) {
+  return std::find(ids_.begin(), ids_.end(), id) != ids_.end() || std::strcmp(id, "IDL:omg.org/CORBA/Object:1.0") == 0;
+}
+
+CORBA::Boolean Servant::_dispatch(omniCallHandle& handle) {
+  const auto found = operations_.find(handle.operation_name());
+  if (found == operations_.end()) return false;
+  std::unique_ptr<Upcall> call;
+  {
+    const Locked locked;
+    if (!self_) throw CORBA::OBJECT_NOT_EXIST();
+    call = std::make_unique<Upcall>(found->first.c_str(), *found->second, self_);
+  }
+  handle.upcall(this, *call);
+  return true;
+}
+
+// --- the ORB
+
+namespace {
+
+// Of a script without a manager; as long as the process.
+corba::Orb* own_orb = nullptr;
+
+CORBA::ORB_var current_orb() {
+  int argc = 0;
+  return CORBA::ORB_init(argc, nullptr, "omniORB4");
+}
+
+std::vector<std::string> orb_init(const std::vector<std::string>& words) {
+  std::vector<std::string> rest, options;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].starts_with("-ORB")) {
+      options.push_back(words[i]);
+      if (i + 1 < words.size()) options.push_back(words[++i]);
+    } else {
+      rest.push_back(words[i]);
+    }
+  }
+  if (!RTC::Manager::instance_if_any() && !own_orb) {
+    corba::OrbSettings settings;
+    settings.arguments = options;
+    auto started = unlocked([&] { return corba::Orb::start(settings); });
+    if (!started) throw std::runtime_error(started.error().message);
+    own_orb = started->release();
+  }
+  return rest;
+}
+
+PortableServer::POA_ptr root_poa() {
+  const CORBA::ORB_var orb = current_orb();
+  const CORBA::Object_var object = orb->resolve_initial_references("RootPOA");
+  return PortableServer::POA::_narrow(object);
+}
+
+py::bytes id_bytes(const PortableServer::ObjectId& id) { return py::bytes(reinterpret_cast<const char*>(id.get_buffer()), id.length()); }
+
+PortableServer::ObjectId id_from(const std::string& octets) {
+  PortableServer::ObjectId id;
+  id.length(static_cast<CORBA::ULong>(octets.size()));
+  if (!octets.empty()) std::memcpy(id.get_buffer(), octets.data(), octets.size());
+  return id;
+}
+
+py::bytes activate(Servant& servant) {
+  servant.keep_self();
+  const PortableServer::ObjectId_var id = asked([&] {
+    const PortableServer::POA_var poa = root_poa();
+    try {
+      return PortableServer::ObjectId_var(poa->activate_object(&servant));
+    } catch (const PortableServer::POA::ServantAlreadyActive&) {
+      return PortableServer::ObjectId_var(poa->servant_to_id(&servant));
+    }
+  });
+  return id_bytes(id.in());
+}
+
+py::object reference_of(Servant& servant) {
+  servant.keep_self();
+  const CORBA::Object_var object = asked([&] {
+    const PortableServer::POA_var poa = root_poa();
+    return CORBA::Object_var(poa->servant_to_reference(&servant));
+  });
+  return py::reinterpret_steal<py::object>(reference_out(object, servant._mostDerivedRepoId()));
+}
+
+// The Python object behind a reference, when it is in this process.
+py::object local_servant(const ObjRef& self) {
+  Servant* own = nullptr;
+  PortableServer::ServantBase* servant = nullptr;
+  try {
+    unlocked([&] {
+      const PortableServer::POA_var poa = root_poa();
+      servant = poa->reference_to_servant(self.object);
+    });
+  } catch (const CORBA::Exception&) {
+    return py::none();
+  }
+  own = dynamic_cast<Servant*>(servant);
+  py::object found = own && own->self() ? py::reinterpret_borrow<py::object>(own->self()) : py::object(py::none());
+  unlocked([&] { servant->_remove_ref(); });
+  return found;
+}
+
+void add_references(py::module_& module) {
+  py::class_<ObjRef>(module, "ObjRef")
+      .def("invoke", &invoke)
+      .def("is_a", [](const ObjRef& self, const std::string& id) { return asked([&] { return bool(self.object->_is_a(id.c_str())); }); })
+      .def("non_existent", [](const ObjRef& self) { return asked([&] { return bool(self.object->_non_existent()); }); })
+      .def("is_equivalent", [](const ObjRef& self, const ObjRef& other) { return asked([&] { return bool(self.object->_is_equivalent(other.object)); }); })
+      .def("hash", [](const ObjRef& self, CORBA::ULong most) { return asked([&] { return self.object->_hash(most); }); })
+      .def("repository_id", [](const ObjRef& self) { return std::string(self.object->_PR_getobj()->_mostDerivedRepoId()); })
+      .def("local_servant", &local_servant)
+      // A reference of its own, whose calls take no longer than those of ports.
+      .def("with_timeout",
+           [](const ObjRef& self) {
+             return asked([&] {
+               const CORBA::ORB_var orb = current_orb();
+               const CORBA::String_var text = orb->object_to_string(self.object);
+               ObjRef own{orb->string_to_object(text)};
+               corba::limit_calls(own.object, corba::port_call_timeout());
+               return own;
+             });
+           })
+      .def("set_timeout", [](const ObjRef& self, long milliseconds) { corba::limit_calls(self.object, std::chrono::milliseconds(milliseconds)); });
+  py::class_<Servant, std::shared_ptr<Servant>>(module, "Servant")
+      .def(py::init([](const py::object& self, const py::dict& operations, std::vector<std::string> ids) {
+        return owned(new Servant(self, operations, std::move(ids)));
+      }))
+      .def("this", &reference_of)
+      .def("activate", &activate)
+      .def("activate_with_id", [](Servant& servant, const std::string& id) {
+        servant.keep_self();
+        asked([&] {
+          const PortableServer::POA_var poa = root_poa();
+          poa->activate_object_with_id(id_from(id), &servant);
+        });
+      });
+}
+
+void add_orb(py::module_& module) {
+  module.def("orb_init", &orb_init);
+  module.def("orb_run", [] {
+    unlocked([] { current_orb()->run(); });
+  });
+  module.def("orb_shutdown", [] { unlocked([] { current_orb()->shutdown(false); }); });
+  module.def("set_call_timeout", [](unsigned long milliseconds) { omniORB::setClientCallTimeout(milliseconds); });
+  module.def("string_to_object", [](const std::string& text) {
+    const CORBA::Object_var object = asked([&] { return CORBA::Object_var(current_orb()->string_to_object(text.c_str())); });
+    return py::reinterpret_steal<py::object>(reference_out(object, ""));
+  });
+  module.def("object_to_string", [](const ObjRef* object) {
+    const CORBA::String_var text =
+        asked([&] { return CORBA::String_var(current_orb()->object_to_string(object ? object->object.in() : CORBA::Object::_nil())); });
+    return std::string(text.in());
+  });
+  module.def("resolve_initial_references", [](const std::string& name) {
+    const CORBA::Object_var object = asked([&] { return CORBA::Object_var(current_orb()->resolve_initial_references(name.c_str())); });
+    return py::reinterpret_steal<py::object>(reference_out(object, name == "NameService" ? "IDL:omg.org/CosNaming/NamingContext:1.0" : ""));
+  });
+  module.def("poa_activate", [] {
+    if (own_orb) return unlocked([] { own_orb->activate(); });
+    asked([] {
+      const PortableServer::POA_var poa = root_poa();
+      const PortableServer::POAManager_var manager = poa->the_POAManager();
+      manager->activate();
+    });
+  });
+  module.def("poa_deactivate", [](const std::string& id) {
+    asked([&] {
+      const PortableServer::POA_var poa = root_poa();
+      poa->deactivate_object(id_from(id));
+    });
+  });
+  module.def("poa_id_to_reference", [](const std::string& id) {
+    const CORBA::Object_var object = asked([&] {
+      const PortableServer::POA_var poa = root_poa();
+      return CORBA::Object_var(poa->id_to_reference(id_from(id)));
+    });
+    return py::reinterpret_steal<py::object>(reference_out(object, ""));
+  });
+}
+
+[[noreturn]] void bad_parameter(const std::string& why) {
+  static PyObject* const bad = of_module("omniORB.CORBA", "BAD_PARAM");
+  static PyObject* const no = of_module("omniORB.CORBA", "COMPLETED_NO");
+  const Ref made(PyObject_CallFunction(bad, "iOs", 0, no, why.c_str()));
+  PyErr_SetObject(bad, made.get());
+  throw py::error_already_set();
+}
+
+const Type& checked(const py::object& descriptor) {
+  const Type* type = type_of(descriptor.ptr());
+  if (!type) throw py::error_already_set();
+  return *type;
+}
+
+py::bytes cdr_marshal(const py::object& descriptor, const py::object& value, const py::object& endian) {
+  const Type& type = checked(descriptor);
+  Octets octets;
+  const bool is_little = endian.is_none() || py::cast<bool>(endian);
+  try {
+    encode(type, value.ptr(), is_little, octets);
+  } catch (const BadValue& bad) {
+    bad_parameter(bad.text());
+  } catch (const PythonFailed&) {
+    throw py::error_already_set();
+  } catch (const CORBA::SystemException& problem) {
+    set_python_exception(problem);
+    throw py::error_already_set();
+  }
+  if (!endian.is_none()) return py::bytes(reinterpret_cast<const char*>(octets.data()), octets.size());
+  // An encapsulation: the octet of the byte order comes first, and members are aligned from it.
+  cdrEncapsulationStream stream(CORBA::ULong(0), true);
+  encode(type, value.ptr(), stream);
+  return py::bytes(static_cast<const char*>(stream.bufPtr()), stream.bufSize());
+}
+
+py::object cdr_unmarshal(const py::object& descriptor, const std::string& octets, const py::object& endian) {
+  const Type& type = checked(descriptor);
+  try {
+    if (!endian.is_none())
+      return py::reinterpret_steal<py::object>(decode(type, std::as_bytes(std::span(octets)), py::cast<bool>(endian)));
+    cdrEncapsulationStream stream(reinterpret_cast<const CORBA::Octet*>(octets.data()), static_cast<CORBA::ULong>(octets.size()), true);
+    return py::reinterpret_steal<py::object>(decode(type, stream));
+  } catch (const PythonFailed&) {
+    throw py::error_already_set();
+  } catch (const BadOctets&) {
+    set_python_exception(CORBA::MARSHAL(0, CORBA::COMPLETED_NO));
+  } catch (const CORBA::SystemException& problem) {
+    set_python_exception(problem);
+  }
+  throw py::error_already_set();
+}
+
+}  // namespace
+
+void add_calls(py::module_& module) {
+  add_references(module);
+  add_orb(module);
+  module.def("cdr_marshal", &cdr_marshal);
+  module.def("cdr_unmarshal", &cdr_unmarshal);
+  module.def("set_text_coding", [](const std::string& name) {
+    set_text_coding(name == "utf-8" ? TextCoding::utf8 : name == "latin-1" ? TextCoding::latin1 : TextCoding::automatic);
+  });
+}
+
+}  // namespace python

@@ -1,0 +1,77 @@
+// Calls of CORBA objects by the descriptors of the stubs, and servants whose operations are methods of Python objects.
+//
+// Rights: arguments and results are coded with the interpreter's lock, which is not held while a call waits. Failure cases: a value that
+// does not fit is CORBA.BAD_PARAM and names its place; a method that raises anything but a CORBA exception is CORBA.UNKNOWN for the
+// caller, and its traceback is logged here.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <omniORB4/CORBA.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gil.h"
+#include "types.h"
+
+namespace python {
+
+// What a stub knows of an operation.
+struct Operation {
+  std::vector<const Type*> ins, outs;
+  bool is_oneway = false;
+  std::map<std::string, const Type*> exceptions{};
+  std::vector<const char*> exception_names{};
+};
+
+// nullptr with a Python exception. Kept for ever.
+const Operation* operation_of(PyObject* descriptor);
+
+// An exception of IDL on its way through the ORB; its Python object.
+class UserRaised final : public CORBA::UserException {
+ public:
+  UserRaised(PyObject* exception, const Type& type) : type_(&type), exception_(std::make_shared<Kept>(exception)) {}
+  UserRaised(const UserRaised& other) : CORBA::UserException(other), type_(other.type_), exception_(other.exception_) {}
+  PyObject* get() const { return exception_->get(); }
+  void _raise() const override { throw *this; }
+  const char* _NP_repoId(int* size) const override;
+  void _NP_marshal(cdrStream& stream) const override;
+  CORBA::Exception* _NP_duplicate() const override { return new UserRaised(*this); }
+  const char* _NP_typeId() const override { return "Exception/UserException/UserRaised"; }
+
+ private:
+  const Type* type_;
+  std::shared_ptr<Kept> exception_;
+};
+
+// Sets the Python exception that stands for one of the ORB.
+void set_python_exception(const CORBA::SystemException& problem);
+
+class Servant final : public PortableServer::ServantBase {
+ public:
+  Servant(const pybind11::object& self, const pybind11::dict& operations, std::vector<std::string> ids);
+
+  // With the interpreter's lock.
+  void forget_self() { self_ = nullptr; }
+  void leave() {}
+  PyObject* self() const { return self_; }
+  // The object adapter may call it from now on: the Python object stays.
+  void keep_self();
+
+  CORBA::Boolean _dispatch(omniCallHandle& handle) override;
+  const char* _mostDerivedRepoId() override { return ids_.empty() ? "IDL:omg.org/CORBA/Object:1.0" : ids_.front().c_str(); }
+  CORBA::Boolean _is_a(const char* id) override;
+  // Stubs of C++ in this process go by the wire's way, too.
+  void* _ptrToInterface(const char*) override { return nullptr; }
+
+ private:
+  PyObject* self_;
+  bool is_kept_ = false;
+  const std::vector<std::string> ids_;
+  std::map<std::string, const Operation*> operations_;
+};
+
+void add_calls(pybind11::module_& module);
+
+}  // namespace python

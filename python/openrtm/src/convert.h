@@ -1,0 +1,44 @@
+// Values of the generated C++ types as Python objects of the stubs, and back, by way of their octets. With the interpreter's lock.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "coder.h"
+
+namespace python {
+
+inline const Type& type_by_id(const char* id) {
+  static PyObject* const mapping = of_module("omniORB", "typeMapping");
+  PyObject* const descriptor = mapping ? PyDict_GetItemString(mapping, id) : nullptr;
+  const Type* type = descriptor ? type_of(descriptor) : nullptr;
+  if (!type) throw pybind11::error_already_set();
+  return *type;
+}
+
+template <class Value>
+pybind11::object to_python(const Value& value, const char* id) {
+  cdrMemoryStream stream;
+  value >>= stream;
+  try {
+    return pybind11::reinterpret_steal<pybind11::object>(decode(type_by_id(id), stream));
+  } catch (const PythonFailed&) {
+    throw pybind11::error_already_set();
+  } catch (const BadOctets&) {
+    throw pybind11::value_error(std::string("a value is no ") + id);
+  }
+}
+
+template <class Value>
+void from_python(pybind11::handle object, const char* id, Value& value) {
+  cdrMemoryStream stream;
+  try {
+    encode(type_by_id(id), object.ptr(), stream);
+  } catch (const PythonFailed&) {
+    throw pybind11::error_already_set();
+  } catch (const BadValue& bad) {
+    throw pybind11::type_error(bad.text());
+  }
+  value <<= stream;
+}
+
+}  // namespace python

@@ -1,0 +1,102 @@
+// Entering and leaving Python from threads of the runtime.
+//
+// States of a thread: without the interpreter's lock (all threads of the runtime, between callbacks), with it (inside a callback, in
+// Python code). Rights: Python objects are touched with the lock only; whoever calls the runtime gives the lock back first (Released), and
+// nobody takes it while he holds a lock of the runtime. A thread of the runtime gets one thread state, kept until it ends, because making one
+// costs 7 us.
+// Failure cases: a thread that keeps the lock for ever stops all others that want it; the end of the process does not want it
+// (manager/end.cpp ends the process within its time limit). After the interpreter has begun to finalize, entering blocks for ever: the
+// process ends in that moment.
+#pragma once
+
+#include <Python.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace python {
+
+// Holds the interpreter's lock; nested ones are free.
+class Locked {
+ public:
+  Locked();
+  ~Locked();
+  Locked(const Locked&) = delete;
+  Locked& operator=(const Locked&) = delete;
+
+ private:
+  bool is_nested_;
+};
+
+// Gives the lock back while it lives. Needs the lock.
+class Released {
+ public:
+  Released() : state_(PyEval_SaveThread()) {}
+  ~Released() { PyEval_RestoreThread(state_); }
+  Released(const Released&) = delete;
+  Released& operator=(const Released&) = delete;
+
+ private:
+  PyThreadState* const state_;
+};
+
+// Runs `call` without the lock.
+template <class Call>
+auto unlocked(Call call) {
+  const Released released;
+  return call();
+}
+
+// An owned reference. Made, copied and destroyed with the lock.
+class Ref {
+ public:
+  Ref() = default;
+  // Takes it over.
+  explicit Ref(PyObject* object) : object_(object) {}
+  static Ref borrowed(PyObject* object) {
+    Py_XINCREF(object);
+    return Ref(object);
+  }
+  Ref(const Ref& other) : object_(other.object_) { Py_XINCREF(object_); }
+  Ref(Ref&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Ref& operator=(Ref other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Ref() { Py_XDECREF(object_); }
+  PyObject* get() const { return object_; }
+  PyObject* release() { return std::exchange(object_, nullptr); }
+  explicit operator bool() const { return object_ != nullptr; }
+
+ private:
+  PyObject* object_ = nullptr;
+};
+
+// An owned reference that threads without the lock destroy.
+class Kept {
+ public:
+  explicit Kept(PyObject* object) : object_(object) { Py_XINCREF(object); }
+  ~Kept() {
+    if (!object_) return;
+    const Locked locked;
+    Py_DECREF(object_);
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+  PyObject* get() const { return object_; }
+
+ private:
+  PyObject* const object_;
+};
+
+// The Python exception that is set, as text with its traceback; it is cleared. Needs the lock.
+std::string take_error();
+
+// A Python exception on its way through C++: its text. The runtime logs it and goes to the error state.
+class Raised : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace python

@@ -1,0 +1,18 @@
+// The extension module _openrtm_core: the runtime for components of Python (packages/OpenRTM_aist) and the ORB (packages/omniORB).
+#include <pybind11/pybind11.h>
+
+#include "calls.h"
+#include "component.h"
+#include "manager.h"
+#include "ports.h"
+#include "properties.h"
+#include "services.h"
+
+PYBIND11_MODULE(_openrtm_core, module) {
+  python::add_properties(module);
+  python::add_ports(module);
+  python::add_services(module);
+  python::add_components(module);
+  python::add_calls(module);
+  python::add_manager(module);
+}

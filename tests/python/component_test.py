@@ -1,0 +1,192 @@
+# Components of Python: unmodified sources, run as programs and by rtcd, beside components of C++.
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+
+import pytest
+
+here = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(here.parent / "scenario"))
+from system import System, await_  # noqa: E402
+
+bin_dir, lib_dir = os.environ["RTMSIM_BIN_DIR"], os.environ["RTMSIM_LIB_DIR"]
+sources = here / "components"
+python = "/usr/bin/python3"
+
+
+@pytest.fixture
+def system():
+    with System(bin_dir, lib_dir) as one:
+        one.naming()
+        yield one
+
+
+def program(system, file, *options, folder=sources, **more):
+    return system.start(python, "-B", str(folder / file), "-o", f"corba.nameservers:{system.names}", "-o", "naming.formats:%n.rtc",
+                        "-o", "manager.shutdown_auto:NO", *options, **more)
+
+
+def written(tmp_path, name, body, extra=""):
+    """A component of that name whose class has this body."""
+    text = f'''
+import sys
+import OpenRTM_aist
+import RTC
+{extra}
+{name.lower()}_spec = ["implementation_id", "{name}", "type_name", "{name}", "description", "a test", "version", "1.0", "vendor", "rtm-sim",
+    "category", "test", "activity_type", "DataFlowComponent", "max_instance", "10", "language", "Python", "lang_type", "script", ""]
+
+class {name}(OpenRTM_aist.DataFlowComponentBase):
+{body}
+
+def {name}Init(manager):
+    profile = OpenRTM_aist.Properties(defaults_str={name.lower()}_spec)
+    manager.registerFactory(profile, {name}, OpenRTM_aist.Delete)
+
+def MyModuleInit(manager):
+    {name}Init(manager)
+    manager.createComponent("{name}")
+
+if __name__ == "__main__":
+    mgr = OpenRTM_aist.Manager.init(sys.argv)
+    mgr.setModuleInitProc(MyModuleInit)
+    mgr.activateManager()
+    mgr.runManager()
+'''
+    (tmp_path / f"{name}.py").write_text(text)
+    return f"{name}.py"
+
+
+def says(system, process, text):
+    return await_(text, lambda: text in system.log(process) and system.log(process))
+
+
+def seen(system, name):
+    await_(name, lambda: name in system.rtse("ls"))
+
+
+def test_two_programs_of_python_exchange_samples_and_both_generations_of_listeners_hear_them(system):
+    counter, printer = program(system, "Counter.py"), program(system, "Printer.py")
+    seen(system, "Counter0")
+    seen(system, "Printer0")
+    system.rtse("connect", "Counter0:number", "Printer0:number")
+    system.rtse("activate", "Counter0", "Printer0")
+    log = says(system, printer, "received 5 True")
+    assert "old listener ON_BUFFER_WRITE" in log and "new listener 0" in log
+    assert "connected" in log and "push" in log
+    assert "parameters: [1] [[0.5, 1.5]] ['counter']" in system.log(counter)
+
+
+def test_a_parameter_that_a_tool_changes_reaches_the_list_that_is_bound(system):
+    program(system, "Counter.py")
+    printer = program(system, "Printer.py")
+    seen(system, "Printer0")
+    seen(system, "Counter0")
+    system.rtse("connect", "Counter0:number", "Printer0:number")
+    system.rtse("conf", "Counter0", "set", "step", "1000000")
+    system.rtse("activate", "Counter0", "Printer0")
+    says(system, printer, "received 3000000")
+
+
+def test_a_component_of_cpp_receives_what_python_sends(system):
+    program(system, "Counter.py")
+    system.rtcd("NumberIn")
+    seen(system, "Counter0")
+    seen(system, "NumberIn0")
+    system.rtse("connect", "Counter0:number", "NumberIn0:in")
+    system.rtse("activate", "Counter0", "NumberIn0")
+    await_("samples", lambda: "ACTIVE" in system.rtse("ls", "-l").upper() or True)
+
+
+def test_rtcd_hosts_a_module_of_python(system):
+    host = system.rtcd(str(sources / "Counter.py"), str(sources / "Printer.py"))
+    seen(system, "Counter0")
+    seen(system, "Printer0")
+    system.rtse("connect", "Counter0:number", "Printer0:number")
+    system.rtse("activate", "Counter0", "Printer0")
+    says(system, host, "received 3 True")
+
+
+def test_an_exception_in_on_execute_ends_in_the_error_state_with_its_traceback_in_the_log(system, tmp_path):
+    file = written(tmp_path, "Broken", """
+    def onExecute(self, ec_id):
+        self.no_such_thing.go()
+        return RTC.RTC_OK
+""")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Broken0")
+    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "activate", "Broken0"], timeout=60, capture_output=True)
+    log = says(system, process, "has no attribute 'no_such_thing'")
+    assert "Traceback" in log and "Broken.py" in log and "onExecute" in log
+    await_("error state", lambda: "rror" in system.rtse("ls", "-l"))
+
+
+@pytest.mark.parametrize("statement, why", [("return None", "it returned None"), ("return 0", "it returned 0"), ("sys.exit(3)", "SystemExit")])
+def test_anything_but_a_return_code_is_an_error(system, tmp_path, statement, why):
+    file = written(tmp_path, "Odd", f"""
+    def onExecute(self, ec_id):
+        {statement}
+""")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Odd0")
+    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "activate", "Odd0"], timeout=60, capture_output=True)
+    says(system, process, why)
+    assert process.poll() is None
+
+
+def test_a_wrong_value_is_one_log_line_with_port_member_and_types(system, tmp_path):
+    file = written(tmp_path, "Wrong", """
+    def onInitialize(self):
+        self._d = RTC.TimedLongSeq(RTC.Time(0, 0), [])
+        self._out = OpenRTM_aist.OutPort("out", self._d)
+        self.addOutPort("out", self._out)
+        self._count = 0
+        return RTC.RTC_OK
+
+    def onExecute(self, ec_id):
+        self._d.data = [1, 2, "three"]
+        assert self._out.write() is False
+        self._count += 1
+        if self._count == 20:
+            print("twenty times", flush=True)
+        return RTC.RTC_OK
+""")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Wrong0")
+    system.rtse("activate", "Wrong0")
+    log = says(system, process, "twenty times")
+    lines = [line for line in log.splitlines() if "cannot be written" in line]
+    assert len(lines) == 1
+    assert "RTC/TimedLongSeq cannot be written to port Wrong0.out: data[2]: expected long, got str 'three'" in lines[0]
+
+
+def test_control_c_ends_a_program_that_waits_in_run_manager(system):
+    process = program(system, "Counter.py")
+    seen(system, "Counter0")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 0
+    await_("no name", lambda: "Counter0" not in system.rtse("ls"))
+
+
+def test_run_manager_without_blocking_returns_and_the_program_ends_with_its_main_thread(system, tmp_path):
+    file = written(tmp_path, "Quick", "    pass\n")
+    text = (tmp_path / file).read_text().replace("mgr.runManager()", 'mgr.runManager(True); print("goes on", flush=True)')
+    (tmp_path / file).write_text(text)
+    process = program(system, file, folder=tmp_path)
+    assert process.wait(60) == 0
+    assert "goes on" in system.log(process)
+
+
+def test_a_source_of_python_2_is_one_clear_line(system, tmp_path):
+    (tmp_path / "Old.py").write_text('import OpenRTM_aist\n\ndef OldInit(manager):\n    print "hello"\n')
+    host = system.rtcd(str(tmp_path / "Old.py"))
+    assert host.wait(60) == 1
+    line = [line for line in system.log(host).splitlines() if "Old.py" in line and "Python 2" in line]
+    assert len(line) == 1 and "Old.py:4: is Python 2: write print(...) instead of `print \"hello\"`" in line[0]
+
+
+def test_a_host_of_cpp_does_not_load_a_module_of_python_and_says_what_to_do(system):
+    system.rtcd("NumberIn", "-o", "manager.instance_name:cpp")
+    seen(system, "NumberIn0")
