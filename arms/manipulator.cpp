@@ -7,11 +7,12 @@
 namespace arms {
 namespace {
 
-constexpr double overshoot = 0.02;        // [rad] or [m] beyond a soft limit that is not an alarm
-constexpr double stop_time = 0.2;         // [s] from full pace to rest
-constexpr double min_finger_time = 0.1;   // [s] before fingers that do not move have arrived
-constexpr double standing_error = 0.005;  // [rad] or [m]
-constexpr std::uint32_t overload_alarm = 2, joint_limit_alarm = 4, cartesian_limit_alarm = 5;
+constexpr double overshoot = 0.02;                        // [rad] or [m] beyond a soft limit that is not an alarm
+constexpr double stop_time = 0.2;                         // [s] from full pace to rest
+constexpr double min_finger_time = 0.1;                   // [s] before fingers that do not move have arrived
+constexpr double standing_error = 0.005;                  // [rad] or [m]
+constexpr double overspeed = 1.5, least_overspeed = 0.2;  // times the highest speed of a joint, and [rad/s] or [m/s] beside it
+constexpr std::uint32_t emergency_alarm = 1, overload_alarm = 2, overspeed_alarm = 3, joint_limit_alarm = 4, cartesian_limit_alarm = 5;
 
 Reply refuse(Answer answer, std::string comment) { return {answer, std::move(comment)}; }
 
@@ -58,7 +59,7 @@ void Manipulator::begin(std::span<const shm::Joint> joints, bool has_fingers, do
 
 void Manipulator::restart() {
   is_servo_on_ = false;
-  alarms_.clear();
+  std::erase_if(alarms_, [](const Alarm& alarm) { return !alarm.is_fault; });
   hold_here();
   check_limits(false);
 }
@@ -76,6 +77,7 @@ void Manipulator::feed(Feedback feedback) {
   feedback_ = std::move(feedback);
   if (!is_servo_on_) planned_ = hold_ = feedback_.positions;
   check_limits(true);
+  check_speeds();
   if (is_servo_on_ && alarms_.empty() && feedback_.overloaded)
     raise(overload_alarm, "joint " + std::to_string(*feedback_.overloaded + 1) + " is at its highest effort and does not move");
 }
@@ -98,6 +100,28 @@ void Manipulator::check_limits(bool is_alarm) {
     raise(cartesian_limit_alarm, "the control point is at (" + number_text(at.x()) + ", " + number_text(at.y()) + ", " +
                                      number_text(at.z()) + "), beyond the Cartesian soft limits");
   is_outside_.back() = is_outside;
+}
+
+// Faster than its motor can turn it: something drives the arm. Raised once for each time.
+void Manipulator::check_speeds() {
+  std::optional<std::size_t> fastest;
+  for (std::size_t i = 0; i < std::min(feedback_.velocities.size(), hard_speeds_.size()); ++i) {
+    if (std::abs(feedback_.velocities[i]) > overspeed * hard_speeds_[i] + least_overspeed) fastest = i;
+  }
+  if (fastest && !is_too_fast_)
+    raise(overspeed_alarm, "joint " + std::to_string(*fastest + 1) + " moves at " + number_text(feedback_.velocities[*fastest]) +
+                               " [rad/s or m/s], its highest speed is " + number_text(hard_speeds_[*fastest]));
+  is_too_fast_ = fastest.has_value();
+}
+
+void Manipulator::set_emergency(bool is_on) {
+  if (std::exchange(is_emergency_, is_on) == is_on) return;
+  for (Alarm& alarm : alarms_) alarm.is_fault = alarm.code == emergency_alarm && is_on;
+  if (!is_on) return;
+  const bool has_one = std::any_of(alarms_.begin(), alarms_.end(), [](const Alarm& alarm) { return alarm.code == emergency_alarm; });
+  if (!has_one) alarms_.push_back({emergency_alarm, "emergency stop", true});
+  hold_here();
+  is_servo_on_ = false;
 }
 
 // Stops the arm where it is. Without a servo nothing moves that could be stopped.
@@ -203,12 +227,13 @@ std::uint32_t Manipulator::state() const {
 }
 
 Reply Manipulator::clear_alarms() {
-  alarms_.clear();
-  return {};
+  std::erase_if(alarms_, [](const Alarm& alarm) { return !alarm.is_fault; });
+  return alarms_.empty() ? Reply{} : refuse(Answer::wrong_state, "the signal of the emergency stop is on");
 }
 
 Reply Manipulator::set_servo(bool is_on) {
   if (is_on == is_servo_on_) return {};
+  if (is_on && is_emergency_) return refuse(Answer::wrong_state, "the signal of the emergency stop is on");
   hold_here();
   is_servo_on_ = is_on;
   return {};

@@ -29,12 +29,14 @@ class Manipulator {
   struct Alarm {
     std::uint32_t code = 0;  // of the JARA text
     std::string description;
+    bool is_fault = false;  // cannot be cleared while its reason lasts; the servo is off
   };
   struct Feedback {
     std::vector<double> positions;
     double finger_ratio = 0;  // 0 closed .. 1 open
     bool are_fingers_still = true;
     std::optional<std::size_t> overloaded;  // a joint at its highest effort that does not move
+    std::vector<double> velocities{};       // empty: not known
   };
   struct Target {
     std::vector<double> positions, velocities;
@@ -50,13 +52,15 @@ class Manipulator {
 
   // Another arm, with the usual settings: servo off, nothing queued.
   void begin(std::span<const shm::Joint> joints, bool has_fingers, double speed_ratio, int command_cycle_ms = 1);
-  // The same arm after a reset of the world: servo off, nothing queued, no alarm. Settings stay.
+  // The same arm after a reset of the world: servo off, nothing queued, no alarm but that of a signal. Settings stay.
   void restart();
 
   std::size_t axes() const { return hold_.size(); }
 
   // --- each tick
   void feed(Feedback feedback);
+  // The signal of an emergency stop: an alarm that lasts as long as the signal, and no servo.
+  void set_emergency(bool is_on);
   // Moves on by simulated time. Nothing: the servo is off, the brakes hold.
   std::optional<Target> advance(double dt);
   std::optional<FingerCommand> take_finger_command();
@@ -107,6 +111,7 @@ class Manipulator {
   Reply may_configure(const char* what) const;
   void raise(std::uint32_t code, std::string description);
   void check_limits(bool is_alarm);
+  void check_speeds();
   void hold_here();
   void drop();
   bool advance_fingers(double dt);
@@ -122,7 +127,7 @@ class Manipulator {
   Feedback feedback_;
   std::vector<bool> is_outside_;  // joints, then the control point
   std::vector<Alarm> alarms_;
-  bool is_servo_on_ = false, is_paused_ = false;
+  bool is_servo_on_ = false, is_paused_ = false, is_emergency_ = false, is_too_fast_ = false;
   std::optional<Stopping> stopping_;
   std::deque<Step> queue_;
   std::uint64_t drops_ = 0;

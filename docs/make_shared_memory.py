@@ -141,7 +141,7 @@ out += """Texts of replies are JSON:
 
 | request | holds |
 | --- | --- |
-| list | `world`; `models`: name, static, pose (x y z qw qx qy qz); `ifaces`: type, name, model, subscribed; of joints also `groups`: kind (array, gripper, chain, pan_tilt), joints, name of the gripper, field of view of the camera [rad] |
+| list | `world`; `models`: name, static, pose (x y z qw qx qy qz); `ifaces`: type, name, model, subscribed; of joints also `groups`: kind (array, gripper, chain, pan_tilt), joints, name of the gripper, field of view of the camera [rad]; `attachments`: name, on, holds (MODEL::LINK or empty) of grippers and detachable joints |
 | tree | `models`: name, static, pose, `links` (name, mass, pose, collisions, sensors with the names of their ifaces), `joints` (name, type, parent, child, position, velocity), plugins, `grippers` (name, palm, fingers); `actors`: name |
 | stats | what `simctl --json stats` prints: time, speed, hash, counts, `parts` (where wall time goes), `participants`, `contacts_by_model` |
 | contacts | `model`, `total` since the start, `contacts` of now: link, other, position, normal, depth |

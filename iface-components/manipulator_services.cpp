@@ -65,7 +65,7 @@ JARA_ARM::RETURN_ID* ManipulatorCommon::getActiveAlarm(JARA_ARM::AlarmSeq_out al
     for (CORBA::ULong i = 0; i < alarms->length(); ++i) {
       auto& out = (*alarms.ptr())[i];
       out.code = arm.alarms()[i].code;
-      out.type = JARA_ARM::WARNING;
+      out.type = arm.alarms()[i].is_fault ? JARA_ARM::FAULT : JARA_ARM::WARNING;
       out.description = CORBA::string_dup(arm.alarms()[i].description.c_str());
     }
     return Reply{};

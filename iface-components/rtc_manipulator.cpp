@@ -32,6 +32,7 @@ using arms::Reply;
 RTCManipulator::RTCManipulator(RTC::Manager* manager)
     : JointComponent(manager, specification),
       command_in_("command", command_),
+      emergency_in_("emergency", emergency_),
       joints_out_("joints", joints_),
       common_port_("common"),
       middle_port_("middle"),
@@ -40,6 +41,7 @@ RTCManipulator::RTCManipulator(RTC::Manager* manager)
 
 RTC::ReturnCode_t RTCManipulator::onInitialize() {
   addInPort("command", command_in_);
+  addInPort("emergency", emergency_in_);
   addOutPort("joints", joints_out_);
   bindJoints();
   bind("gripper", gripper_);
@@ -130,6 +132,7 @@ Manipulator::Feedback RTCManipulator::feedback() const {
   now.finger_ratio = finger_ratio();
   for (std::size_t i = 0; i < axes_; ++i) {
     now.positions.push_back(part().state(i).position);
+    now.velocities.push_back(part().state(i).velocity);
     if (part().state(i).status == RTMSIM_JOINT_STALLED) now.overloaded = i;
   }
   constexpr double at_stop = 1e-3;  // [m or rad]; [m/s or rad/s]
@@ -158,6 +161,9 @@ void RTCManipulator::command_fingers(const FingerCommand& command) {
 
 // One sample in each cycle. Without one the arm holds the last.
 void RTCManipulator::read_ports() {
+  bool is_signal = false;
+  while (emergency_in_.isNew()) is_signal = emergency_in_.read() || is_signal;
+  if (is_signal) (void)call([&](Manipulator& arm, const auto&) { return arm.set_emergency(emergency_.data), Reply{}; });
   command_wait_ns_ -= static_cast<std::int64_t>(std::llround(part().dt() * 1e9));
   if (command_wait_ns_ > 0 || !command_in_.isNew() || !command_in_.read()) {
     command_wait_ns_ = std::max<std::int64_t>(command_wait_ns_, 0);

@@ -1,10 +1,10 @@
 // RTCManipulator: an arm and its gripper with the common manipulator interface of JARA. Service ports `common` and `middle`
 // (ManipulatorCommonInterface_Common, _Middle). InPort `command` (JARA_ARM::TimedJointPos): low-level positions, one sample is read every
-// `cycle`. OutPort `joints` (JARA_ARM::TimedJointPos): positions, then the gripper's ratio in %.
-// Configuration: server_id, device_id; joints: of the arm, from base to tip; gripper: joints of the fingers, empty: none; force: highest
-// effort of each finger while it closes [N or N m], 0: that of the joint; speed: in % of the highest until a client sets one; units: si
-// (rad, m) or deg_mm; cycle: of low-level commands [ms]. Read at creation only: common, middle: instance names of the interfaces; module:
-// JARA_ARM or none, part of their type names.
+// `cycle`. InPort `emergency` (RTC::TimedBoolean): true stops the arm by its brakes until false has come. OutPort `joints`
+// (JARA_ARM::TimedJointPos): positions, then the gripper's ratio in %. Configuration: server_id, device_id; joints: of the arm, from base
+// to tip; gripper: joints of the fingers, empty: none; force: highest effort of each finger while it closes [N or N m], 0: that of the
+// joint; speed: in % of the highest until a client sets one; units: si (rad, m) or deg_mm; cycle: of low-level commands [ms]. Read at
+// creation only: common, middle: instance names of the interfaces; module: JARA_ARM or none, part of their type names.
 #pragma once
 
 #include <rtm/CorbaPort.h>
@@ -57,6 +57,8 @@ class RTCManipulator : public iface::JointComponent, public iface::ManipulatorOw
   base::Guarded<Shared, base::Rank::details> shared_;
   JARA_ARM::TimedJointPos command_;
   RTC::InPort<JARA_ARM::TimedJointPos> command_in_;
+  RTC::TimedBoolean emergency_;
+  RTC::InPort<RTC::TimedBoolean> emergency_in_;
   JARA_ARM::TimedJointPos joints_;
   RTC::OutPort<JARA_ARM::TimedJointPos> joints_out_;
   RTC::CorbaPort common_port_, middle_port_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <utility>
 
 #include "conversions.h"
 
@@ -13,7 +15,7 @@ static const iface::Specification specification{
     .description = "Joints of a simulated robot, with the ports of hrpsys",
     .phase = iface::command_phase,
     .device = "arm::joints",
-    .parameters = {{"joints", "", "string", "text"}, {"servo", "1", "int", "radio", "(0,1)"}},
+    .parameters = {{"joints", "", "string", "text"}, {"servo", "1", "int", "radio", "(0,1)"}, {"sensors", "", "string", "text"}},
 };
 
 namespace {
@@ -41,10 +43,69 @@ void fill_state(State& state, const RTCRobotHardware::Status& status) {
     each.length(1);
     each[0] = status.servo[i];
   }
+  const auto fill_sensors = [](auto& sequence, const std::vector<std::vector<double>>& values) {
+    sequence.length(static_cast<CORBA::ULong>(values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) fill(sequence[static_cast<CORBA::ULong>(i)], values[i]);
+  };
+  fill_sensors(state.force, status.force);
+  fill_sensors(state.rateGyro, status.rate);
+  fill_sensors(state.accel, status.acceleration);
   state.voltage = state.current = 0;
 }
 
 }  // namespace
+
+struct RTCRobotHardware::Sensor {
+  enum class Kind { rate, accel, force };
+  Sensor(const std::string& port, Kind what, std::string iface_name, iface::Say say)
+      : kind(what),
+        iface(std::move(iface_name)),
+        link(what == Kind::force ? shm::IfaceType::force_torque : shm::IfaceType::imu, std::move(say)),
+        rate_out(port.c_str(), rate),
+        accel_out(port.c_str(), accel),
+        force_out(port.c_str(), force),
+        values(what == Kind::force ? 6 : 3) {}
+  RTC::OutPortBase& port() {
+    return kind == Kind::rate    ? static_cast<RTC::OutPortBase&>(rate_out)
+           : kind == Kind::accel ? accel_out
+                                 : static_cast<RTC::OutPortBase&>(force_out);
+  }
+  // What the iface has, when it is new.
+  bool read() {
+    const shm::Iface* now = link.fresh(std::chrono::nanoseconds(0));
+    if (now == nullptr || now->sample<shm::Stamp>().valid == 0) return false;
+    time = iface::to_time(now->sample<shm::Stamp>().sim_time_ns);
+    const auto take = [&](const double* from, std::size_t at) {
+      std::copy(from, from + 3, values.begin() + static_cast<std::ptrdiff_t>(at));
+    };
+    if (kind == Kind::force) {
+      const auto& sample = now->sample<shm::ForceTorqueSample>();
+      take(sample.force, 0), take(sample.torque, 3);
+    } else {
+      const auto& sample = now->sample<shm::ImuSample>();
+      take(kind == Kind::rate ? sample.angular_velocity : sample.acceleration, 0);
+    }
+    return true;
+  }
+  void write() {
+    rate.tm = accel.tm = force.tm = time;
+    if (kind == Kind::rate) rate.data = {values[0], values[1], values[2]}, rate_out.write();
+    if (kind == Kind::accel) accel.data = {values[0], values[1], values[2]}, accel_out.write();
+    if (kind == Kind::force) fill(force.data, values), force_out.write();
+  }
+
+  Kind kind;
+  std::string iface;
+  iface::IfaceLink link;
+  RTC::TimedAngularVelocity3D rate;
+  RTC::TimedAcceleration3D accel;
+  RTC::TimedDoubleSeq force;
+  RTC::OutPort<RTC::TimedAngularVelocity3D> rate_out;
+  RTC::OutPort<RTC::TimedAcceleration3D> accel_out;
+  RTC::OutPort<RTC::TimedDoubleSeq> force_out;
+  std::vector<double> values;
+  RTC::Time time{};
+};
 
 void RobotHardware::getStatus(Service::RobotState_out state) {
   state = new Service::RobotState();
@@ -64,8 +125,13 @@ CORBA::Boolean RobotHardware::servo(const char* name, Service::SwitchStatus stat
   const bool is_on = status == Service::SWITCH_ON;
   return !joints.empty() && owner_.post("servo", [this, joints, is_on] { owner_.set_servo(joints, is_on); });
 }
-void RobotHardware::setServoGainPercentage(const char*, CORBA::Double) {
-  owner_.post("setServoGainPercentage", [this] { owner_.refuse_gains(); });
+void RobotHardware::setServoGainPercentage(const char* name, CORBA::Double percentage) {
+  const auto joints = owner_.joints_named(name);
+  owner_.post("setServoGainPercentage", [this, joints, percentage] { owner_.set_gain(joints, percentage); });
+}
+void RobotHardware::setJointControlMode(const char* name, Service::JointControlMode mode) {
+  const auto joints = owner_.joints_named(name);
+  owner_.post("setJointControlMode", [this, joints, mode] { owner_.set_mode(joints, mode); });
 }
 void RobotHardware::setServoErrorLimit(const char* name, CORBA::Double limit) {
   const auto joints = owner_.joints_named(name);
@@ -98,6 +164,8 @@ RTCRobotHardware::RTCRobotHardware(RTC::Manager* manager)
       service_port_("RobotHardwareService"),
       service_(*this) {}
 
+RTCRobotHardware::~RTCRobotHardware() = default;
+
 RTC::ReturnCode_t RTCRobotHardware::onInitialize() {
   addInPort("qRef", q_ref_in_);
   addInPort("dqRef", dq_ref_in_);
@@ -111,7 +179,43 @@ RTC::ReturnCode_t RTCRobotHardware::onInitialize() {
   addPort(service_port_);
   bindJoints();
   bind("servo", servo_);
+  add_sensors();
   return RTC::RTC_OK;
+}
+
+// Names of ports cannot change after the ports are made.
+void RTCRobotHardware::add_sensors() {
+  using Kind = Sensor::Kind;
+  static const std::map<std::string, Kind> kinds = {{"rate", Kind::rate}, {"accel", Kind::accel}, {"force", Kind::force}};
+  for (const std::string& word : base::split_list(getProperties().getProperty("conf.default.sensors"))) {
+    const auto equals = word.find('='), colon = word.find(':', equals == std::string::npos ? 0 : equals);
+    const auto kind =
+        equals == std::string::npos || colon == std::string::npos ? kinds.end() : kinds.find(word.substr(equals + 1, colon - equals - 1));
+    if (kind == kinds.end() || equals == 0 || colon + 1 == word.size()) {
+      RTC_WARN(("sensors: expected NAME=KIND:IFACE with kind rate, accel or force, got \"%s\"; it is ignored", word.c_str()));
+      continue;
+    }
+    sensors_.push_back(std::make_unique<Sensor>(word.substr(0, equals), kind->second, word.substr(colon + 1), say()));
+    addOutPort(word.substr(0, equals).c_str(), sensors_.back()->port());
+  }
+}
+
+void RTCRobotHardware::attached(const iface::Device& device) {
+  JointComponent::attached(device);
+  for (const auto& sensor : sensors_) note(sensor->link.attach({device.server_id, sensor->iface}, true));
+}
+
+void RTCRobotHardware::detaching() {
+  JointComponent::detaching();
+  for (const auto& sensor : sensors_) sensor->link.detach();
+}
+
+void RTCRobotHardware::read_sensors(Status& now) {
+  for (const auto& sensor : sensors_) {
+    if (sensor->read()) sensor->write();
+    auto& all = sensor->kind == Sensor::Kind::force ? now.force : sensor->kind == Sensor::Kind::rate ? now.rate : now.acceleration;
+    all.push_back(sensor->values);
+  }
 }
 
 std::vector<std::size_t> RTCRobotHardware::joints_named(const std::string& name) const {
@@ -166,12 +270,27 @@ void RTCRobotHardware::set_error_limit(const std::vector<std::size_t>& joints, d
   }
 }
 
-void RTCRobotHardware::refuse_gains() {
-  note(base::Error{"setServoGainPercentage is ignored: the simulator keeps the gains that simctl joints shows"});
+void RTCRobotHardware::set_gain(const std::vector<std::size_t>& joints, double percent) {
+  for (const std::size_t i : joints) {
+    if (i < part().size()) note(part().set_gain(i, percent));
+  }
+}
+
+// What has come for the old mode counts no more.
+void RTCRobotHardware::set_mode(const std::vector<std::size_t>& joints, ControlMode mode) {
+  fit();
+  for (const std::size_t i : joints) {
+    if (i >= servos_.size()) continue;
+    servos_[i].mode = mode;
+    apply(i);
+  }
 }
 
 // Without servo or power the brakes hold; with both the joint stays where it is until a reference comes.
-void RTCRobotHardware::apply(std::size_t i) { servos_[i].is_active() ? part().hold(i) : part().brake(i); }
+void RTCRobotHardware::apply(std::size_t i) {
+  const bool is_free = servos_[i].mode == OpenHRP::RobotHardwareService::FREE;
+  servos_[i].is_active() ? (is_free ? part().free(i) : part().hold(i)) : part().brake(i);
+}
 
 // The newest; one whose length is wrong is said once.
 bool RTCRobotHardware::read(Reference& reference) {
@@ -198,14 +317,23 @@ void RTCRobotHardware::read_ports() {
   fit();
   const bool has_q = read(positions_), has_dq = read(velocities_), has_tau = read(efforts_);
   for (std::size_t i = 0; i < part().size(); ++i) {
-    if (!servos_[i].is_active()) continue;
-    if (positions_.has_come) {
-      if (has_q || has_dq || has_tau) note(part().follow(i, value(positions_, i), value(velocities_, i), value(efforts_, i)));
-    } else if (has_dq) {
-      note(part().turn(i, value(velocities_, i)));
-    } else if (has_tau && !velocities_.has_come) {
-      note(part().push(i, value(efforts_, i)));
-    }
+    if (servos_[i].is_active()) command(i, has_q, has_dq, has_tau);
+  }
+}
+
+void RTCRobotHardware::command(std::size_t i, bool has_q, bool has_dq, bool has_tau) {
+  const auto mode = servos_[i].mode;
+  const bool is_free = mode == Service::FREE, is_position = mode == Service::POSITION;
+  const bool is_torque = mode == Service::TORQUE || (!mode && !positions_.has_come && !velocities_.has_come);
+  const bool is_velocity = mode == Service::VELOCITY || (!mode && !positions_.has_come && velocities_.has_come);
+  if (is_free) return;
+  if (is_torque) {
+    if (has_tau) note(part().push(i, value(efforts_, i)));
+  } else if (is_velocity) {
+    if (has_dq) note(part().turn(i, value(velocities_, i)));
+  } else if (positions_.has_come && (has_q || has_dq || (has_tau && !is_position))) {
+    const double effort = is_position ? 0 : value(efforts_, i);
+    note(part().follow(i, value(positions_, i), value(velocities_, i), effort));
   }
 }
 
@@ -252,6 +380,7 @@ void RTCRobotHardware::publish(const shm::Stamp& stamp) {
     servo_state_.data[i][0] = now.servo[i];
   }
   servo_state_out_.write();
+  read_sensors(now);
   *status_.lock() = std::move(now);
 }
 

@@ -2,7 +2,9 @@
 // change. InPorts `qRef`, `dqRef`, `tauRef` (RTC::TimedDoubleSeq, a value for each joint): positions with velocities and efforts that are
 // fed forward; velocities, where no qRef has come; efforts, where neither has. OutPorts `q`, `dq`, `tau`, `ctau` (RTC::TimedDoubleSeq) and
 // `servoState` (OpenHRP::TimedLongSeqSeq). Service port `RobotHardwareService` (OpenHRP::RobotHardwareService, instance service0).
-// Configuration: server_id, device_id; joints: in the order of their ids, empty: that of the iface; servo: 1: on from the start.
+// Configuration: server_id, device_id; joints: in the order of their ids, empty: that of the iface; servo: 1: on from the start. Read at
+// creation only: sensors: NAME=KIND:IFACE, separated by commas, each an OutPort of that name: of kind rate (RTC::TimedAngularVelocity3D) or
+// accel (RTC::TimedAcceleration3D) of an imu, or force (RTC::TimedDoubleSeq of 6) of a force and torque sensor.
 #pragma once
 
 #include <rtm/ext/HRPDataTypesSkel.h>
@@ -14,6 +16,8 @@
 #include <rtm/DataOutPort.h>
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +36,7 @@ class RobotHardware : public virtual POA_OpenHRP::RobotHardwareService, public v
   CORBA::Boolean servo(const char* name, Service::SwitchStatus status) override;
   void setServoGainPercentage(const char* name, CORBA::Double percentage) override;
   void setServoErrorLimit(const char* name, CORBA::Double limit) override;
+  void setJointControlMode(const char* name, Service::JointControlMode mode) override;
   void calibrateInertiaSensor() override {}
   void removeForceSensorOffset() override {}
   void initializeJointAngle(const char*, const char*) override {}
@@ -50,12 +55,14 @@ class RobotHardware : public virtual POA_OpenHRP::RobotHardwareService, public v
 class RTCRobotHardware : public iface::JointComponent {
  public:
   explicit RTCRobotHardware(RTC::Manager* manager);
+  ~RTCRobotHardware() override;
   RTC::ReturnCode_t onInitialize() override;
 
   // Any thread.
   struct Status {
     std::vector<double> position, command, effort;
     std::vector<std::int32_t> servo;
+    std::vector<std::vector<double>> force, rate, acceleration;  // of the sensors, in the order of the parameter
   };
   Status status() const { return *status_.lock(); }
   // Numbers of the joints that a joint's name, a group or "all" means; empty: there is none.
@@ -66,9 +73,13 @@ class RTCRobotHardware : public iface::JointComponent {
   void set_servo(const std::vector<std::size_t>& joints, bool is_on);
   void set_power(const std::vector<std::size_t>& joints, bool is_on);
   void set_error_limit(const std::vector<std::size_t>& joints, double limit);
-  void refuse_gains();
+  void set_gain(const std::vector<std::size_t>& joints, double percent);
+  using ControlMode = OpenHRP::RobotHardwareService::JointControlMode;
+  void set_mode(const std::vector<std::size_t>& joints, ControlMode mode);
 
  protected:
+  void attached(const iface::Device& device) override;
+  void detaching() override;
   void read_ports() override;
   void step() override;
   void publish(const shm::Stamp& stamp) override;
@@ -82,15 +93,22 @@ class RTCRobotHardware : public iface::JointComponent {
   };
   struct Servo {
     bool is_on = true, is_powered = true;
-    double error_limit = 0;  // [rad or m]; 0: none
+    double error_limit = 0;             // [rad or m]; 0: none
+    std::optional<ControlMode> mode{};  // nothing: by what comes
     bool is_active() const { return is_on && is_powered; }
   };
+  // A sensor of the robot on a port of its own.
+  struct Sensor;
+  void add_sensors();
+  void read_sensors(Status& now);
   bool read(Reference& reference);
+  void command(std::size_t i, bool has_q, bool has_dq, bool has_tau);
   double value(const Reference& reference, std::size_t i) const;
   void fit();
   void apply(std::size_t i);
 
   int servo_ = 1;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
   RTC::TimedDoubleSeq q_ref_, dq_ref_, tau_ref_, q_, dq_, tau_, ctau_;
   RTC::InPort<RTC::TimedDoubleSeq> q_ref_in_;
   RTC::InPort<RTC::TimedDoubleSeq> dq_ref_in_;

@@ -84,7 +84,7 @@ base::Result<void> JointPart::send(Iface& iface) {
   for (Member& member : members_) {
     double* at = values_.data() + static_cast<std::size_t>(RTMSIM_JOINT_VALUES) * member.joint.id;
     const bool is_motion = member.mode == RTMSIM_JOINT_POSITION && !member.is_path;
-    at[0] = member.mode;
+    at[0] = member.mode | (member.gain == 100 ? 0 : (member.gain + 1) << joint_gain_shift);
     at[1] = is_motion ? member.motion.position : member.value;
     at[2] = is_motion ? member.motion.velocity : member.velocity;
     at[3] = member.effort;
@@ -137,6 +137,16 @@ base::Result<void> JointPart::follow(std::size_t i, double position, double velo
   member.velocity = velocity, member.is_path = true;
   return {};
 }
+
+base::Result<void> JointPart::set_gain(std::size_t i, double percent) {
+  if (!(percent >= 0 && percent <= most_joint_gain)) return outside(text_of(i), "a gain in percent", percent, 0, most_joint_gain);
+  Member& member = members_[i];
+  member.gain = static_cast<std::uint32_t>(std::lround(percent));
+  member.has_changed = member.has_changed || member.mode != RTMSIM_JOINT_NONE;
+  return {};
+}
+
+void JointPart::free(std::size_t i) { order(members_[i], RTMSIM_JOINT_FREE, 0); }
 
 void JointPart::brake(std::size_t i) { order(members_[i], RTMSIM_JOINT_BRAKE, 0); }
 

@@ -10,6 +10,9 @@
 
 namespace shm {
 
+// The part of its gains that a joint is controlled with, in percent: in the mode of a command, plus 1; 0 there stands for 100.
+inline constexpr std::uint32_t joint_gain_shift = 16, most_joint_gain = 200;
+
 // One coordinate on its way to a goal: speed rises and falls evenly, a new goal on the way is taken from there.
 struct JointMotion {
   double position = 0, velocity = 0, goal = 0;
@@ -49,6 +52,9 @@ class JointPart {
   // Of a path that somebody else interpolates: a position with its velocity and an effort that is added.
   base::Result<void> follow(std::size_t i, double position, double velocity, double effort);
   void brake(std::size_t i);
+  void free(std::size_t i);  // it hangs
+  // Of position and velocity from the next command on; 0 to most_joint_gain [%].
+  base::Result<void> set_gain(std::size_t i, double percent);
   void hold(std::size_t i);  // where it is now
   base::Result<void> set_speed(std::size_t i, double speed);
   base::Result<void> set_acceleration(std::size_t i, double acceleration);
@@ -61,7 +67,7 @@ class JointPart {
     Joint joint{};
     JointState state{};
     JointMotion motion;
-    std::uint32_t mode = RTMSIM_JOINT_NONE;
+    std::uint32_t mode = RTMSIM_JOINT_NONE, gain = 100;
     double value = 0, velocity = 0, effort = 0;
     bool is_path = false;  // the position is not a goal of the motion
     bool has_changed = false;

@@ -11,12 +11,12 @@ rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIE
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)
 rtmsim_component(ManipulatorCaller scenario/manipulator_caller.cpp)
 rtmsim_component(ManipulatorCallerWithoutModule scenario/manipulator_caller_without_module.cpp IDL scenario/without_module/ManipulatorWithoutModule.idl)
-foreach(case moves without_module settings bad_values queue alarms low_level dead_client reset)
+foreach(case moves without_module settings bad_values queue alarms emergency low_level dead_client reset)
   add_test(NAME manipulator.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/manipulator.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(manipulator.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
-foreach(case simctl gains act_array dead_commander gripper limb ptz robot_hardware)
+foreach(case simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors)
   add_test(NAME arms.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(arms.${case} PROPERTIES LABELS integration TIMEOUT 300)

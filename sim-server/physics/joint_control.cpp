@@ -81,7 +81,7 @@ void JointServo::move_target(const JointState& now, double dt) {
   const double before = reference_;
   if (mode_ == JointMode::velocity) {
     // Not further ahead than the motor can pull.
-    const double ahead = setup_.gains.p > 0 ? most_effort() / setup_.gains.p : 0;
+    const double ahead = stiffness() > 0 ? most_effort() / stiffness() : 0;
     // Beyond a stop as well, so that it presses with all its effort.
     const double lead = ahead + std::abs(order_.value) * dt;
     reference_ = std::clamp(reference_ + order_.value * dt, now.position - lead, now.position + lead);
@@ -108,7 +108,7 @@ void JointServo::move_target(const JointState& now, double dt) {
 JointRow JointServo::spring(const JointState& now, double gravity, double dt) const {
   const JointGains& gains = setup_.gains;
   JointRow row;
-  const double stiffness = dt * gains.p + gains.d;
+  const double p = this->stiffness(), d = order_.gain * gains.d, stiffness = dt * p + d;
   const double most = most_effort();
   const double added = (mode_ == JointMode::position ? order_.effort : 0) + gains.offset + integral_ + gravity;
   if (!(stiffness > 0)) {
@@ -116,7 +116,7 @@ JointRow JointServo::spring(const JointState& now, double gravity, double dt) co
     return row;
   }
   const double speed = std::max(setup_.velocity, std::abs(reference_velocity_));
-  const double wanted = (gains.p * (reference_ - now.position) + gains.d * reference_velocity_) / stiffness;
+  const double wanted = (p * (reference_ - now.position) + d * reference_velocity_) / stiffness;
   row.most = most;
   row.give = 1 / stiffness;
   row.velocity = wanted + added / stiffness;
@@ -180,7 +180,7 @@ void JointServo::integrate(const JointState& now, double dt) {
   const bool is_saturated = std::abs(effort_) >= 0.99 * most_effort() && error * effort_ > 0;
   if (setup_.gains.i == 0 || reference_velocity_ != 0 || std::abs(error) <= hardly_any || is_saturated) return;
   const double low = std::max(setup_.gains.i_low, -motor_effort()), high = std::min(setup_.gains.i_high, motor_effort());
-  integral_ = std::clamp(integral_ + setup_.gains.i * error * dt, std::min(low, high), std::max(low, high));
+  integral_ = std::clamp(integral_ + order_.gain * setup_.gains.i * error * dt, std::min(low, high), std::max(low, high));
 }
 
 void JointServo::follow(const JointState& now, double dt) {
@@ -225,6 +225,7 @@ void JointServo::add_to(StateHash& hash) const {
   hash.add_all(static_cast<std::uint64_t>(mode_), order_.value, order_.velocity, order_.effort, reference_, reference_velocity_,
                since_order_, integral_, stalled_for_, still_for_, effort_, std::uint64_t{is_latched_}, std::uint64_t{is_far_});
   if (strength_ != 1) hash.add(strength_);
+  if (order_.gain != 1) hash.add(order_.gain);
 }
 
 }  // namespace sim

@@ -30,6 +30,7 @@ struct JointOrder {
   // Velocity and effort are fed forward; the effort of a velocity is the highest that it may use, 0: that of the setup.
   double value = 0, velocity = 0, effort = 0;
   bool is_compensated = false;  // gravity, whatever the setup says
+  double gain = 1;              // times the gains of the setup, of a position or velocity
 };
 
 class JointServo {
@@ -71,6 +72,7 @@ class JointServo {
   JointRow brake(const JointState& now, double dt);
   void integrate(const JointState& now, double dt);
   double clamped(double position) const;
+  double stiffness() const { return order_.gain * setup_.gains.p; }
   double motor_effort() const { return strength_ * setup_.effort; }
   double most_effort() const;  // now
 

@@ -339,6 +339,46 @@ TEST(Manipulator, stops_with_an_alarm_when_a_joint_is_overloaded) {
   EXPECT_EQ(f.at, before);
 }
 
+TEST(Manipulator, stops_with_an_alarm_when_a_joint_is_faster_than_its_motor) {
+  Arm f;
+  f.on();
+  ASSERT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
+  f.steps(500);
+  f.arm.feed({f.at, 0, true, {}, {0, 0, -5, 0, 0, 0}});
+  f.arm.feed({f.at, 0, true, {}, {0, 0, -5.1, 0, 0, 0}});
+  ASSERT_EQ(f.arm.alarms().size(), 1u) << "once";
+  EXPECT_EQ(f.arm.alarms()[0].code, 3u);
+  EXPECT_EQ(f.arm.alarms()[0].description, "joint 3 moves at -5 [rad/s or m/s], its highest speed is 3.14159");
+  EXPECT_EQ(f.arm.state(), Manipulator::has_servo | Manipulator::has_alarm);
+  EXPECT_TRUE(f.arm.clear_alarms().is_ok());
+  f.arm.feed({f.at, 0, true, {}, {0, 0, 1, 0, 0, 0}});
+  EXPECT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
+}
+
+TEST(Manipulator, is_off_while_the_signal_of_the_emergency_stop_is_on) {
+  Arm f;
+  f.on();
+  ASSERT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
+  f.steps(500);
+  f.arm.set_emergency(true);
+  f.arm.set_emergency(true);
+  ASSERT_EQ(f.arm.alarms().size(), 1u);
+  EXPECT_EQ(f.arm.alarms()[0].code, 1u);
+  EXPECT_TRUE(f.arm.alarms()[0].is_fault);
+  EXPECT_EQ(f.arm.state(), Manipulator::has_alarm) << "no servo, nothing queued";
+  EXPECT_FALSE(f.arm.advance(0.001)) << "the brakes hold";
+  EXPECT_EQ(f.arm.clear_alarms().answer, Answer::wrong_state);
+  EXPECT_EQ(f.arm.set_servo(true).answer, Answer::wrong_state);
+  f.arm.restart();
+  EXPECT_EQ(f.arm.alarms().size(), 1u) << "a reset of the world presses no button";
+  f.arm.set_emergency(false);
+  EXPECT_EQ(f.joints({2, 0, 1, 0, 1, 0}).answer, Answer::servo_off);
+  ASSERT_TRUE(f.arm.set_servo(true).is_ok());
+  EXPECT_EQ(f.joints({2, 0, 1, 0, 1, 0}).answer, Answer::wrong_state) << "the alarm is there until it is cleared";
+  EXPECT_TRUE(f.arm.clear_alarms().is_ok());
+  EXPECT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
+}
+
 TEST(Manipulator, moves_the_gripper_in_the_order_of_the_queue) {
   Arm f;
   f.on();

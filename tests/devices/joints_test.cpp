@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "devices/joints/joint_list.h"
+#include "shm/joint_part.h"
 #include "support/commanded_joints.h"
 #include "world/world_loader.h"
 
@@ -106,6 +107,21 @@ TEST(Joints, the_spring_of_a_position_gives_way_as_a_spring_whatever_the_step) {
     rig.f.run(1);
     EXPECT_NEAR(rig.state(0).position, 0.005, 1e-5) << step;
     EXPECT_NEAR(rig.state(0).effort, -10, 0.01) << step;
+    // With half of its gains it gives way twice as far, with none it is pushed along, and without a word of them they are whole again.
+    const auto with_gain = [](std::uint32_t percent) { return RTMSIM_JOINT_POSITION | (percent + 1) << shm::joint_gain_shift; };
+    rig.command(0, with_gain(50), 0);
+    rig.f.run(1);
+    EXPECT_NEAR(rig.state(0).position, 0.01, 2e-5) << step;
+    EXPECT_EQ(rig.state(0).mode, RTMSIM_JOINT_POSITION);
+    rig.command(0, with_gain(0), 0);
+    rig.f.run(0.1);
+    EXPECT_GT(rig.state(0).position, 1) << step;
+    rig.command(0, RTMSIM_JOINT_POSITION, 0);
+    rig.f.run(20);
+    EXPECT_NEAR(rig.state(0).position, 0.005, 1e-4) << step;
+    rig.command(0, with_gain(shm::most_joint_gain + 1), 1);
+    rig.f.run(1);
+    EXPECT_NEAR(rig.state(0).position, 0.005, 1e-4) << "not a command";
   }
 }
 

@@ -218,6 +218,17 @@ def robot_hardware():
     assert len(sample("RTCRobotHardware0:tau")["data"]) == 6
     reference("qRef", 1, 2)
     await_("a line", lambda: f"qRef has 2 values; expected 6: {arm.replace(',', ', ')}; it is ignored" in log())
+    call("too_much_gain")
+    await_("a line", lambda: "joint shoulder: a gain in percent must be within 0 and 200, got 1000" in log())
+    call("half_gain")
+    call("torque_mode")
+    reference("tauRef", 0, 0, 0, 0, 0, 0.02)
+    await_("a pushed twist", lambda: joints()["twist"]["mode"] == "effort" and joints()["shoulder"]["mode"] == "position")
+    call("free_mode")
+    await_("a free twist", lambda: joints()["twist"]["mode"] == "free")
+    call("position_mode")
+    reference("qRef", *goal)
+    await_("the positions", lambda: all(abs(a - b) < 0.002 for a, b in zip(sample("RTCRobotHardware0:q")["data"], goal)))
     call("servo_off")
     await_("brakes", lambda: joints()["waist"]["mode"] == "brake")
     call("servo_on")
@@ -227,7 +238,26 @@ def robot_hardware():
     await_("a servo that switched off", lambda: "joint waist: servo error" in log() and joints()["waist"]["mode"] == "brake")
 
 
-cases = {f.__name__: f for f in (simctl, gains, act_array, dead_commander, gripper, limb, ptz, robot_hardware)}
+# Sensors of the robot on ports of the names that controllers know.
+def robot_sensors():
+    with open(f"{rig.source}/worlds/arm.sdf") as file:
+        world = file.read().replace('<link name="palm">', '<link name="palm"><sensor name="gyro" type="imu"><update_rate>100</update_rate></sensor>', 1)
+        world = world.replace('<joint name="twist" type="revolute">', '<joint name="twist" type="revolute"><sensor name="wrist" type="force_torque"><update_rate>100</update_rate></sensor>', 1)
+    with open(f"{rig.work}/arm.sdf", "w") as file:
+        file.write(world)
+    rig.server(world=f"{rig.work}/arm.sdf")
+    rig.naming()
+    rig.host(device("RTCRobotHardware", f"conf.default.joints={arm}", "conf.default.sensors=gyrometer=rate:arm::gyro,gsensor=accel:arm::gyro,rhsensor=force:arm::wrist,odd=smell:arm::gyro"))
+    rig.there("RTCRobotHardware0")
+    assert 'sensors: expected NAME=KIND:IFACE with kind rate, accel or force, got "odd=smell:arm::gyro"; it is ignored' in log(), log()
+    rig.rtse("act", "RTCRobotHardware0")
+    await_("gravity", lambda: abs(sum(sample("RTCRobotHardware0:gsensor")["data"][axis] ** 2 for axis in ("ax", "ay", "az")) ** 0.5 - 9.81) < 0.3)
+    assert set(sample("RTCRobotHardware0:gyrometer")["data"]) == {"avx", "avy", "avz"}
+    force = sample("RTCRobotHardware0:rhsensor")["data"]
+    assert len(force) == 6 and 3 < sum(value ** 2 for value in force[:3]) ** 0.5 < 8, force  # palm and fingers weigh 0.5 kg
+
+
+cases = {f.__name__: f for f in (simctl, gains, act_array, dead_commander, gripper, limb, ptz, robot_hardware, robot_sensors)}
 with rig:
     cases[case]()
 print("ok")

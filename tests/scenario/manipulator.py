@@ -288,7 +288,34 @@ def reset():
     near(ok("getFeedbackPosJoint"), (0.3, *start[1:]))
 
 
-cases = {f.__name__: f for f in (moves, without_module, settings, bad_values, queue, alarms, low_level, dead_client, reset)}
+# The signal of an emergency stop leaves the arm to its brakes; nothing switches it on before the signal has ended.
+def emergency():
+    up()
+    goal = (0.8, 0.2, 1.5, -0.3, 1.2, 0.7)
+    ok("servoON")
+    ok("movePTPJointAbs", *goal)
+    await_("a moving arm", lambda: ok("getFeedbackPosJoint")[0] > 0.05)
+
+    def signal(is_on):
+        rig.rtse("inject", "RTCManipulator0:emergency", json.dumps({"tm": {"sec": 0, "nsec": 0}, "data": is_on}))
+
+    signal(True)
+    await_("an alarm", lambda: state() == alarm)
+    await_("brakes", lambda: joints()["waist"]["mode"] == "brake" and abs(joints()["waist"]["velocity"]) < 1e-3)
+    assert "alarm 1: emergency stop" in log(), log()
+    for name in ("servoON", "clearAlarms"):
+        answer, text = call(name)
+        assert answer == STATUS and "the signal of the emergency stop is on" in text, (name, answer, text)
+    assert call("movePTPJointAbs", *goal)[0] == SERVO
+    signal(False)
+    await_("the end of the signal", lambda: call("clearAlarms")[0] == OK)
+    ok("servoON")
+    ok("movePTPJointAbs", *goal)
+    stands()
+    near(ok("getFeedbackPosJoint"), goal)
+
+
+cases = {f.__name__: f for f in (moves, without_module, settings, bad_values, queue, alarms, emergency, low_level, dead_client, reset)}
 with rig:
     cases[case]()
 print("ok")

@@ -63,13 +63,12 @@ void show(Control& control, const shm::Iface& iface) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const auto& joint = joints[i];
     const auto& state = states[i];
-    std::printf("%3u  %-*s  %10.4f  %10.4f  %10.3f  %10.4f  %-8s  %-6s  %s to %s %s, %s %s, %s %s; p %s i %s d %s %s%s\n", joint.id,
+    std::printf("%3u  %-*s  %10.4f  %10.4f  %10.3f  %10.4f  %-8s  %-6s  %s to %s %s, %s %s, %s %s; p %.6g i %.6g d %.6g %s%s\n", joint.id,
                 static_cast<int>(width), name_of(joint).c_str(), state.position, state.velocity, state.effort, state.target,
                 word_of(modes, state.mode), word_of(statuses, state.status), base::format_number(joint.lower).c_str(),
                 base::format_number(joint.upper).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "m" : "rad",
                 base::format_number(joint.max_velocity).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "m/s" : "rad/s",
-                base::format_number(joint.max_effort).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "N" : "N m",
-                base::format_number(joint.p).c_str(), base::format_number(joint.i).c_str(), base::format_number(joint.d).c_str(),
+                base::format_number(joint.max_effort).c_str(), joint.kind == RTMSIM_JOINT_SLIDES ? "N" : "N m", joint.p, joint.i, joint.d,
                 joint.gains_from, joint.compensated != 0 ? ", gravity compensated" : "");
   }
 }

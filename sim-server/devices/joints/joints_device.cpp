@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "shm/joint_part.h"
 
 namespace sim {
 namespace {
@@ -112,7 +113,10 @@ void JointsDevice::take(std::uint64_t owner, const shm::Command& command) {
     } else if (command.kind == shm::CommandKind::joints) {
       const double* values = command.values.data() + RTMSIM_JOINT_VALUES * i;
       if (!(values[0] >= 1)) continue;
-      const auto mode = static_cast<std::uint32_t>(std::min(values[0], 1e6));
+      const auto word = static_cast<std::uint32_t>(std::min(values[0], 1e9)), gain = word >> shm::joint_gain_shift;
+      const std::uint32_t mode = word & ((1U << shm::joint_gain_shift) - 1);
+      if (gain > shm::most_joint_gain + 1) continue;
+      if (gain > 0) order.gain = (gain - 1) / 100.0;
       order.is_compensated = (mode & RTMSIM_JOINT_COMPENSATED) != 0;
       order.mode = static_cast<JointMode>(mode & 0xffU);
       if ((mode & ~(RTMSIM_JOINT_COMPENSATED | 0xffU)) != 0 || order.mode > JointMode::brake) continue;

@@ -1,6 +1,7 @@
 #include "campaign/run/iface_faults.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "base/child_process.h"
@@ -12,6 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 using Object = Fault::Object;
+
+// Components that command the iface that they name.
+constexpr std::array<std::string_view, 7> actuator_types = {
+    ":RTCPosition2d:", ":RTCActArray:", ":RTCGripper:", ":RTCLimb:", ":RTCManipulator:", ":RTCPTZ:", ":RTCRobotHardware:"};
 
 std::string parameter(const editor::SavedComponent& component, const std::string& name) {
   for (const auto& set : component.configuration_sets) {
@@ -32,8 +37,7 @@ std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
   for (const auto& component : system.components) {
     const auto device = parameter(component, "device_id");
     const auto is_a = [&](std::string_view type) { return component.id.find(type) != std::string::npos; };
-    const bool is_drive =
-        is_a(":RTCPosition2d:") || is_a(":RTCActArray:") || is_a(":RTCGripper:") || is_a(":RTCPTZ:") || is_a(":RTCRobotHardware:");
+    const bool is_drive = std::ranges::any_of(actuator_types, is_a);
     const bool is_camera = component.id.find("Camera:") != std::string::npos;
     if (!device.empty() && is_drive) targets.push_back({Object::actuator, device, {}});
     if (!device.empty() && !is_camera) targets.push_back({Object::sensor, device, {}});
