@@ -1,5 +1,5 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
-rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/ranger_test.cpp LIBRARIES iface_link)
+rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/ranger_test.cpp iface-components/scan_features_test.cpp LIBRARIES iface_link)
 rtmsim_test(manipulator_test iface-components/arm_kinematics_test.cpp iface-components/manipulator_test.cpp LIBRARIES manipulator)
 find_package(SDL2 REQUIRED)
 rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
