@@ -13,14 +13,15 @@ namespace {
 
 constexpr double half_turn = std::numbers::pi;
 
-// The element that a kind has in its sensor, with any prefix: <gz:dvl>, <dvl>. The sensor itself where there is none.
-pugi::xml_node element_of(pugi::xml_node sensor, std::string_view kind) {
+// The element that a kind has in its sensor: with a prefix of its own, as custom elements have (<gz:dvl>), else without. The sensor itself
+// where there is none.
+pugi::xml_node element_of(pugi::xml_node sensor, const char* kind) {
   for (const pugi::xml_node child : sensor.children()) {
-    std::string_view name = child.name();
-    if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) name.remove_prefix(colon + 1);
-    if (name == kind) return child;
+    const std::string_view name = child.name();
+    if (const std::size_t colon = name.find(':'); colon != std::string_view::npos && name.substr(colon + 1) == kind) return child;
   }
-  return sensor;
+  const pugi::xml_node plain = sensor.child(kind);
+  return plain ? plain : sensor;
 }
 
 std::string text_below(pugi::xml_node node, const char* name) { return std::string(base::trim(node.child(name).text().get())); }

@@ -116,6 +116,37 @@ TEST(Battery, that_is_empty_stops_the_motors_until_a_reset) {
   EXPECT_GT(drive.sample<shm::Position2dSample>().true_velocity[0], 0.4);
 }
 
+constexpr const char* small =
+    "<voltage>12</voltage><capacity>0.001</capacity><power_load>36</power_load><smooth_current_tau>0.01</smooth_current_tau>";
+
+TEST(Battery, that_is_empty_lets_an_arm_sink_and_what_flies_fall) {
+  SimulationFixture f(world_of_text(
+      "<physics type='ode'><max_step_size>0.002</max_step_size></physics>"
+      "<model name='arm'><link name='post'/><joint name='foot' type='fixed'><parent>world</parent><child>post</child></joint>"
+      "<link name='beam'><pose>0.2 0 0.5 0 0 "
+      "0</pose><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia></inertial></link>"
+      "<joint name='shoulder' type='revolute'><pose>-0.2 0 0 0 0 0</pose><parent>post</parent><child>beam</child><axis><xyz>0 -1 "
+      "0</xyz><limit><lower>-1.5</lower>"
+      "<upper>1.5</upper><effort>50</effort></limit></axis></joint>" +
+      battery(small) +
+      "</model><model name='flyer'><pose>5 0 50 0 0 0</pose><link "
+      "name='l'><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia>"
+      "</inertial><collision name='c'><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>"
+      "<plugin name='position3d' filename='gz-sim-velocity-control-system'><initial_linear>0.1 0 0</initial_linear></plugin>" +
+      battery(small) + "</model>"));
+  auto joints = f.open(IfaceType::joints, "arm::joints");
+  auto truth = f.open(IfaceType::truth, "flyer");
+  ASSERT_TRUE(joints.command(shm::CommandKind::joints, std::array{double{RTMSIM_JOINT_POSITION}, 0.3, 0.0, 0.0}));
+  const auto angle = [&] { return joints.read() ? joints.elements<shm::JointState>()[0].position : 9; };
+  const auto height = [&] { return truth.read() ? truth.sample<shm::TruthSample>().pose.z : 9; };
+  f.run(1);
+  EXPECT_NEAR(angle(), 0.3, 0.02);
+  EXPECT_NEAR(height(), 50, 0.1);
+  f.run(1.5);
+  EXPECT_LT(angle(), -0.2) << "it hangs";
+  EXPECT_LT(height(), 46);
+}
+
 TEST(Battery, is_charged_while_a_client_connects_the_charger) {
   SimulationFixture f(world_of_text(post(
       battery("<voltage>12</voltage><capacity>1</capacity><initial_charge>0.5</initial_charge><power_load>5</power_load>"

@@ -146,11 +146,12 @@ std::vector<std::string> tags_read(const std::string& reader, const std::string&
 
 TEST(Rfid, reads_tags_in_reach_the_nearest_first) {
   const std::string around = tag("far", "0.9 0 1 0 0 0") +
-                             tag("near", "-0.5 0 1 0 0 0", "<rfidtag><id>E200-17</id><data>shelf 3</data></rfidtag>") +
+                             tag("near", "-0.5 0 1 0 0 0", "<gz:rfidtag><id>E200-17</id><data>shelf 3</data></gz:rfidtag>") +
                              tag("out", "0 1.1 1 0 0 0");
   EXPECT_EQ(tags_read("", around), (std::vector<std::string>{"E200-17", "far::tag"}));
-  EXPECT_EQ(tags_read("<rfid><angle>1.0</angle></rfid>", around), std::vector<std::string>{"far::tag"}) << "the other one is behind it";
-  EXPECT_EQ(tags_read("<rfid><range>3</range><angle>3.2</angle></rfid>", around), (std::vector<std::string>{"far::tag", "out::tag"}));
+  EXPECT_EQ(tags_read("<gz:rfid><angle>1.0</angle></gz:rfid>", around), std::vector<std::string>{"far::tag"})
+      << "the other one is behind it";
+  EXPECT_EQ(tags_read("<gz:rfid><range>3</range><angle>3.2</angle></gz:rfid>", around), (std::vector<std::string>{"far::tag", "out::tag"}));
 }
 
 TEST(Rfid, reads_through_walls_unless_it_needs_sight) {
@@ -158,7 +159,7 @@ TEST(Rfid, reads_through_walls_unless_it_needs_sight) {
                              "<model name='wall'><static>1</static><pose>0.5 0 1 0 0 0</pose><link name='l'><collision "
                              "name='c'><geometry><box><size>0.1 2 2</size></box></geometry></collision></link></model>";
   EXPECT_EQ(tags_read("", around).size(), 1U);
-  EXPECT_EQ(tags_read("<rfid><line_of_sight>1</line_of_sight></rfid>", around).size(), 0U);
+  EXPECT_EQ(tags_read("<gz:rfid><line_of_sight>1</line_of_sight></gz:rfid>", around).size(), 0U);
 }
 
 TEST(Wireless, receives_what_free_space_leaves_and_less_behind_a_wall) {
