@@ -62,7 +62,9 @@ int rtmsim_list(int64_t server, int (*each)(void*, uint32_t, const char*, const 
   });
 }
 
-const char* rtmsim_type_name(uint32_t type) { return shm::is_type(type) ? shm::iface_types[type - 1].name.data() : nullptr; }
+const char* rtmsim_type_name(uint32_t type) {
+  return shm::is_type(type) ? shm::row_of(static_cast<shm::IfaceType>(type)).name.data() : nullptr;
+}
 
 uint32_t rtmsim_type(const char* name) {
   const auto type = name != nullptr ? shm::parse_type(name) : std::nullopt;
@@ -72,8 +74,7 @@ uint32_t rtmsim_type(const char* name) {
 rtmsim_iface* rtmsim_open(uint32_t server, uint32_t type, const char* name) {
   return guarded(static_cast<rtmsim_iface*>(nullptr), [&]() -> rtmsim_iface* {
     if (!shm::is_type(type) || name == nullptr) {
-      last_error() = "iface type must be from 1 to " + std::to_string(shm::iface_types.size()) + " and the name not null, got type " +
-                     std::to_string(type);
+      last_error() = "iface type must be one of rtmsim_layout.h and the name not null, got type " + std::to_string(type);
       return nullptr;
     }
     auto opened = shm::Iface::open(server, static_cast<shm::IfaceType>(type), name);

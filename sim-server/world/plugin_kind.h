@@ -14,6 +14,10 @@ enum class PluginKind {
   joint_controller,     // joints keep the position or speed that it starts with until they are commanded
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   buoyancy,             // of the world
+  label,                // of a model, visual or actor: what cameras that segment call it
+  thermal,              // of a visual: its temperature
+  thermal_sensor,       // of a thermal camera: how it counts
+  fiducial,             // of a model: a mark that detectors recognise
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };

@@ -76,10 +76,10 @@ TEST(Device, every_type_of_iface_has_one_in_the_world_of_this_test) {
   SimulationFixture f(every_device());
   EXPECT_EQ(f.dropped, std::vector<std::string>());
   const auto names = names_of(*f.simulation);
-  for (std::uint32_t type = 1; shm::is_type(type); ++type) {
-    if (type == RTMSIM_SIMULATION) continue;
-    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const Name& name) { return name.type == static_cast<shm::IfaceType>(type); }))
-        << shm::to_text(static_cast<shm::IfaceType>(type)) << ": tests/worlds/every_device.sdf needs one";
+  for (const auto& row : shm::iface_types) {
+    if (row.type == shm::IfaceType::simulation) continue;
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const Name& name) { return name.type == row.type; }))
+        << row.name << ": tests/worlds/every_device.sdf needs one";
   }
 }
 

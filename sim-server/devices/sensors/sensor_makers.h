@@ -16,6 +16,8 @@ MadeDevice make_force_torque(const SensorSite& site);
 MadeDevice make_altimeter(const SensorSite& site);
 MadeDevice make_magnetometer(const SensorSite& site);
 MadeDevice make_air_pressure(const SensorSite& site);
+MadeDevice make_logical_camera(const SensorSite& site);
+MadeDevice make_fiducial(const SensorSite& site);
 
 struct SensorMaker {
   SensorKind kind;
@@ -32,6 +34,8 @@ inline constexpr std::array sensor_makers{
     SensorMaker{SensorKind::altimeter, make_altimeter},
     SensorMaker{SensorKind::magnetometer, make_magnetometer},
     SensorMaker{SensorKind::air_pressure, make_air_pressure},
+    SensorMaker{SensorKind::logical_camera, make_logical_camera},
+    SensorMaker{SensorKind::fiducial, make_fiducial},
 };
 
 }  // namespace sim
