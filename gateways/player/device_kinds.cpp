@@ -10,6 +10,7 @@
 #include "joint_devices.h"
 #include "point_cloud_device.h"
 #include "range_devices.h"
+#include "seen_devices.h"
 #include "sensor_devices.h"
 #include "simulation_device.h"
 
@@ -42,6 +43,8 @@ constexpr std::array kinds{
     row<Analog>(aio),
     row<Ranger>(ranger),
     row<PointCloud>(pointcloud3d),
+    row<Fiducial>(fiducial),
+    row<Blobfinder>(blobfinder),
     row<Simulation>(simulation),
 };
 
