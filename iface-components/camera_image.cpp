@@ -9,7 +9,7 @@
 namespace iface {
 
 ImageFormat image_format(shm::Format format) {
-  switch (format) {
+  switch (shm::shown_as(format)) {
     case shm::Format::rgb8:
       return {"RGB8", 24, Img::CF_RGB};
     case shm::Format::bgr8:
@@ -60,7 +60,7 @@ base::Result<std::span<const std::uint8_t>> to_jpeg(base::JpegEncoder& encoder, 
   const auto encode = [&](std::span<const std::byte> pixels, base::JpegPixels kind) {
     return encoder.encode({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()}, width, height, 0, kind, quality);
   };
-  switch (format) {
+  switch (shm::shown_as(format)) {
     case shm::Format::rgb8:
       return encode(packed_pixels, base::JpegPixels::rgb);
     case shm::Format::bgr8:

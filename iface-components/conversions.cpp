@@ -115,6 +115,7 @@ void to_points(const shm::LaserInfo& info, const shm::ScanView& scan, bool with_
   points.clear();
   const std::uint32_t layers = std::max(info.layers, 1u);
   const double rise = layers > 1 ? (info.max_vertical - info.min_vertical) / (layers - 1) : 0;
+  const double sweep = 1e-9 * scan.sample->sweep_ns;
   for (std::uint32_t ring = 0; ring < layers; ++ring) {
     const auto ranges = layer_of(info, scan.ranges, ring), intensities = layer_of(info, scan.intensities, ring);
     const double up = std::sin(info.min_vertical + ring * rise), level = std::cos(info.min_vertical + ring * rise);
@@ -123,10 +124,12 @@ void to_points(const shm::LaserInfo& info, const shm::ScanView& scan, bool with_
       if (!is_hit && !with_misses) continue;
       const double range = is_hit ? ranges[i] : std::numeric_limits<double>::quiet_NaN();
       const double angle = info.min_angle + static_cast<double>(i) * info.angle_step;
-      points.push_back({{static_cast<float>(range * level * std::cos(angle)), static_cast<float>(range * level * std::sin(angle)),
-                         static_cast<float>(range * up)},
-                        i < intensities.size() ? port_intensity(intensities[i]) : 0,
-                        ring});
+      points.push_back(
+          {{static_cast<float>(range * level * std::cos(angle)), static_cast<float>(range * level * std::sin(angle)),
+            static_cast<float>(range * up)},
+           i < intensities.size() ? port_intensity(intensities[i]) : 0,
+           ring,
+           ranges.size() > 1 ? static_cast<float>(sweep * static_cast<double>(i) / static_cast<double>(ranges.size() - 1)) : 0});
     }
   }
 }

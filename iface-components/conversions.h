@@ -39,6 +39,7 @@ struct RayPoint {
   std::array<float, 3> position;  // in the sensor's frame [m]; NaN: the ray has hit nothing, or something too near
   float intensity;                // 0 to 1
   std::uint32_t ring;             // its layer, 0: the lowest
+  float time;                     // since the first beam of the scan [s]; 0 unless the scanner turns meanwhile
 };
 // The points of all layers in the order of the scan, with those that are NaN or without.
 void to_points(const shm::LaserInfo& info, const shm::ScanView& scan, bool with_misses, std::vector<RayPoint>& points);

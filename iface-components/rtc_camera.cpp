@@ -99,7 +99,7 @@ void RTCCamera::send_image(const shm::FrameHead& head, std::span<const std::byte
   image_.height = static_cast<CORBA::UShort>(head.height);
   image_.bpp = format.bits;
   image_.format = CORBA::string_dup(is_jpeg ? "JPEG" : format.name);
-  image_.fDiv = 1;
+  image_.fDiv = head.unit > 0 ? 1 / head.unit : 1;  // of temperatures [1/K]
   borrow(image_.pixels, pixels);
   image_out_.write();
   give_back(image_.pixels);

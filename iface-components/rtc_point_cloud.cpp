@@ -40,6 +40,7 @@ void RTCPointCloud::publish(const shm::Iface& laser) {
   const auto& info = laser.info<shm::LaserInfo>();
   const auto scan = laser.laser_scan();
   time_ = iface::to_time(scan.sample->stamp.sim_time_ns);
+  begin_ns_ = std::max<std::int64_t>(scan.sample->stamp.sim_time_ns - scan.sample->sweep_ns, 0);
   iface::to_points(info, scan, organised_ != 0, rays_);
   if (has_points) send_points(rays_);
   if (has_cloud) send_cloud(info, rays_);
@@ -49,7 +50,7 @@ void RTCPointCloud::send_points(const std::vector<iface::RayPoint>& points) {
   points_.tm = time_;
   points_.points.length(static_cast<CORBA::ULong>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto& [position, intensity, ring] = points[i];
+    const auto& [position, intensity, ring, time] = points[i];
     points_.points[static_cast<CORBA::ULong>(i)] = {{position[0], position[1], position[2]}, {intensity, intensity, intensity}};
   }
   points_out_.write();
@@ -61,20 +62,20 @@ void RTCPointCloud::send_cloud(const shm::LaserInfo& info, const std::vector<ifa
     PointCloudTypes::DataType type;
     CORBA::ULong size;
   };
-  static constexpr Column columns[] = {{"x", PointCloudTypes::FLOAT32, 4},
-                                       {"y", PointCloudTypes::FLOAT32, 4},
-                                       {"z", PointCloudTypes::FLOAT32, 4},
-                                       {"intensity", PointCloudTypes::FLOAT32, 4},
-                                       {"ring", PointCloudTypes::UINT32, 4}};
+  static constexpr Column columns[] = {{"x", PointCloudTypes::FLOAT32, 4},   {"y", PointCloudTypes::FLOAT32, 4},
+                                       {"z", PointCloudTypes::FLOAT32, 4},   {"intensity", PointCloudTypes::FLOAT32, 4},
+                                       {"ring", PointCloudTypes::UINT16, 2}, {"time", PointCloudTypes::FLOAT32, 4}};
   const bool has_all = fields_ == "all";
-  const CORBA::ULong count = has_all ? 5 : 3;
-  cloud_.tm = {time_.sec, time_.nsec};
+  const CORBA::ULong count = has_all ? 6 : 3;
+  const RTC::Time begin = iface::to_time(begin_ns_);
+  cloud_.tm = {begin.sec, begin.nsec};
   ++cloud_.seq;
-  cloud_.type = CORBA::string_dup(has_all ? "xyzir" : "xyz");
+  cloud_.type = CORBA::string_dup(has_all ? "xyzirt" : "xyz");
   cloud_.fields.length(count);
   CORBA::ULong step = 0;
   for (CORBA::ULong i = 0; i < count; ++i) {
     cloud_.fields[i].name = CORBA::string_dup(columns[i].name);
+    step = (step + columns[i].size - 1) / columns[i].size * columns[i].size;
     cloud_.fields[i].offset = step;
     cloud_.fields[i].data_type = columns[i].type;
     cloud_.fields[i].count = columns[i].size;
@@ -89,11 +90,13 @@ void RTCPointCloud::send_cloud(const shm::LaserInfo& info, const std::vector<ifa
   cloud_.row_step = step * cloud_.width;
   cloud_.data.length(step * size);
   CORBA::Octet* to = cloud_.data.get_buffer();
-  for (const auto& [position, intensity, ring] : points) {
+  for (const auto& [position, intensity, ring, time] : points) {
     std::memcpy(to, position.data(), 12);
     if (has_all) {
+      const auto short_ring = static_cast<std::uint16_t>(ring);
       std::memcpy(to + 12, &intensity, 4);
-      std::memcpy(to + 16, &ring, 4);
+      std::memcpy(to + 16, &short_ring, 2);
+      std::memcpy(to + 20, &time, 4);
     }
     to += step;
   }

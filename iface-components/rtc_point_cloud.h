@@ -2,7 +2,8 @@
 // and `cloud` (PointCloudTypes::PointCloud), each only when connected. Points in the sensor's frame: x forward, y left, z up [m]; layer by
 // layer from the lowest, in each from right to left. Service port `point_cloud` (RTC::PointCloudServices).
 // Configuration: server_id, device_id; organised: 1 keeps rays that hit nothing as NaN, so that `cloud` has a row for each layer; fields of
-// `cloud`: xyz (12 bytes a point) or all (with intensity and ring, 20 bytes).
+// `cloud`: xyz (12 bytes a point) or all (with intensity, ring and time since the first beam, 24 bytes; tm is that
+// of the first beam).
 #pragma once
 
 #include <rtm/ext/PointCloudServicesSkel.h>
@@ -35,6 +36,7 @@ class RTCPointCloud : public iface::IfaceComponent {
   std::string fields_ = "xyz";
   std::vector<iface::RayPoint> rays_;
   RTC::Time time_{};
+  std::int64_t begin_ns_ = 0;  // of the first beam
   RTC::PointCloud points_;
   RTC::OutPort<RTC::PointCloud> points_out_;
   PointCloudTypes::PointCloud cloud_;

@@ -58,7 +58,7 @@ bool is_zero(std::span<const float> numbers) {
 
 std::string encoding_of(shm::Format format) {
   using enum shm::Format;
-  switch (format) {
+  switch (shm::shown_as(format)) {
     case rgb8:
       return "rgb8";
     case mono8:
@@ -83,6 +83,9 @@ std::string encoding_of(shm::Format format) {
       return "bayer_grbg8";
     case points_float:
     case points_intensity_float:
+    case labels:
+    case thermal16:
+    case thermal8:
       break;
   }
   return "";

@@ -345,10 +345,11 @@ struct NavSatFix {
 };
 struct PointField {
   static constexpr std::string_view name = "sensor_msgs/msg/PointField";
-  static constexpr std::string_view constants = "uint8 FLOAT32=7\n";
+  static constexpr std::string_view constants = "uint8 UINT16=4\nuint8 FLOAT32=7\n";
+  static constexpr std::uint8_t uint16 = 4, float32 = 7;
   std::string field{};
   std::uint32_t offset = 0;
-  std::uint8_t datatype = 7;
+  std::uint8_t datatype = float32;
   std::uint32_t count = 1;
   static void fields(auto& m, auto& visit) {
     visit("name", m.field);
@@ -503,7 +504,7 @@ struct Marker {
   static constexpr std::string_view constants =
       "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 TRIANGLE_LIST=11\nint32 ADD=0\nint32 DELETE=2\nint32 "
       "DELETEALL=3\n";
-  static constexpr std::int32_t arrow = 0, triangle_list = 11;
+  static constexpr std::int32_t arrow = 0, cube = 1, triangle_list = 11;
   static constexpr std::int32_t add = 0, remove_all = 3;
   Header header{};
   std::string ns{};
@@ -548,6 +549,107 @@ struct MarkerArray {
   static constexpr std::string_view name = "visualization_msgs/msg/MarkerArray";
   std::vector<Marker> markers{};
   static void fields(auto& m, auto& visit) { visit("markers", m.markers); }
+};
+
+// ---- vision_msgs ----
+
+struct Point2D {
+  static constexpr std::string_view name = "vision_msgs/msg/Point2D";
+  double x = 0, y = 0;
+  static void fields(const Point2D& m, auto& visit) {
+    visit("x", m.x);
+    visit("y", m.y);
+  }
+};
+struct Pose2D {
+  static constexpr std::string_view name = "vision_msgs/msg/Pose2D";
+  Point2D position{};
+  double theta = 0;
+  static void fields(const Pose2D& m, auto& visit) {
+    visit("position", m.position);
+    visit("theta", m.theta);
+  }
+};
+struct BoundingBox2D {
+  static constexpr std::string_view name = "vision_msgs/msg/BoundingBox2D";
+  Pose2D center{};
+  double size_x = 0, size_y = 0;
+  static void fields(const BoundingBox2D& m, auto& visit) {
+    visit("center", m.center);
+    visit("size_x", m.size_x);
+    visit("size_y", m.size_y);
+  }
+};
+struct BoundingBox3D {
+  static constexpr std::string_view name = "vision_msgs/msg/BoundingBox3D";
+  Pose center{};
+  Vector3 size{};
+  static void fields(const BoundingBox3D& m, auto& visit) {
+    visit("center", m.center);
+    visit("size", m.size);
+  }
+};
+struct ObjectHypothesis {
+  static constexpr std::string_view name = "vision_msgs/msg/ObjectHypothesis";
+  std::string class_id{};
+  double score = 0;
+  static void fields(const ObjectHypothesis& m, auto& visit) {
+    visit("class_id", m.class_id);
+    visit("score", m.score);
+  }
+};
+struct ObjectHypothesisWithPose {
+  static constexpr std::string_view name = "vision_msgs/msg/ObjectHypothesisWithPose";
+  ObjectHypothesis hypothesis{};
+  PoseWithCovariance pose{};
+  static void fields(const ObjectHypothesisWithPose& m, auto& visit) {
+    visit("hypothesis", m.hypothesis);
+    visit("pose", m.pose);
+  }
+};
+struct Detection2D {
+  static constexpr std::string_view name = "vision_msgs/msg/Detection2D";
+  Header header{};
+  std::vector<ObjectHypothesisWithPose> results{};
+  BoundingBox2D bbox{};
+  std::string id{};
+  static void fields(const Detection2D& m, auto& visit) {
+    visit("header", m.header);
+    visit("results", m.results);
+    visit("bbox", m.bbox);
+    visit("id", m.id);
+  }
+};
+struct Detection2DArray {
+  static constexpr std::string_view name = "vision_msgs/msg/Detection2DArray";
+  Header header{};
+  std::vector<Detection2D> detections{};
+  static void fields(const Detection2DArray& m, auto& visit) {
+    visit("header", m.header);
+    visit("detections", m.detections);
+  }
+};
+struct Detection3D {
+  static constexpr std::string_view name = "vision_msgs/msg/Detection3D";
+  Header header{};
+  std::vector<ObjectHypothesisWithPose> results{};
+  BoundingBox3D bbox{};
+  std::string id{};
+  static void fields(const Detection3D& m, auto& visit) {
+    visit("header", m.header);
+    visit("results", m.results);
+    visit("bbox", m.bbox);
+    visit("id", m.id);
+  }
+};
+struct Detection3DArray {
+  static constexpr std::string_view name = "vision_msgs/msg/Detection3DArray";
+  Header header{};
+  std::vector<Detection3D> detections{};
+  static void fields(const Detection3DArray& m, auto& visit) {
+    visit("header", m.header);
+    visit("detections", m.detections);
+  }
 };
 
 // ---- logs and states ----

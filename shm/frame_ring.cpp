@@ -41,7 +41,7 @@ std::optional<std::span<std::byte>> FrameRing::begin() {
   return std::nullopt;
 }
 
-bool FrameRing::publish(const Stamp& stamp, const Pose& pose, std::size_t size) {
+bool FrameRing::publish(const Stamp& stamp, const Pose& pose, std::size_t size, double unit) {
   if (!begun_) return false;
   FrameHead& head = slot(*begun_);
   head.stamp = stamp;
@@ -50,6 +50,7 @@ bool FrameRing::publish(const Stamp& stamp, const Pose& pose, std::size_t size) 
   head.height = info_.height;
   head.format = info_.format;
   head.stride = info_.stride;
+  head.unit = unit;
   head.size = size == 0 ? info_.frame_size : std::min<std::size_t>(size, info_.frame_size);
   store(head.lock, stamp.sequence, std::memory_order_seq_cst);
   sequences_[*begun_] = stamp.sequence;

@@ -22,8 +22,8 @@ class FrameRing {
 
   // The oldest slot that nobody holds and that is not the latest; nothing when there is none.
   std::optional<std::span<std::byte>> begin();
-  // Publishes that slot; false when there is none begun. size 0 = the whole frame.
-  bool publish(const Stamp& stamp, const Pose& pose, std::size_t size);
+  // Publishes that slot; false when there is none begun. size 0 = the whole frame; unit: of thermal images [K].
+  bool publish(const Stamp& stamp, const Pose& pose, std::size_t size, double unit);
   std::uint64_t dropped() const { return dropped_; }
 
  private:

@@ -42,6 +42,15 @@ using JointsInfo = ::rtmsim_joints_info;
 using Joint = ::rtmsim_joint;
 using JointState = ::rtmsim_joint_state;
 using JointsSample = ::rtmsim_joints_sample;
+using LogicalCameraInfo = ::rtmsim_logical_camera_info;
+using SeenModel = ::rtmsim_seen_model;
+using LogicalCameraSample = ::rtmsim_logical_camera_sample;
+using BoxesInfo = ::rtmsim_boxes_info;
+using Box = ::rtmsim_box;
+using BoxesSample = ::rtmsim_boxes_sample;
+using FiducialInfo = ::rtmsim_fiducial_info;
+using Mark = ::rtmsim_mark;
+using FiducialSample = ::rtmsim_fiducial_sample;
 using BatteryInfo = ::rtmsim_battery_info;
 using BatterySample = ::rtmsim_battery_sample;
 using DvlInfo = ::rtmsim_dvl_info;
@@ -85,6 +94,9 @@ enum class IfaceType : std::uint32_t {
   magnetometer = RTMSIM_MAGNETOMETER,
   air_pressure = RTMSIM_AIR_PRESSURE,
   joints = RTMSIM_JOINTS,
+  logical_camera = RTMSIM_LOGICAL_CAMERA,
+  boxes = RTMSIM_BOXES,
+  fiducial = RTMSIM_FIDUCIAL,
   battery = RTMSIM_BATTERY,
   dvl = RTMSIM_DVL,
   air_speed = RTMSIM_AIR_SPEED,
@@ -279,6 +291,40 @@ inline constexpr std::array joint_state_fields{field<&JointState::position>("pos
                                                field<&JointState::mode>("mode"),
                                                field<&JointState::status>("status")};
 
+inline constexpr std::array logical_camera_info{
+    field<&LogicalCameraInfo::model>("model"),         field<&LogicalCameraInfo::capacity>("capacity"),
+    field<&LogicalCameraInfo::near_clip>("near", "m"), field<&LogicalCameraInfo::far_clip>("far", "m"),
+    field<&LogicalCameraInfo::hfov>("hfov", "rad"),    field<&LogicalCameraInfo::aspect_ratio>("aspect_ratio"),
+    field<&LogicalCameraInfo::rate>("rate", "Hz"),     field<&LogicalCameraInfo::pose>("pose")};
+inline constexpr std::array logical_camera_sample{field<&LogicalCameraSample::stamp>("stamp"), field<&LogicalCameraSample::pose>("pose"),
+                                                  field<&LogicalCameraSample::total>("total"), followers("models", 0)};
+inline constexpr std::array seen_model_fields{field<&SeenModel::name>("name"), field<&SeenModel::pose>("pose")};
+
+inline constexpr std::array boxes_info{field<&BoxesInfo::model>("model"),
+                                       field<&BoxesInfo::kind>("kind"),
+                                       field<&BoxesInfo::capacity>("capacity"),
+                                       field<&BoxesInfo::width>("width", "pixel"),
+                                       field<&BoxesInfo::height>("height", "pixel"),
+                                       field<&BoxesInfo::rate>("rate", "Hz"),
+                                       field<&BoxesInfo::pose>("pose")};
+inline constexpr std::array boxes_sample{field<&BoxesSample::stamp>("stamp"), field<&BoxesSample::total>("total"), followers("boxes", 0)};
+inline constexpr std::array box_fields{field<&Box::label>("label"),        field<&Box::name>("name"),
+                                       field<&Box::pixels>("pixels"),      field<&Box::center>("center", "pixel"),
+                                       field<&Box::size>("size", "pixel"), field<&Box::pose>("pose"),
+                                       field<&Box::extent>("extent", "m")};
+
+inline constexpr std::array fiducial_info{field<&FiducialInfo::model>("model"),
+                                          field<&FiducialInfo::capacity>("capacity"),
+                                          field<&FiducialInfo::min_range>("min_range", "m"),
+                                          field<&FiducialInfo::max_range>("max_range", "m"),
+                                          field<&FiducialInfo::view_angle>("view_angle", "rad"),
+                                          field<&FiducialInfo::noise>("noise", "m rad"),
+                                          field<&FiducialInfo::rate>("rate", "Hz"),
+                                          field<&FiducialInfo::pose>("pose")};
+inline constexpr std::array fiducial_sample{field<&FiducialSample::stamp>("stamp"), field<&FiducialSample::pose>("pose"),
+                                            field<&FiducialSample::total>("total"), followers("marks", 0)};
+inline constexpr std::array mark_fields{field<&Mark::id>("id"), field<&Mark::pose>("pose"), field<&Mark::size>("size", "m"),
+                                        field<&Mark::model>("model")};
 inline constexpr std::array battery_info{field<&BatteryInfo::model>("model"),
                                          field<&BatteryInfo::name>("name"),
                                          field<&BatteryInfo::rate>("rate", "Hz"),
@@ -384,6 +430,9 @@ constexpr auto beams = [](const void* info) {
 };
 constexpr auto transducers = [](const void* info) { return std::uint64_t{static_cast<const SonarInfo*>(info)->count}; };
 constexpr auto capacity = [](const void* info) { return std::uint64_t{static_cast<const BumperInfo*>(info)->capacity}; };
+constexpr auto seen_models = [](const void* info) { return std::uint64_t{static_cast<const LogicalCameraInfo*>(info)->capacity}; };
+constexpr auto boxes_of = [](const void* info) { return std::uint64_t{static_cast<const BoxesInfo*>(info)->capacity}; };
+constexpr auto marks_of = [](const void* info) { return std::uint64_t{static_cast<const FiducialInfo*>(info)->capacity}; };
 constexpr auto joints_of = [](const void* info) { return std::uint64_t{static_cast<const JointsInfo*>(info)->count}; };
 // Of those whose info begins with it.
 constexpr auto first_word = [](const void* info) { return std::uint64_t{*static_cast<const std::uint32_t*>(info)}; };
@@ -540,6 +589,39 @@ inline constexpr std::array iface_types{
              .sample_tail = {1, detail::size<JointState, 40>(), detail::joint_state_fields},
              .filled = detail::part<&JointsSample::count>(),
              .is_always_full = true},
+    IfaceRow{.type = IfaceType::logical_camera,
+             .name = "logical_camera",
+             .meaning = "models in a frustum",
+             .info_size = detail::size<LogicalCameraInfo, 232>(),
+             .sample_size = detail::size<LogicalCameraSample, 96>(),
+             .info = detail::logical_camera_info,
+             .sample = detail::logical_camera_sample,
+             .count = detail::seen_models,
+             .most = detail::most_contacts,
+             .sample_tail = {1, detail::size<SeenModel, 184>(), detail::seen_model_fields},
+             .filled = detail::part<&LogicalCameraSample::count>()},
+    IfaceRow{.type = IfaceType::boxes,
+             .name = "boxes",
+             .meaning = "boxes around labelled objects in an image",
+             .info_size = detail::size<BoxesInfo, 208>(),
+             .sample_size = detail::size<BoxesSample, 40>(),
+             .info = detail::boxes_info,
+             .sample = detail::boxes_sample,
+             .count = detail::boxes_of,
+             .most = detail::most_contacts,
+             .sample_tail = {1, detail::size<Box, 248>(), detail::box_fields},
+             .filled = detail::part<&BoxesSample::count>()},
+    IfaceRow{.type = IfaceType::fiducial,
+             .name = "fiducial",
+             .meaning = "marks that a detector sees",
+             .info_size = detail::size<FiducialInfo, 240>(),
+             .sample_size = detail::size<FiducialSample, 96>(),
+             .info = detail::fiducial_info,
+             .sample = detail::fiducial_sample,
+             .count = detail::marks_of,
+             .most = detail::most_contacts,
+             .sample_tail = {1, detail::size<Mark, 216>(), detail::mark_fields},
+             .filled = detail::part<&FiducialSample::count>()},
     IfaceRow{.type = IfaceType::battery,
              .name = "battery",
              .meaning = "charge of a battery and what it drives",

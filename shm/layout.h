@@ -86,20 +86,32 @@ enum class Format : std::uint32_t {
   bayer_bggr8 = RTMSIM_FORMAT_BAYER_BGGR8,
   bayer_gbrg8 = RTMSIM_FORMAT_BAYER_GBRG8,
   bayer_grbg8 = RTMSIM_FORMAT_BAYER_GRBG8,
+  labels = RTMSIM_FORMAT_LABELS,
+  thermal16 = RTMSIM_FORMAT_THERMAL16,
+  thermal8 = RTMSIM_FORMAT_THERMAL8,
 };
+// How to show the bytes of labels and temperatures as an image: those of colours or of grey. Others are as they are.
+constexpr Format shown_as(Format format) {
+  if (format == Format::labels) return Format::rgb8;
+  if (format == Format::thermal16) return Format::mono16;
+  return format == Format::thermal8 ? Format::mono8 : format;
+}
 // Bytes of a pixel or point; 0 for an unknown format.
 constexpr std::uint32_t bytes_per_pixel(Format format) {
   switch (format) {
     case Format::rgb8:
     case Format::bgr8:
+    case Format::labels:
       return 3;
     case Format::mono8:
     case Format::bayer_rggb8:
     case Format::bayer_bggr8:
     case Format::bayer_gbrg8:
     case Format::bayer_grbg8:
+    case Format::thermal8:
       return 1;
     case Format::mono16:
+    case Format::thermal16:
       return 2;
     case Format::depth_float:
     case Format::rgba8:

@@ -42,7 +42,9 @@ enum {
   RTMSIM_MAGNETOMETER = 15,
   RTMSIM_AIR_PRESSURE = 16,
   RTMSIM_JOINTS = 17,
-  /* 18 to 26 are kept for devices that look */
+  RTMSIM_LOGICAL_CAMERA = 20,
+  RTMSIM_BOXES = 21,
+  RTMSIM_FIDUCIAL = 22,
   RTMSIM_BATTERY = 27,
   RTMSIM_DVL = 28,
   RTMSIM_AIR_SPEED = 29,
@@ -216,7 +218,8 @@ typedef struct {
   rtmsim_stamp stamp;
   rtmsim_pose pose; /* true pose of the scanner in the world at the stamp */
   uint32_t count;
-  uint32_t reserved;
+  uint32_t sweep_ns; /* the beams turn: the first of each layer is from so long before the stamp, the last from the stamp, the others evenly
+                        between; ranges are in the frames of their own instants. 0: all are from the stamp */
 } rtmsim_laser_sample;
 
 /* `count` poses of the transducers on the model (rtmsim_pose) follow. */
@@ -302,7 +305,11 @@ enum {
   RTMSIM_FORMAT_BAYER_RGGB8 = 10,           /* a byte per pixel: even rows r g r g ..., odd rows g b g b ... */
   RTMSIM_FORMAT_BAYER_BGGR8 = 11,           /* even rows b g b g ..., odd rows g r g r ... */
   RTMSIM_FORMAT_BAYER_GBRG8 = 12,           /* even rows g b g b ..., odd rows r g r g ... */
-  RTMSIM_FORMAT_BAYER_GRBG8 = 13            /* even rows g r g r ..., odd rows b g b g ... */
+  RTMSIM_FORMAT_BAYER_GRBG8 = 13,           /* even rows g r g r ..., odd rows b g b g ... */
+  RTMSIM_FORMAT_LABELS = 14,    /* three bytes: semantic: the label three times; instances: number of the object among those of its
+                                   label, from 1, high byte and low byte, then the label. 0: nothing that has one */
+  RTMSIM_FORMAT_THERMAL16 = 15, /* temperature in units of the frame, two bytes, the low one first */
+  RTMSIM_FORMAT_THERMAL8 = 16   /* temperature in units of the frame, a byte */
 };
 
 /* Of camera, depth and points. Rows from top to bottom, pixels from left to right; a cloud without image order has height 1. */
@@ -327,7 +334,7 @@ typedef struct {
   rtmsim_pose pose;                       /* true pose of the sensor in the world at the stamp */
   uint32_t width, height, format, stride; /* as in the info */
   uint64_t size;                          /* bytes of data that follow */
-  uint64_t reserved;
+  double unit;                            /* of thermal images: [K]; else 0 */
 } rtmsim_frame;
 
 typedef struct {
@@ -429,6 +436,92 @@ typedef struct {
   rtmsim_pose pose;
   double velocity[6]; /* linear x y z, angular x y z, world frame */
 } rtmsim_truth_sample;
+
+/* A camera that sees models without drawing them: those whose origin is in its frustum, whatever is before them. */
+typedef struct {
+  uint32_t capacity; /* most models of a sample */
+  uint32_t reserved;
+  double near_clip, far_clip; /* [m] along the x axis */
+  double hfov;                /* horizontal field of view [rad] */
+  double aspect_ratio;        /* width by height of the frustum */
+  double rate;
+  rtmsim_pose pose; /* on the model; it looks along its x axis, y is left, z is up */
+  char model[128];
+} rtmsim_logical_camera_info;
+
+typedef struct {
+  char name[128];   /* scoped: arm::hand */
+  rtmsim_pose pose; /* in the camera */
+} rtmsim_seen_model;
+
+/* `capacity` models (rtmsim_seen_model) follow, `count` of them are filled, in the order of the world. */
+typedef struct {
+  rtmsim_stamp stamp;
+  rtmsim_pose pose; /* of the camera in the world */
+  uint32_t count;
+  uint32_t total; /* models there were; more than count when they did not all fit */
+} rtmsim_logical_camera_sample;
+
+/* What the boxes of a camera are around. */
+enum {
+  RTMSIM_BOX_VISIBLE = 1, /* what is seen of an object, in the image */
+  RTMSIM_BOX_FULL = 2,    /* the whole object, projected into the image and cut at its edges */
+  RTMSIM_BOX_ORIENTED = 3 /* the whole object, in space, along its own axes */
+};
+
+/* The boxes of a bounding box camera, whose images are the camera iface of the same name. */
+typedef struct {
+  uint32_t kind;          /* RTMSIM_BOX_* */
+  uint32_t capacity;      /* most boxes of a sample */
+  uint32_t width, height; /* of the image [pixel] */
+  double rate;
+  rtmsim_pose pose;
+  char model[128];
+} rtmsim_boxes_info;
+
+/* Around an object that has a label and is seen. A model's or visual's label is what the Label plugin says. */
+typedef struct {
+  uint32_t label;            /* 1..255 */
+  uint32_t pixels;           /* of the image that show it */
+  double center[2], size[2]; /* [pixel] from the left and the top; 0 of oriented boxes */
+  rtmsim_pose pose;          /* of the middle of an oriented box in the camera */
+  double extent[3];          /* length, width, height of an oriented box [m] */
+  char name[128];            /* scoped name of the model or visual with the label */
+} rtmsim_box;
+
+/* `capacity` boxes (rtmsim_box) follow, `count` of them are filled. The stamp is that of the image. */
+typedef struct {
+  rtmsim_stamp stamp;
+  uint32_t count;
+  uint32_t total; /* boxes there were; more than count when they did not all fit */
+} rtmsim_boxes_sample;
+
+typedef struct {
+  uint32_t capacity; /* most marks of a sample */
+  uint32_t reserved;
+  double min_range, max_range; /* [m] */
+  double view_angle;           /* full, centred on the x axis, in the plane of x and y [rad] */
+  double noise[2];             /* standard deviations of positions [m] and angles [rad] */
+  double rate;
+  rtmsim_pose pose; /* on the model */
+  char model[128];
+} rtmsim_fiducial_info;
+
+typedef struct {
+  uint32_t id;
+  uint32_t reserved;
+  rtmsim_pose pose; /* of the middle of the mark in the detector: its x axis points out of the mark, z is its up */
+  double size[3];   /* thickness, width, height [m] */
+  char model[128];  /* that carries the mark */
+} rtmsim_mark;
+
+/* `capacity` marks (rtmsim_mark) follow, `count` of them are filled. */
+typedef struct {
+  rtmsim_stamp stamp;
+  rtmsim_pose pose; /* of the detector in the world */
+  uint32_t count;
+  uint32_t total; /* marks there were; more than count when they did not all fit */
+} rtmsim_fiducial_sample;
 
 /* Modes of a joint; in commands what `value` is. Velocity and effort of a command for a position are fed
  * forward; the effort of one for a velocity is the highest that the joint may use, 0: its own. */

@@ -50,9 +50,9 @@ void IfaceWriter::publish(std::chrono::nanoseconds sim_time, bool is_valid) {
 
 std::optional<std::span<std::byte>> IfaceWriter::begin_frame() { return impl_->ring.begin(); }
 
-void IfaceWriter::publish_frame(std::chrono::nanoseconds sim_time, const Pose& pose, std::size_t size) {
+void IfaceWriter::publish_frame(std::chrono::nanoseconds sim_time, const Pose& pose, std::size_t size, double unit) {
   Impl& impl = *impl_;
-  if (!impl.ring.publish(impl.next_stamp(sim_time, true), pose, size)) return;
+  if (!impl.ring.publish(impl.next_stamp(sim_time, true), pose, size, unit)) return;
   ++impl.sequence;
   impl.announce_latest();
 }

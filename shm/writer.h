@@ -67,8 +67,9 @@ class IfaceWriter {
   // Data of a free slot to draw into, or nothing when clients hold all of them (counted as dropped). Stays reserved until published or the
   // next begin_frame.
   std::optional<std::span<std::byte>> begin_frame();
-  // Publishes the slot of begin_frame. width, height, format and stride are those of the info; `size` bytes are used (0 = all).
-  void publish_frame(std::chrono::nanoseconds sim_time, const Pose& pose, std::size_t size = 0);
+  // Publishes the slot of begin_frame. width, height, format and stride are those of the info; `size` bytes are used (0 = all). `unit`: of
+  // thermal images [K].
+  void publish_frame(std::chrono::nanoseconds sim_time, const Pose& pose, std::size_t size = 0, double unit = 0);
   std::uint64_t dropped() const;
 
   // ---- commands ----

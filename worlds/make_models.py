@@ -168,6 +168,29 @@ step = 2 * math.pi / 1024
 write("hokuyo_urg04lx", "Hokuyo URG-04LX", "Laser range finder: 682 beams over 240 degrees, 0.02 to 5.6 m, 10 Hz.",
       laser("hokuyo_urg04lx", (0.05, 0.05, 0.07), 0.16, 0.04, (0.15, 0.15, 0.17), (0.018, 0.03),
             ray(682, (44 - 384) * step, (725 - 384) * step, 0.02, 5.6, 0.001, 10, 0.01, "0 0 0.055 0 0 0")))
+
+
+def rings(columns, layers, tilt, smallest, largest, resolution, rate, sigma, pose):
+    """Columns all around, counter-clockwise from the back; layers from `-tilt` to `tilt` degrees. An instant for the whole scan, unless <rolling> says otherwise."""
+    step = 2 * math.pi / columns
+    return f"""      <sensor name="lidar" type="gpu_lidar">
+        <pose>{pose}</pose>
+        <update_rate>{rate}</update_rate>
+        <lidar>
+          <scan>
+            <horizontal><samples>{columns}</samples><resolution>1</resolution><min_angle>{number(-math.pi)}</min_angle><max_angle>{number(math.pi - step)}</max_angle></horizontal>
+            <vertical><samples>{layers}</samples><resolution>1</resolution><min_angle>{number(-math.radians(tilt))}</min_angle><max_angle>{number(math.radians(tilt))}</max_angle></vertical>
+          </scan>
+          <range><min>{smallest}</min><max>{largest}</max><resolution>{resolution}</resolution></range>
+          <noise><type>gaussian</type><mean>0</mean><stddev>{sigma}</stddev></noise>
+        </lidar>
+      </sensor>"""
+
+
+write("velodyne_vlp16", "Velodyne VLP-16", "3D laser scanner: 16 layers over 30 degrees, 1800 columns, 0.9 to 130 m, 10 Hz, 8 mm of noise.",
+      laser("velodyne_vlp16", (0.1, 0.1, 0.07), 0.83, 0.03, (0.12, 0.12, 0.14), (0.05, 0.04), rings(1800, 16, 15, 0.9, 130, 0.002, 10, 0.008, "0 0 0.0377 0 0 0")))
+write("ouster_os1_64", "Ouster OS1-64", "3D laser scanner: 64 layers over 45 degrees, 1024 columns, 0.5 to 120 m, 10 Hz, 10 mm of noise.",
+      laser("ouster_os1_64", (0.085, 0.085, 0.07), 0.45, 0.03, (0.2, 0.2, 0.22), (0.042, 0.04), rings(1024, 64, 22.5, 0.5, 120, 0.001, 10, 0.01, "0 0 0.038 0 0 0")))
 write("sick_lms200", "SICK LMS200", "Laser range finder: 181 beams over 180 degrees, up to 8.192 m at 1 mm, 10 Hz.",
       laser("sick_lms200", (0.156, 0.155, 0.21), 4.5, 0.1, (0.1, 0.2, 0.55), (0.07, 0.11),
             ray(181, -math.pi / 2, math.pi / 2, 0.08, 8.192, 0.001, 10, 0.005, "0 0 0.13 0 0 0")))

@@ -67,7 +67,7 @@ std::string millimetres(const char* pixels, std::size_t width, std::size_t heigh
 }  // namespace
 
 std::optional<player::Image> to_image(const shm::FrameHead& head, std::span<const std::byte> data) {
-  const auto format = static_cast<shm::Format>(head.format);
+  const auto format = shm::shown_as(static_cast<shm::Format>(head.format));
   const std::size_t width = head.width, height = head.height, row_size = width * shm::bytes_per_pixel(format);
   if (width == 0 || height == 0 || row_size == 0 || head.stride < row_size || data.size() / head.stride < height) return std::nullopt;
   const char* pixels = reinterpret_cast<const char*>(data.data());

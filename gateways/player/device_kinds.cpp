@@ -13,6 +13,7 @@
 #include "point_cloud_device.h"
 #include "power_device.h"
 #include "range_devices.h"
+#include "seen_devices.h"
 #include "sensor_devices.h"
 #include "simulation_device.h"
 
@@ -50,6 +51,8 @@ constexpr std::array kinds{
     row<Localize>(localize),
     row<Ranger>(ranger),
     row<PointCloud>(pointcloud3d),
+    row<Fiducial>(fiducial),
+    row<Blobfinder>(blobfinder),
     row<Simulation>(simulation),
 };
 

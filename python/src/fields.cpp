@@ -135,7 +135,7 @@ struct Pixels {
 
 Pixels pixels_of(shm::Format format) {
   using shm::Format;
-  switch (format) {
+  switch (shm::shown_as(format)) {
     case Format::rgb8:
     case Format::bgr8:
       return {py::dtype::of<std::uint8_t>(), 3};

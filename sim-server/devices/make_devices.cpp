@@ -21,7 +21,8 @@ namespace {
 
 bool is_camera(SensorKind kind) {
   return kind == SensorKind::camera || kind == SensorKind::depth_camera || kind == SensorKind::rgbd_camera ||
-         kind == SensorKind::multi_camera;
+         kind == SensorKind::multi_camera || kind == SensorKind::segmentation_camera || kind == SensorKind::box_camera ||
+         kind == SensorKind::thermal_camera;
 }
 
 struct Makers {
@@ -190,6 +191,10 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::detachable_joint:  // Attachments have it
     case PluginKind::buoyancy:
     case PluginKind::battery:  // after all that it drives
+    case PluginKind::label:
+    case PluginKind::thermal:
+    case PluginKind::thermal_sensor:
+    case PluginKind::fiducial:  // detectors look for it
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;

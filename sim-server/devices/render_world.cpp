@@ -30,7 +30,7 @@ bool needs_files(const GeometryDef& geometry) {
 }
 bool needs_files(const VisualDef& visual) {
   const auto& material = visual.material;
-  return needs_files(visual.geometry) ||
+  return needs_files(visual.geometry) || (visual.heat && !visual.heat->signature.empty()) ||
          (material && !(material->texture.empty() && material->normal_map.empty() && material->emissive_map.empty()));
 }
 bool needs_files(const ModelDef& model, Scene::Content content) {

@@ -5,12 +5,19 @@
 #include <limits>
 
 #include "render/formats.h"
+#include "render/marks.h"
 #include "render/pixels.h"
 
 namespace sim {
 namespace {
 
 constexpr double widest_pinhole = 3.1;  // [rad]
+
+bool has_color(Camera::Output output) {
+  return output == Camera::Output::color || output == Camera::Output::color_and_depth || output == Camera::Output::color_and_marks;
+}
+bool has_depth(Camera::Output output) { return output == Camera::Output::depth || output == Camera::Output::color_and_depth; }
+bool has_marks(Camera::Output output) { return output == Camera::Output::marks || output == Camera::Output::color_and_marks; }
 
 }  // namespace
 
@@ -32,8 +39,9 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
                                 const Eigen::Isometry3d& pose, std::int64_t time, Output wanted) {
   time_ = time;
   // The first picture brings them; most cameras of a world are never looked at.
-  if (output_ != Output::depth) rgba_.resize(pixels() * 4);
-  if (output_ != Output::color) depth_.resize(pixels());
+  if (has_color(output_)) rgba_.resize(pixels() * 4);
+  if (has_depth(output_)) depth_.resize(pixels());
+  if (has_marks(output_)) marks_.resize(pixels());
   View plain = View::pinhole(pose, def_.horizontal_fov, def_.width, def_.height);
   plain.near_clip = def_.near_clip;
   plain.far_clip = def_.far_clip;
@@ -41,8 +49,12 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
   for (std::size_t i = 0; i < views.size(); ++i) {
     View& view = views[i];
     view.visibility_mask = def_.visibility_mask;
-    view.wants_color = wanted != Output::depth;
-    view.wants_exact_depth = output_ != Output::color;  // whoever looks at the moment: the colours are always the same
+    view.wants_color = has_color(wanted);
+    view.wants_exact_depth = has_depth(output_);  // whoever looks at the moment: the colours are always the same
+    if (has_marks(wanted)) {
+      if (auto drawn = take_marks(renderer, scene, poses, view, i); !drawn) return drawn;
+    }
+    if (wanted == Output::marks) continue;
     if (auto drawn = renderer.draw(scene, poses, view); !drawn) return drawn;
     const std::size_t count = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     if (view.wants_color) {
@@ -50,13 +62,24 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
       renderer.read_rgba(lens_ ? face_rgba_ : rgba_);
       if (lens_) lens_->map_rgba(i, face_rgba_, rgba_);
     }
-    if (wanted != Output::color && i == 0) {
+    if (has_depth(wanted) && i == 0) {
       if (lens_) face_depth_.resize(count);
       renderer.read_depth(lens_ ? face_depth_ : depth_);
       if (lens_) lens_->map_depth(face_depth_, depth_);
     }
   }
-  if (wanted != Output::color) add_depth_noise();
+  if (has_depth(wanted)) add_depth_noise();
+  return {};
+}
+
+base::Result<void> Camera::take_marks(Renderer& renderer, const std::shared_ptr<const Scene>& scene,
+                                      std::span<const Eigen::Isometry3d> poses, View view, std::size_t index) {
+  view.wants_color = view.wants_marks = true;
+  if (auto drawn = renderer.draw(scene, poses, view); !drawn) return drawn;
+  if (lens_) face_marks_.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+  auto& drawn_marks = lens_ ? face_marks_ : marks_;
+  renderer.read_rgba({reinterpret_cast<std::uint8_t*>(drawn_marks.data()), drawn_marks.size() * 4});
+  if (lens_) lens_->map_marks(index, face_marks_, marks_);
   return {};
 }
 
@@ -75,6 +98,14 @@ void Camera::write_color(std::span<std::uint8_t> out) const {
   convert_rgba(rgba_, def_.width, def_.format, out);
   if (def_.noise.kind == NoiseDef::Kind::none) return;
   add_noise(mix_seed(seed_, static_cast<std::uint64_t>(time_)), def_.noise.mean, def_.noise.stddev, def_.format, out);
+}
+
+void Camera::write_heat(const Scene& scene, double air, std::span<std::uint8_t> out) const {
+  std::vector<float> kelvin;
+  write_temperatures(scene, marks_, air, kelvin);
+  if (def_.noise.kind != NoiseDef::Kind::none)
+    NoiseStream(mix_seed(seed_, static_cast<std::uint64_t>(time_))).add(std::span<float>(kelvin), def_.noise.mean, def_.noise.stddev);
+  write_thermal(kelvin, def_.thermal, out);
 }
 
 void Camera::write_points(std::span<float> out) const {

@@ -20,7 +20,7 @@ namespace sim {
 
 class Camera {
  public:
-  enum class Output { color, depth, color_and_depth };
+  enum class Output { color, depth, color_and_depth, marks, color_and_marks };
 
   // `seed`: of its noise.
   Camera(const CameraDef& def, Output output, std::uint64_t seed);
@@ -45,12 +45,17 @@ class Camera {
 
   // Of the last picture taken; each may be called several times.
   void write_color(std::span<std::uint8_t> out) const;
+  // Of marks: temperatures as a thermal camera counts them, with its noise in K. `air` [K]: of what has no temperature of its own.
+  void write_heat(const Scene& scene, double air, std::span<std::uint8_t> out) const;
   std::span<const std::uint8_t> rgba() const { return rgba_; }  // without noise
   std::span<const float> depth() const { return depth_; }
+  std::span<const std::uint32_t> marks() const { return marks_; }  // see render/marks.h
   // x forward, y left, z up in the camera; NaN where there is none. Three floats a pixel.
   void write_points(std::span<float> out) const;
 
  private:
+  base::Result<void> take_marks(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
+                                View view, std::size_t index);
   void add_depth_noise();
 
   CameraDef def_;
@@ -60,6 +65,7 @@ class Camera {
   std::optional<Lens> lens_;
   std::vector<std::uint8_t> rgba_, face_rgba_;
   std::vector<float> depth_, face_depth_;
+  std::vector<std::uint32_t> marks_, face_marks_;
 };
 
 }  // namespace sim

@@ -166,6 +166,7 @@ void GpuStore::enter(const Scene& scene) {
     used.insert(drawable.material.normal_map.get());
     used.insert(drawable.material.emissive_map.get());
   }
+  for (const auto& visual : scene.visuals) used.insert(visual.signature.get());
   std::erase_if(meshes_, [&](const auto& entry) { return !used.contains(entry.first.get()); });
   std::erase_if(textures_, [&](const auto& entry) { return !used.contains(entry.first.get()); });
 }

@@ -194,6 +194,16 @@ void Lens::map_rgba(std::size_t view, std::span<const std::uint8_t> source, std:
   }
 }
 
+void Lens::map_marks(std::size_t view, std::span<const std::uint32_t> source, std::span<std::uint32_t> out) const {
+  const auto row = static_cast<std::size_t>(faces_[view].width);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Source& from = sources_[i];
+    if (from.face < 0 && view == 0) out[i] = 0;
+    if (from.face != static_cast<int>(view)) continue;
+    out[i] = source[static_cast<std::size_t>(from.y + 0.5F) * row + static_cast<std::size_t>(from.x + 0.5F)];
+  }
+}
+
 void Lens::map_depth(std::span<const float> source, std::span<float> out) const {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& from = sources_[i];

@@ -22,6 +22,8 @@ class Lens {
   std::vector<View> views(const Eigen::Isometry3d& pose) const;
   // Fills the picture from the view of that index (4 bytes a pixel); pixels beyond the lens stay black.
   void map_rgba(std::size_t view, std::span<const std::uint8_t> source, std::span<std::uint8_t> out) const;
+  // The nearest mark, which knows no between; 0 beyond the lens.
+  void map_marks(std::size_t view, std::span<const std::uint32_t> source, std::span<std::uint32_t> out) const;
   // The nearest depth; for lenses with one view only.
   void map_depth(std::span<const float> source, std::span<float> out) const;
   // x forward, y left, z up in the camera for each pixel of a picture that map_depth filled; NaN where its depth is infinite.

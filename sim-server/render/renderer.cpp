@@ -15,6 +15,11 @@
 #include "render/surface_pass.h"
 
 namespace sim {
+namespace {
+
+constexpr float least_seen = 0.02F;  // opacity of what has a mark
+
+}  // namespace
 
 class Renderer::Impl {
  public:
@@ -130,6 +135,7 @@ void Renderer::Impl::choose(const Scene& scene, std::span<const Eigen::Isometry3
   statistics_.culled = 0;
   for (const auto& drawable : scene.drawables) {
     if ((drawable.visibility_flags & view.visibility_mask) == 0) continue;
+    if (view.wants_marks && drawable.material.albedo.w() < least_seen) continue;
     const Eigen::Isometry3d& pose = poses[drawable.link];
     const Eigen::Vector3d centre = pose * drawable.centre - eye;
     const bool is_outside = std::any_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
@@ -245,7 +251,8 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
   ++statistics_.draws;
   projection_ = view_projection(view);
   choose(*scene, poses, view);
-  const Lights lights = view.wants_color ? collect_lights(*scene, poses, view) : Lights{};
+  const bool has_light = view.wants_color && !view.wants_marks;
+  const Lights lights = has_light ? collect_lights(*scene, poses, view) : Lights{};
   if (lights.has_shadow) {
     if (auto done = shadow_.update(*scene, poses, lights.to_shadow_light, shadow_view(poses, view), view.shadow_size); !done) return done;
     gl_.ActiveTexture(GL_TEXTURE2);
@@ -265,17 +272,21 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
   gl_.Disable(GL_BLEND);
   gl_.CullFace(GL_BACK);
   const Color& background = scene->look.background;
-  gl_.ClearColor(background.r, background.g, background.b, 1);
+  if (view.wants_marks) {
+    gl_.ClearColor(0, 0, 0, 0);
+  } else {
+    gl_.ClearColor(background.r, background.g, background.b, 1);
+  }
   gl_.Clear(view.wants_color ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_DEPTH_BUFFER_BIT);
 
   surfaces_.begin({*scene, view_, lights, projection_});
-  // What only has depth has no transparency.
-  const auto is_opaque = [&](const Item& item) { return !view.wants_color || !item.drawable->material.is_transparent; };
+  // What only has depth or a mark has no transparency.
+  const auto is_opaque = [&](const Item& item) { return !has_light || !item.drawable->material.is_transparent; };
   const auto count = static_cast<std::size_t>(std::partition_point(items_.begin(), items_.end(), is_opaque) - items_.begin());
   for (const auto& item : std::span(items_).first(count)) {
     if (auto done = surfaces_.draw(item); !done) return done;
   }
-  if (!view.wants_color) return {};
+  if (!has_light) return {};
   if (scene->look.sky) draw_sky(*scene, view, lights);
   if (auto done = draw_transparent(std::span(items_).subspan(count)); !done) return done;
   if (overlay != nullptr) {

@@ -25,7 +25,8 @@ struct View {
   double near_clip = 0.1, far_clip = 100;  // [m] along the axis
   bool is_parallel = false;
   std::uint32_t visibility_mask = 0xffffffff;
-  bool wants_color = true;  // false: only read_depth() may follow; much cheaper
+  bool wants_color = true;   // false: only read_depth() may follow; much cheaper
+  bool wants_marks = false;  // instead of colours: what is seen where, see render/marks.h
   bool wants_exact_depth =
       false;               // spheres, ellipsoids, cylinders and capsules are round; otherwise, and for parallel views, they have facets
   int shadow_size = 1024;  // pixels a side of the shadow map; 0: no shadows
@@ -50,7 +51,7 @@ class Renderer {
   base::Result<void> draw(const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses, const View& view,
                           const Overlay* overlay = nullptr);
 
-  // Of the last draw; rows from the top down. 4 bytes a pixel: red, green, blue (sRGB), opacity.
+  // Of the last draw; rows from the top down. 4 bytes a pixel: red, green, blue (sRGB), opacity; or its mark.
   void read_rgba(std::span<std::uint8_t> out);
   // [m] along the axis; +infinity where nothing is.
   void read_depth(std::span<float> out);

@@ -2,7 +2,9 @@
 #include "render/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "render/lights.h"
@@ -72,6 +74,9 @@ class Builder {
     entry.name = model.name;
     entry.first_link = entry.canonical_link = static_cast<std::uint32_t>(scene_.links.size());
     entry.link_count = static_cast<std::uint32_t>(model.links.size());
+    objects_.clear();
+    model_ = &model;
+    first_link_ = entry.first_link;
     for (const auto& link : model.links) {
       const auto index = static_cast<std::uint32_t>(scene_.links.size());
       if (link.name == model.canonical_link) {
@@ -113,7 +118,10 @@ class Builder {
       missing.geometry = MeshShape{missing_file, {}, false, Eigen::Vector3d::Ones()};
       add(missing, index);
     }
-    for (const auto& visual : actor.visuals) {
+    objects_.clear();
+    model_ = nullptr;
+    for (auto visual : actor.visuals) {
+      if (visual.label == 0) visual.label = actor.label;
       if (content_ == Scene::Content::visuals) add(visual, index);  // actors are met by nothing
     }
     entry.link_count = static_cast<std::uint32_t>(scene_.links.size()) - index;
@@ -181,7 +189,12 @@ class Builder {
     const auto bones = bone_poses(skin, nullptr, 0, false);
     for (std::size_t i = 0; i < bones.size(); ++i)
       scene_.links.push_back({actor.name + "::" + skin.nodes[skin.bones[i].node].name, false, actor.pose * bones[i]});
-    if (content_ == Scene::Content::visuals) add(VisualDef{}, seen.link, mesh);
+    if (content_ != Scene::Content::visuals) return;
+    objects_.clear();
+    model_ = nullptr;
+    VisualDef whole;
+    whole.label = actor.label;
+    add(whole, seen.link, mesh);
   }
 
   // Bounds that hold every pose of the animations.
@@ -209,10 +222,13 @@ class Builder {
   void add(const VisualDef& visual, std::uint32_t link) { add(visual, link, assets_.mesh(visual.geometry)); }
 
   void add(const VisualDef& visual, std::uint32_t link, const std::shared_ptr<const Mesh>& mesh) {
+    const auto index = static_cast<std::uint32_t>(scene_.visuals.size());
+    scene_.visuals.push_back(seen_as(visual, link));
     const auto* plane = std::get_if<PlaneShape>(&visual.geometry);
     const auto* heightmap = std::get_if<HeightmapShape>(&visual.geometry);
     for (std::uint32_t part = 0; part < mesh->parts.size(); ++part) {
       Drawable drawable;
+      drawable.visual = index;
       drawable.link = link;
       drawable.in_link = Eigen::Affine3d(visual.pose.matrix()) * Assets::placement_of(visual.geometry);
       drawable.mesh = mesh;
@@ -231,8 +247,55 @@ class Builder {
       const Eigen::AlignedBox3d box = drawable.bounds();
       drawable.centre = drawable.in_link * box.center();
       drawable.radius = (drawable.in_link.linear() * (0.5 * box.sizes()).asDiagonal()).rowwise().norm().norm();
+      if (const auto object = scene_.visuals[index].object; object != 0)
+        scene_.objects[object - 1].drawables.push_back(static_cast<std::uint32_t>(scene_.drawables.size()));
       scene_.drawables.push_back(std::move(drawable));
     }
+  }
+
+  SceneVisual seen_as(const VisualDef& visual, std::uint32_t link) {
+    SceneVisual seen;
+    if (visual.label != 0) seen.object = 1 + object_of(visual, link);
+    if (!visual.heat) return seen;
+    seen.has_heat = true;
+    seen.lowest = visual.heat->lowest;
+    seen.highest = visual.heat->highest;
+    if (!visual.heat->signature.empty()) seen.signature = assets_.texture(visual.heat->signature, false);
+    return seen;
+  }
+
+  // That of the model or actor which is being added.
+  std::uint32_t object_of(const VisualDef& visual, std::uint32_t link) {
+    const auto known = objects_.find(visual.labelled);
+    if (known != objects_.end()) return known->second;
+    const auto index = static_cast<std::uint32_t>(scene_.objects.size());
+    SceneObject object;
+    object.label = visual.label;
+    object.number = ++numbers_[visual.label];
+    object.link = link;
+    const std::string& owner = model_ != nullptr ? model_->name : scene_.links[link].name;
+    object.name = visual.labelled.empty() ? owner : owner + "::" + visual.labelled;
+    if (model_ != nullptr) place(object, visual);
+    objects_.emplace(visual.labelled, index);
+    scene_.objects.push_back(std::move(object));
+    return index;
+  }
+
+  // Of the model itself, a nested one, or a visual.
+  void place(SceneObject& object, const VisualDef& visual) const {
+    if (visual.labelled.empty()) {
+      const LinkDef* canonical = model_->link(model_->canonical_link);
+      object.link = first_link_ + static_cast<std::uint32_t>(canonical != nullptr ? canonical - model_->links.data() : 0);
+      object.frame = (canonical != nullptr ? *canonical : model_->links.front()).pose.inverse();
+      return;
+    }
+    for (const NestedDef& nested : model_->nested) {
+      if (nested.name != visual.labelled) continue;
+      object.link = first_link_ + nested.link;
+      object.frame = nested.pose;
+      return;
+    }
+    object.frame = visual.pose;
   }
 
   void measure(SceneModel& model) const {
@@ -250,6 +313,10 @@ class Builder {
   Assets& assets_;
   Scene::Content content_;
   Scene scene_;
+  const ModelDef* model_ = nullptr;               // that is being added; null: an actor
+  std::uint32_t first_link_ = 0;                  // of it
+  std::map<std::string, std::uint32_t> objects_;  // its own, by VisualDef::labelled
+  std::array<std::uint32_t, 256> numbers_{};      // objects so far, by label
 };
 
 }  // namespace

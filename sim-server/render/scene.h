@@ -29,6 +29,7 @@ struct Material {
 };
 
 struct Drawable {
+  std::uint32_t visual = 0;                               // index into Scene::visuals
   std::uint32_t link = 0;                                 // index into Scene::links and into the poses
   Eigen::Affine3d in_link = Eigen::Affine3d::Identity();  // from the mesh to the link
   std::shared_ptr<const Mesh> mesh;
@@ -45,6 +46,24 @@ struct Drawable {
 
   Eigen::AlignedBox3d bounds() const;                                       // of the part, in the mesh
   Eigen::AlignedBox3d bounds_at(const Eigen::Isometry3d& link_pose) const;  // in the world, with its link there
+};
+
+// A visual with all its parts: what the marks of an image tell apart (render/marks.h).
+struct SceneVisual {
+  std::uint32_t object = 0;                  // 1 + index into Scene::objects; 0: it has no label
+  bool has_heat = false;                     // else as warm as the air
+  double lowest = 0, highest = 0;            // [K]
+  std::shared_ptr<const Texture> signature;  // null: all of it has the lowest temperature
+};
+
+// What has a label: a model, nested model, visual or actor.
+struct SceneObject {
+  std::string name;          // scoped
+  std::uint8_t label = 0;    // 1..255
+  std::uint32_t number = 1;  // among those of its label, in the order of the scene
+  std::uint32_t link = 0;    // that its frame is in
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  std::vector<std::uint32_t> drawables;
 };
 
 struct SceneLink {
@@ -82,6 +101,8 @@ struct Scene {
   std::vector<SceneLink> links;  // of models[0], models[1], ... in the order of their definitions, then each actor with its bones
   std::vector<SceneModel> models;
   std::vector<Drawable> drawables;
+  std::vector<SceneVisual> visuals;
+  std::vector<SceneObject> objects;
   std::vector<SceneLight> lights;
   std::vector<SceneActor> actors;
 

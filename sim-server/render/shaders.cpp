@@ -8,6 +8,7 @@ std::string define(const char* name, int value) { return "#define " + std::strin
 std::string header(const Features& f) {
   std::string out = "#version 330 core\n";
   out += define("DEPTH_ONLY", f.depth_only) + define("TEXTURE", f.texture) + define("HOLES", f.holes) + define("NORMAL_MAP", f.normal_map);
+  out += define("MARKS", f.marks) + define("SIGNATURE", f.signature);
   out += define("EMISSIVE_MAP", f.emissive_map);
   out += define("LIT", f.lit) + define("SPECULAR", f.specular) + define("DOUBLE_SIDED", f.double_sided) + define("GRID", f.grid);
   out += define("FOG", static_cast<int>(f.fog)) + define("SHADOW_TAPS", f.shadow_taps);
@@ -149,6 +150,22 @@ void main() {
 #endif
 #if HOLES
   if (texture(albedo_map, v_uv).a < 0.5) discard;
+#endif
+}
+#elif MARKS
+out vec4 picture;
+uniform vec4 albedo;
+void main() {
+#if ROUND
+  meet_round();
+#endif
+#if HOLES
+  if (texture(albedo_map, v_uv).a < 0.5) discard;
+#endif
+  picture = albedo;
+#if SIGNATURE
+  // Textures hold square roots of linear light; signatures count in what their file has.
+  picture.a = pow(dot(texture(albedo_map, v_uv).rgb, vec3(0.299, 0.587, 0.114)), 2.0 / 2.2);
 #endif
 }
 #else

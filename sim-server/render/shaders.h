@@ -32,6 +32,8 @@ enum class FogKind { none, linear, exponential, quadratic };
 
 struct Features {
   bool depth_only = false;  // no colour; shadow maps and depth cameras
+  bool marks = false;       // a colour that names the visual, untouched by light
+  bool signature = false;   // of marks: the texture's grey beside it
   bool texture = false;
   bool holes = false;  // of the texture: cut out
   bool normal_map = false;

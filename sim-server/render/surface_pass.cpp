@@ -17,6 +17,14 @@ Features features_of(const Drawable& drawable, const Picture& picture) {
     f.texture = f.holes;
     return f;
   }
+  if (view.wants_marks) {
+    f.marks = true;
+    f.lit = false;
+    f.signature = scene.visuals[drawable.visual].signature != nullptr;
+    f.holes = f.holes && !f.signature;
+    f.texture = f.holes || f.signature;
+    return f;
+  }
   f.texture = material.texture != nullptr;
   f.emissive_map = f.texture && material.emissive_map != nullptr;
   f.lit = material.is_lit;
@@ -82,7 +90,7 @@ void SurfacePass::tell_view(const SurfaceProgram& program) {
   const auto& [scene, view, lights, view_projection] = *picture_;
   const Eigen::Matrix4f projection = view_projection.cast<float>();
   gl_.UniformMatrix4fv(program.view_projection, 1, GL_FALSE, projection.data());
-  if (!view.wants_color) return;
+  if (!view.wants_color || view.wants_marks) return;
   const Eigen::Vector3f ambient = linear(scene.look.ambient);
   gl_.Uniform3fv(program.ambient, 1, ambient.data());
   const Eigen::Vector3f eye = view.pose.translation().cast<float>();
@@ -130,6 +138,19 @@ void SurfacePass::tell_material(const SurfaceProgram& program, const Material& m
   gl_.Uniform4f(program.shine, material.specular.x(), material.specular.y(), material.specular.z(), material.shininess);
 }
 
+// 1 + index of the visual; see render/marks.h.
+void SurfacePass::tell_mark(const SurfaceProgram& program, const Drawable& drawable) {
+  const std::uint32_t mark = drawable.visual + 1;
+  const auto byte = [&](unsigned shift) { return static_cast<float>((mark >> shift) & 255) / 255.0F; };
+  gl_.Uniform4f(program.albedo, byte(0), byte(8), byte(16), 0);
+  const auto& signature = picture_->scene.visuals[drawable.visual].signature;
+  if (!signature) return;
+  gl_.ActiveTexture(GL_TEXTURE0);
+  gl_.BindTexture(GL_TEXTURE_2D, store_.texture(signature));
+  gl_.Uniform1i(program.albedo_map, 0);
+  gl_.Uniform2f(program.repeat, 1, 1);
+}
+
 base::Result<void> SurfacePass::draw(const Item& item) {
   const Drawable& drawable = *item.drawable;
   auto program = store_.program(features_of(drawable, *picture_));
@@ -141,7 +162,8 @@ base::Result<void> SurfacePass::draw(const Item& item) {
     if (current_->frame != frame_) tell_view(*current_);
     current_->frame = frame_;
   }
-  tell_material(*current_, drawable.material);
+  if (!picture_->view.wants_marks || drawable.material.texture) tell_material(*current_, drawable.material);
+  if (picture_->view.wants_marks) tell_mark(*current_, drawable);
   if (const Lights& lights = picture_->lights; !lights.all.empty() && current_->lamp_position >= 0) {
     const Eigen::Vector4d centre = item.model * drawable.bounds().center().homogeneous();
     tell_lamps(*current_, lamps_at(lights, centre.head<3>().cast<float>(), static_cast<float>(drawable.radius)));

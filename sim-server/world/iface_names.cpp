@@ -36,6 +36,9 @@ int group_of(const SensorDef& sensor) {
     case SensorKind::depth_camera:
     case SensorKind::rgbd_camera:
     case SensorKind::multi_camera:
+    case SensorKind::segmentation_camera:
+    case SensorKind::box_camera:
+    case SensorKind::thermal_camera:
       return static_cast<int>(SensorKind::camera);
     case SensorKind::ray:
       return static_cast<int>(is_sonar(sensor) ? SensorKind::sonar : SensorKind::ray);

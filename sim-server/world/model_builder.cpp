@@ -13,6 +13,7 @@
 #include "world/plugin_kind.h"
 #include "world/repairs.h"
 #include "world/shape_inertia.h"
+#include "world/visual_builder.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -75,21 +76,6 @@ std::optional<CollisionDef> build_collision(pugi::xml_node node, BuildContext& c
 }
 
 }  // namespace
-
-std::optional<VisualDef> build_visual(pugi::xml_node node, BuildContext& context) {
-  std::optional<GeometryDef> geometry = build_geometry(node.child("geometry"), context);
-  if (!geometry) return std::nullopt;
-  VisualDef visual;
-  visual.name = node.attribute("name").value();
-  visual.pose = pose_at(node, "pose") * ground_in_shape(node.child("geometry"), *geometry);
-  visual.geometry = std::move(*geometry);
-  if (const pugi::xml_node material = node.child("material")) visual.material = context.materials.read(material);
-  visual.transparency = std::clamp(number_at(node, "transparency", 0), 0.0, 1.0);
-  visual.cast_shadows = bool_at(node, "cast_shadows", true);
-  visual.laser_retro = number_at(node, "laser_retro", 0);
-  visual.visibility_flags = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_flags", "4294967295").c_str(), nullptr, 0));
-  return visual;
-}
 
 PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildContext& context) {
   PluginDef plugin;
@@ -215,6 +201,8 @@ class ModelBuilder {
   ModelBuilder(ModelDef& model, BuildContext& context) : model_(model), context_(context) {}
 
   void add(pugi::xml_node node, const ResolvedModel& resolved, const std::string& scope, const Eigen::Isometry3d& place) {
+    const std::size_t first_nested = model_.nested.size(), first_link = model_.links.size();
+    if (!scope.empty()) model_.nested.push_back({scope, place, 0});
     for (pugi::xml_node nested : node.children("model")) {
       const auto inner = resolved.models.find(nested.attribute("name").value());
       if (inner == resolved.models.end()) continue;
@@ -224,6 +212,7 @@ class ModelBuilder {
       add(nested, inner->second, scoped(scope, inner->first), place * inner->second.pose);
     }
     for (pugi::xml_node link : node.children("link")) add_link(link, resolved, scope, place);
+    if (!scope.empty()) hang_nested(first_nested, first_link);
     for (pugi::xml_node joint : node.children("joint")) add_joint(joint, resolved, scope, place);
     for (pugi::xml_node plugin : node.children("plugin")) {
       model_.plugins.push_back(build_plugin(plugin, scope, context_));
@@ -264,6 +253,17 @@ class ModelBuilder {
   }
 
  private:
+  // The frame of a nested model on its first link; without links there is nothing to move with.
+  void hang_nested(std::size_t index, std::size_t link) {
+    if (link == model_.links.size()) {
+      model_.nested.erase(model_.nested.begin() + static_cast<std::ptrdiff_t>(index));
+      return;
+    }
+    NestedDef& nested = model_.nested[index];
+    nested.link = static_cast<std::uint32_t>(link);
+    nested.pose = model_.links[link].pose.inverse() * nested.pose;
+  }
+
   static bool is_wheel(const JointDef& joint, const LinkDef& link) {
     const bool turns_on = (joint.kind == JointDef::Kind::revolute || joint.kind == JointDef::Kind::continuous) && !joint.axes.empty() &&
                           !std::isfinite(joint.axes[0].lower) && !std::isfinite(joint.axes[0].upper);
@@ -372,7 +372,12 @@ class ModelBuilder {
 
   void finish_sensor(SensorDef& sensor, pugi::xml_node node, const std::string& scope, const LinkDef* link) {
     sensor.scope = scope;
-    for (pugi::xml_node plugin : node.children("plugin")) sensor.plugins.push_back(build_plugin(plugin, scope, context_));
+    for (pugi::xml_node plugin : node.children("plugin")) {
+      sensor.plugins.push_back(build_plugin(plugin, scope, context_));
+      auto* cameras = std::get_if<CameraSetDef>(&sensor.data);
+      if (cameras == nullptr || kind_of(sensor.plugins.back()) != PluginKind::thermal_sensor) continue;
+      for (CameraDef& camera : cameras->cameras) read_thermal_sensor(sensor.plugins.back(), camera.thermal);
+    }
     auto* contact = std::get_if<ContactDef>(&sensor.data);
     if (!contact || !link) return;
     std::vector<std::string> found;
@@ -485,6 +490,7 @@ ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildCo
   builder.tell_of_inertias();
   model.canonical_link = resolved.canonical_link;
   if (!model.link(model.canonical_link) && !model.links.empty()) model.canonical_link = model.links.front().name;
+  inherit_labels(model);
   name_ifaces(model, context.complaints);
   return model;
 }

@@ -140,10 +140,11 @@ void ModelFiles::resolve_uris(pugi::xml_node entity, const fs::path& folder) {
   const std::function<void(pugi::xml_node)> walk = [&](pugi::xml_node node) {
     const std::string_view name = node.name();
     const std::string_view parent = node.parent().name();
-    if (name == "plugin" || name == "include") return;
+    if ((name == "plugin" && parent != "visual") || name == "include") return;
     const bool is_shape = name == "uri" && (parent == "mesh" || parent == "heightmap");
     const bool is_script = name == "uri" && parent == "script";
-    const bool is_image = name.ends_with("_map") || (parent == "texture" && (name == "diffuse" || name == "normal"));
+    const bool is_image =
+        name.ends_with("_map") || name == "heat_signature" || (parent == "texture" && (name == "diffuse" || name == "normal"));
     const bool is_figure = name == "filename" && (parent == "skin" || parent == "animation");
     if (!is_shape && !is_script && !is_image && !is_figure) {
       for (pugi::xml_node child : node.children()) walk(child);

@@ -48,6 +48,11 @@ const std::map<std::string_view, PluginKind>& table() {
       {"thruster", unsupported_drive},
       {"vehicle", unsupported_drive},
       {"cartdemo", unsupported_drive},
+      {"label", label},
+      {"thermal", thermal},
+      {"thermalsensor", thermal_sensor},
+      {"fiducial", fiducial},
+      {"rtmsimfiducial", fiducial},
       // Done by the simulator anyway.
       {"physics", implied},
       {"sensors", implied},

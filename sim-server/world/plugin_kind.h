@@ -16,6 +16,10 @@ enum class PluginKind {
   unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
   buoyancy,             // of the world
   battery,              // drives the motors of the model until it is empty
+  label,                // of a model, visual or actor: what cameras that segment call it
+  thermal,              // of a visual: its temperature
+  thermal_sensor,       // of a thermal camera: how it counts
+  fiducial,             // of a model: a mark that detectors recognise
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };

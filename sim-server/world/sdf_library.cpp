@@ -198,14 +198,20 @@ std::string snake_case(const std::string& name) {
   return out;
 }
 
-// Elements that newer versions or ROS know and that only name topics and frames of messages; and what belongs to a sensor of a type that
-// gets a line of its own.
-bool means_nothing_here(pugi::xml_node node, std::string_view name) {
+// Elements that newer versions or ROS know and that only name topics and frames of messages.
+bool means_nothing_here(std::string_view name) {
   for (std::string_view known : {"gz_frame_id", "ignition_frame_id", "optical_frame_id", "camera_info_topic", "trigger_topic",
                                  "enable_metrics", "robotNamespace", "topicName", "frameName"}) {
     if (name == known) return true;
   }
-  return std::string_view(node.name()) == "sensor" && name == node.attribute("type").value();
+  return false;
+}
+
+// What sensors have that this library does not know: the element of a type of ours or of a newer version (a type that nobody knows gets a
+// line of its own), and our <rolling> of a lidar.
+bool is_taken_over(pugi::xml_node node, std::string_view name) {
+  const std::string_view parent = node.name();
+  return (parent == "sensor" && name == node.attribute("type").value()) || (name == "rolling" && (parent == "lidar" || parent == "ray"));
 }
 
 std::string expectation(const std::string& type) {
@@ -356,8 +362,9 @@ void SdfLibrary::State::check(pugi::xml_node node, const sdf::ElementPtr& descri
       }
       continue;
     }
+    if (!known && is_taken_over(node, name)) continue;
     if (!known) {
-      if (!means_nothing_here(node, name))
+      if (!means_nothing_here(name))
         complaints->warn(child, "unknown element <" + base::in_quotes(name).substr(1, base::in_quotes(name).size() - 2) + "> in " +
                                     describe_in_context(node) + " is ignored");
       node.remove_child(child);

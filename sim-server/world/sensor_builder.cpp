@@ -74,6 +74,7 @@ std::optional<RayDef> build_ray(pugi::xml_node sensor, BuildContext& context) {
   ray.range_resolution = number_at(node, "range/resolution", 0);
   ray.noise = build_noise(node.child("noise"), context);
   ray.visibility_mask = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_mask", "4294967295").c_str(), nullptr, 0));
+  ray.is_rolling = bool_at(node, "rolling", false);
   // Old files have 0 for "one layer".
   if (ray.vertical.samples == 0) ray.vertical.samples = 1;
   std::string wrong;
@@ -159,16 +160,70 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
   return std::nullopt;
 }
 
+// What cameras have that show something else than colours.
+void build_special_camera(CameraDef& camera, pugi::xml_node sensor, pugi::xml_node node, SensorKind kind, BuildContext& context) {
+  const auto unknown = [&](const char* element, const std::string& value, const char* taken) {
+    context.complaints.warn(child_at(node, element), std::string(element) + " " + base::in_quotes(value) + " of " +
+                                                         describe_in_context(sensor) + " is not known; " + taken + " is taken");
+  };
+  if (kind == SensorKind::segmentation_camera) {
+    const std::string type = base::to_lower(text_at(node, "segmentation_type", "semantic"));
+    camera.has_instances = type == "instance" || type == "panoptic";
+    if (!camera.has_instances && type != "semantic") unknown("segmentation_type", type, "semantic");
+  } else if (kind == SensorKind::box_camera) {
+    const char* element = node.child("boundingbox_type") ? "boundingbox_type" : "box_type";
+    const std::string type = base::to_lower(text_at(node, element, "2d"));
+    camera.boxes = type == "full_2d" || type == "full_box_2d" ? BoxKind::full : type == "3d" ? BoxKind::oriented : BoxKind::visible;
+    if (camera.boxes == BoxKind::visible && type != "2d" && type != "visible_2d" && type != "visible_box_2d")
+      unknown(element, type, "visible_2d");
+  } else if (kind == SensorKind::thermal_camera) {
+    camera.thermal.is_wide = camera.format != PixelFormat::mono8;
+    if (!camera.thermal.is_wide) camera.thermal.resolution = 3;
+    camera.thermal.highest = camera.thermal.resolution * (camera.thermal.is_wide ? 65535 : 255);
+  }
+}
+
 std::optional<CameraSetDef> build_cameras(pugi::xml_node sensor, SensorKind kind, BuildContext& context) {
   CameraSetDef set;
   for (pugi::xml_node node : sensor.children("camera")) {
     std::optional<CameraDef> camera = build_camera(sensor, node, kind, context);
     if (!camera) return std::nullopt;
+    build_special_camera(*camera, sensor, node, kind, context);
     set.cameras.push_back(std::move(*camera));
     if (kind != SensorKind::multi_camera) break;
   }
   if (!set.cameras.empty()) return set;
   context.complaints.drop(sensor, describe_in_context(sensor) + " has no <camera> and is left out");
+  return std::nullopt;
+}
+
+std::optional<LogicalCameraDef> build_logical_camera(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("logical_camera");
+  LogicalCameraDef camera{number_at(node, "near", 0), number_at(node, "far", 1), number_at(node, "horizontal_fov", 1),
+                          number_at(node, "aspect_ratio", 1)};
+  std::string wrong;
+  if (!(camera.near_clip >= 0)) wrong = must(sensor, "near distance", "0 or more", camera.near_clip);
+  if (!(camera.far_clip > camera.near_clip)) wrong = must(sensor, "far distance", "above the near one", camera.far_clip);
+  if (!(camera.horizontal_fov > 0 && camera.horizontal_fov < std::numbers::pi))
+    wrong = must(sensor, "horizontal field of view", "above 0 and below half a turn", camera.horizontal_fov);
+  if (!(camera.aspect_ratio > 0)) wrong = must(sensor, "aspect ratio", "positive", camera.aspect_ratio);
+  if (wrong.empty()) return camera;
+  context.complaints.drop(sensor, wrong);
+  return std::nullopt;
+}
+
+std::optional<FiducialDef> build_fiducial(pugi::xml_node sensor, BuildContext& context) {
+  const pugi::xml_node node = sensor.child("fiducial");
+  FiducialDef detector{number_at(node, "range/min", 0), number_at(node, "range/max", 8),
+                       number_at(node, "horizontal_fov", std::numbers::pi), noise_at(node, "position", context),
+                       noise_at(node, "orientation", context)};
+  std::string wrong;
+  if (!(detector.range_min >= 0)) wrong = must(sensor, "smallest range", "0 or more", detector.range_min);
+  if (!(detector.range_max > detector.range_min)) wrong = must(sensor, "largest range", "above the smallest", detector.range_max);
+  if (!(detector.view_angle > 0 && detector.view_angle <= 2 * std::numbers::pi + 1e-9))
+    wrong = must(sensor, "horizontal field of view", "above 0 and at most a turn", detector.view_angle);
+  if (wrong.empty()) return detector;
+  context.complaints.drop(sensor, wrong);
   return std::nullopt;
 }
 
@@ -331,6 +386,15 @@ constexpr std::array kinds{
     KindRow{SensorKind::localization,
             {"localization"},
             [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_localization(sensor, context)); }},
+    KindRow{SensorKind::segmentation_camera, {"segmentation_camera", "segmentation"}, take_cameras},
+    KindRow{SensorKind::box_camera, {"boundingbox_camera", "boundingbox", "bounding_box_camera"}, take_cameras},
+    KindRow{SensorKind::thermal_camera, {"thermal_camera", "thermal"}, take_cameras},
+    KindRow{SensorKind::logical_camera,
+            {"logical_camera"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_logical_camera(sensor, context)); }},
+    KindRow{SensorKind::fiducial,
+            {"fiducial"},
+            [](SensorDef& out, Node sensor, BuildContext& context) { return take(out, build_fiducial(sensor, context)); }},
 };
 
 const KindRow* row_of(std::string_view spelling) {

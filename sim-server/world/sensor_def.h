@@ -39,6 +39,7 @@ struct RayDef {
   double range_resolution = 0;  // 0: none
   NoiseDef noise;
   std::uint32_t visibility_mask = 0xffffffff;
+  bool is_rolling = false;  // the beams of a scan are from its whole period, as of a scanner that turns; else from one instant
 };
 
 // Brown's distortion.
@@ -54,6 +55,13 @@ struct LensDef {
   double c1 = 1, c2 = 1, c3 = 0, f = 1;  // custom
   std::string function = "tan";          // custom: sin, tan, id
 };
+// What a box of a bounding box camera is around, as RTMSIM_BOX_* has it.
+enum class BoxKind { visible = 1, full = 2, oriented = 3 };
+// How a thermal camera counts. Temperatures beyond the range are at its ends.
+struct ThermalDef {
+  bool is_wide = true;                                     // 16 bits a pixel, else 8
+  double resolution = 0.01, lowest = 0, highest = 655.35;  // [K]
+};
 struct CameraDef {
   std::string name;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the sensor; looks along +x, z up
@@ -66,10 +74,24 @@ struct CameraDef {
   std::optional<DistortionDef> distortion;
   std::optional<LensDef> lens;  // empty: pinhole
   std::uint32_t visibility_mask = 0xffffffff;
+  bool has_instances = false;        // segmentation: each object has a number
+  BoxKind boxes = BoxKind::visible;  // bounding box camera
+  ThermalDef thermal;
 };
 // One camera, or several taken at the same time (multicamera).
 struct CameraSetDef {
   std::vector<CameraDef> cameras;
+};
+
+// Models whose origin is in the frustum along x.
+struct LogicalCameraDef {
+  double near_clip = 0, far_clip = 1, horizontal_fov = 1, aspect_ratio = 1;
+};
+// Detector of marks (plugin Fiducial of models).
+struct FiducialDef {
+  double range_min = 0, range_max = 8;
+  double view_angle = 3.141592653589793;  // centred on x
+  NoiseDef position, orientation;         // of each coordinate [m], of each angle [rad]
 };
 
 struct SonarDef {
@@ -170,6 +192,11 @@ enum class SensorKind {
   wireless_transmitter,
   wheels,
   localization,
+  segmentation_camera,
+  box_camera,
+  thermal_camera,
+  logical_camera,
+  fiducial,
 };
 std::string_view to_text(SensorKind kind);  // as the table of sensor_builder.cpp says it
 
@@ -185,7 +212,7 @@ struct SensorDef {
   bool visualize = false;
   std::string topic;
   std::variant<RayDef, CameraSetDef, ContactDef, ImuDef, GpsDef, SonarDef, ForceTorqueDef, AltimeterDef, MagnetometerDef, AirPressureDef,
-               DvlDef, AirSpeedDef, InsDef, RfidDef, RfidTagDef, RadioDef, WheelsDef, LocalizationDef>
+               DvlDef, AirSpeedDef, InsDef, RfidDef, RfidTagDef, RadioDef, WheelsDef, LocalizationDef, LogicalCameraDef, FiducialDef>
       data;
   std::vector<PluginDef> plugins;
 };

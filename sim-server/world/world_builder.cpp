@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "world/model_builder.h"
 #include "world/plugin_kind.h"
+#include "world/visual_builder.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -203,6 +204,7 @@ ActorDef build_actor(pugi::xml_node node, BuildContext& context) {
                                         ", which a trajectory names; its limbs keep still meanwhile");
   }
   for (pugi::xml_node plugin : node.children("plugin")) actor.plugins.push_back(build_plugin(plugin, {}, context));
+  actor.label = label_of(actor.plugins, {});
   actor.source = context.complaints.place_of(node).text();
   if (actor.skin.empty() && actor.visuals.empty())
     context.complaints.warn(node, describe(node) + " has neither a skin nor a visual and cannot be seen");

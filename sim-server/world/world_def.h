@@ -151,6 +151,12 @@ struct MaterialDef {
   std::string script;  // name it came from, for messages ("Gazebo/Grey"); empty when none
 };
 
+// How warm something is: one temperature, or a picture whose black is the lowest and white the highest one.
+struct HeatDef {
+  double lowest = 288.15, highest = 288.15;  // [K]
+  std::string signature;                     // path of the picture or empty
+};
+
 struct VisualDef {
   std::string name;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
@@ -160,6 +166,9 @@ struct VisualDef {
   bool cast_shadows = true;
   double laser_retro = 0;
   std::uint32_t visibility_flags = 0xffffffff;
+  std::uint8_t label = 0;       // of segmentation; 0: none
+  std::string labelled;         // who has the label, in the model: a nested model, link::visual, or empty for the model
+  std::optional<HeatDef> heat;  // empty: as warm as the air
 };
 
 struct LightDef {
@@ -259,6 +268,13 @@ struct GainsDef {
   std::string source;                           // "file:line"
 };
 
+// A nested model's frame. It moves with its first link.
+struct NestedDef {
+  std::string name;                                        // scoped: "arm::hand"
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the link
+  std::uint32_t link = 0;                                  // index into ModelDef::links
+};
+
 // A top-level model with all its nested ones folded in: their links, joints, sensors and plugins carry a scope.
 struct ModelDef {
   std::string name;                                        // unique in the world
@@ -273,7 +289,8 @@ struct ModelDef {
   std::vector<PluginDef> plugins;
   std::vector<GripperDef> grippers;
   std::vector<GainsDef> gains;
-  std::string source;  // "file:line" where the model comes from
+  std::vector<NestedDef> nested;  // those with links, from the outermost in the order of the file
+  std::string source;             // "file:line" where the model comes from
 
   const LinkDef* link(std::string_view link_name) const;     // null when absent
   const JointDef* joint(std::string_view joint_name) const;  // null when absent
@@ -309,6 +326,7 @@ struct ActorDef {
   bool loop = true;
   bool auto_start = true;
   double delay_start = 0;
+  std::uint8_t label = 0;  // as of visuals
   std::vector<PluginDef> plugins;
   std::string source;
 };

@@ -214,6 +214,45 @@ bool bench_movers(int triangles, const Textures& textures, double least, int rou
   return print("  with 4 moving things and their shadows", 1 / ours, "frames/s", least, true);
 }
 
+// Labels, and boxes with the image, of the same scene and view as the plain camera; an object for each model.
+bool bench_labels(int triangles, const Textures& textures, int rounds) {
+  const auto rig_of = [&](sim::SensorKind kind, const std::string& iface) {
+    sim::WorldDef world = make_world(triangles, textures, 0, 1000);
+    for (auto& model : world.models) {
+      for (auto& link : model.links) {
+        for (auto& visual : link.visuals) visual.label = model.name.starts_with("thing") ? 1 : 0;
+        for (auto& sensor : link.sensors) sensor.kind = kind;
+      }
+    }
+    return std::make_unique<Rig>(std::move(world), iface);
+  };
+  const auto time_of = [&](Rig& rig) {
+    for (int i = 0; i < 10; ++i) rig.move_and_step();
+    return best_of(rounds, triangles >= 100000 ? 5 : 15, [&] { rig.move_and_step(); });
+  };
+  double plain = 0, labels = 0, boxes = 0;
+  {
+    const auto rig = rig_of(sim::SensorKind::camera, "eye::camera");
+    plain = time_of(*rig);
+  }
+  {
+    const auto rig = rig_of(sim::SensorKind::segmentation_camera, "eye::camera::labels_map");
+    labels = time_of(*rig);
+  }
+  {
+    const auto rig = rig_of(sim::SensorKind::box_camera, "eye::camera");
+    auto iface = shm::Iface::open(rig->server->id(), shm::IfaceType::boxes, "eye::camera");
+    if (!iface || !iface->subscribe()) throw std::runtime_error("no boxes");
+    boxes = time_of(*rig);
+  }
+  char note[80];
+  std::snprintf(note, sizeof note, "%.2f, %.2f, %.2f ms", 1e3 * plain, 1e3 * labels, 1e3 * boxes);
+  const std::string name = triangles >= 100000 ? "100 k triangles" : "1 k triangles";
+  bool is_kept = print("320x240, " + name + ": labels against a plain image", labels / plain, "times", 1.3, false, note);
+  is_kept &= print("  image with boxes against a plain image", boxes / plain, "times", 1.3, false);
+  return is_kept;
+}
+
 sim::WorldDef load(const std::string& file) {
   auto loaded = sim::load_world(file, sim::ModelPath::from_environment({}, RTMSIM_WORLDS_DIR));
   if (!loaded) throw std::runtime_error(loaded.error().message);
@@ -281,7 +320,7 @@ bool bench_memory(const Textures& textures, int frames) {
 
 int main(int argc, char** argv) {
   ::test::answer_help(argc, argv,
-                      "render_bench [--quick] [--only 1k|100k|farm|memory]\nMeasures images of cameras beside a plain OSMesa loop.");
+                      "render_bench [--quick] [--only 1k|100k|labels|farm|memory]\nMeasures images of cameras beside a plain OSMesa loop.");
   bool is_quick = false;
   std::string only;
   for (int i = 1; i < argc; ++i) {
@@ -299,6 +338,10 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "100k") {
       is_kept &= bench_scene(100000, textures, 80, rounds);
       is_kept &= bench_movers(100000, textures, 80, rounds);
+    }
+    if (only.empty() || only == "labels") {
+      is_kept &= bench_labels(1000, textures, rounds);
+      is_kept &= bench_labels(100000, textures, rounds / 3);
     }
     if (only.empty() || only == "farm") is_kept &= bench_farm(is_quick ? 3 : 10);
     if (only.empty() || only == "memory") is_kept &= bench_memory(textures, is_quick ? 10000 : 100000);

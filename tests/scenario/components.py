@@ -173,10 +173,11 @@ def point_cloud():
     assert len(cloud["data"]) == 12 * cloud["width"] and 0 < cloud["width"] < 16 * 36 and [one["name"] for one in cloud["fields"]] == ["x", "y", "z"]
     rig.rtse("conf", "RTCPointCloud0", "set", "organised", "1")
     rig.rtse("conf", "RTCPointCloud0", "set", "fields", "all")
-    whole = await_("one row per layer", lambda: (got := sample("RTCPointCloud0:cloud"))["point_step"] == 20 and got)
-    assert (whole["height"], whole["width"], whole["row_step"], whole["is_dense"]) == (16, 36, 720, False), whole
-    x, y, z, intensity, ring = struct.unpack_from("<ffffI", bytes(whole["data"]), 20 * 36 * 15)
-    assert math.isnan(x) and ring == 15 and intensity == 0
+    whole = await_("one row per layer", lambda: (got := sample("RTCPointCloud0:cloud"))["point_step"] == 24 and got)
+    assert (whole["height"], whole["width"], whole["row_step"], whole["is_dense"]) == (16, 36, 864, False), whole
+    x, y, z, intensity, ring, time = struct.unpack_from("<ffffHxxf", bytes(whole["data"]), 24 * 36 * 15)
+    assert math.isnan(x) and ring == 15 and intensity == 0 and time == 0
+    assert [(one["name"], one["offset"]) for one in whole["fields"]] == [("x", 0), ("y", 4), ("z", 8), ("intensity", 12), ("ring", 16), ("time", 20)]
 
 
 def odometry():

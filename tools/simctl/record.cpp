@@ -87,7 +87,7 @@ base::Result<void> write_wide_grey(const shm::FrameHead& head, const std::uint8_
 // Mosaics become colours; 16 bits of grey stay 16 bits.
 base::Result<void> write_frame(const shm::HeldFrame& frame, const std::string& file) {
   const auto& head = frame.head();
-  const auto format = static_cast<shm::Format>(head.format);
+  const auto format = shm::shown_as(static_cast<shm::Format>(head.format));
   const auto* data = reinterpret_cast<const std::uint8_t*>(frame.data().data());
   if (frame.data().size() < static_cast<std::size_t>(head.stride) * head.height) return base::Error{"record: the frame is cut short"};
   std::vector<std::uint8_t> scratch;

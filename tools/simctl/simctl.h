@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "shm/client.h"
 #include "shm/requests.h"
+#include "shm/world_map.h"
 
 namespace simctl {
 
@@ -78,12 +79,8 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_size(const std::str
 void screenshot(Control& control, const ScreenshotOptions& options);
 // The world as glTF 2.0 binary.
 void export_world(Control& control, const std::string& file, bool with_collisions);
-struct MapOptions {
-  std::string file;                           // PNG; the YAML file is beside it
-  double resolution = 0.05;                   // [m] a side of a cell
-  std::vector<double> heights = {0.05, 0.5};  // [m] what is between these counts
-  std::vector<double> area;                   // xmin, ymin, xmax, ymax [m]; empty: where something stands
-  bool with_movable = false;                  // models that can move, too
+struct MapOptions : shm::MapOptions {
+  std::string file;  // PNG; the YAML file is beside it
 };
 // The occupancy map of the world, as map_server reads it.
 void map(Control& control, const MapOptions& options);

@@ -320,4 +320,21 @@ struct BumperShape {
 };
 std::string encode_bumper_shapes(const std::vector<BumperShape>& shapes);
 
+// ---- fiducial, blobfinder ----
+struct FiducialItem {
+  std::int32_t id = -1;
+  Pose3d pose, uncertainty;  // in the detector
+};
+std::string encode_fiducials(const std::vector<FiducialItem>& items);
+// `width`, `height`: of a mark [m].
+std::string encode_fiducial_geometry(const Pose3d& pose, double width, double height);
+std::string encode_fiducial_fov(double min_range, double max_range, double view_angle);
+
+struct Blob {
+  std::uint32_t id = 0, color = 0;                                                 // 0x00RRGGBB
+  std::uint32_t area = 0, x = 0, y = 0, left = 0, right = 0, top = 0, bottom = 0;  // [pixel] from the left and the top
+  float range = 0;                                                                 // [m]; 0: not known
+};
+std::string encode_blobs(std::uint32_t width, std::uint32_t height, const std::vector<Blob>& blobs);
+
 }  // namespace player

@@ -253,4 +253,45 @@ std::string encode_bumper_shapes(const std::vector<BumperShape>& shapes) {
   });
 }
 
+// ---- fiducial, blobfinder ----
+
+std::string encode_fiducials(const std::vector<FiducialItem>& items) {
+  return written([&](XdrWriter& out) {
+    out.count(items.size());
+    for (const FiducialItem& item : items) {
+      out.i32(item.id);
+      put(out, item.pose);
+      put(out, item.uncertainty);
+    }
+  });
+}
+
+std::string encode_fiducial_geometry(const Pose3d& pose, double width, double height) {
+  return written([&](XdrWriter& out) {
+    put(out, pose);
+    put(out, Size3d{});
+    out.f64(width);
+    out.f64(height);
+  });
+}
+
+std::string encode_fiducial_fov(double min_range, double max_range, double view_angle) {
+  return written([&](XdrWriter& out) {
+    for (const double value : {min_range, max_range, view_angle}) out.f32(static_cast<float>(value));
+  });
+}
+
+std::string encode_blobs(std::uint32_t width, std::uint32_t height, const std::vector<Blob>& blobs) {
+  return written([&](XdrWriter& out) {
+    out.u32(width);
+    out.u32(height);
+    out.count(blobs.size());
+    for (const Blob& blob : blobs) {
+      for (const std::uint32_t value : {blob.id, blob.color, blob.area, blob.x, blob.y, blob.left, blob.right, blob.top, blob.bottom})
+        out.u32(value);
+      out.f32(blob.range);
+    }
+  });
+}
+
 }  // namespace player

@@ -1,6 +1,7 @@
 #include "devices/joints/joint_list.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -24,8 +25,10 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  return kind != PluginKind::joint_controller && kind != PluginKind::detachable_joint && kind != PluginKind::implied &&
-         kind != PluginKind::unknown && kind != PluginKind::buoyancy;
+  constexpr std::array others{PluginKind::joint_controller, PluginKind::detachable_joint, PluginKind::implied,
+                              PluginKind::unknown,          PluginKind::buoyancy,         PluginKind::label,
+                              PluginKind::thermal,          PluginKind::fiducial,         PluginKind::thermal_sensor};
+  return std::ranges::find(others, kind) == others.end();
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {

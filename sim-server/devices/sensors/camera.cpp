@@ -9,6 +9,7 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "devices/render_world.h"
+#include "devices/sensors/camera_channels.h"
 #include "devices/sensors/sensor.h"
 #include "render/pixels.h"
 #include "shm/server.h"
@@ -16,18 +17,6 @@
 
 namespace sim {
 namespace {
-
-struct Channel {
-  shm::IfaceType type;
-  std::shared_ptr<shm::IfaceWriter> writer;
-};
-
-struct Job {
-  Snapshot snapshot;
-  Eigen::Isometry3d pose;  // of the camera in the world
-  std::chrono::nanoseconds time;
-  std::vector<bool> channels;  // which are wanted
-};
 
 std::uint64_t seed_of(std::uint64_t seed, const std::string& name) {
   for (const char c : name) seed = mix_seed(seed, static_cast<unsigned char>(c));
@@ -37,7 +26,7 @@ std::uint64_t seed_of(std::uint64_t seed, const std::string& name) {
 // Draws and publishes one picture at a time in its own thread, which begins with the first.
 class CameraWorker {
  public:
-  CameraWorker(Camera camera, std::vector<Channel> channels) : camera_(std::move(camera)), channels_(std::move(channels)) {}
+  CameraWorker(Camera camera, std::vector<CameraChannel> channels) : camera_(std::move(camera)), channels_(std::move(channels)) {}
   ~CameraWorker() {
     state_.lock()->is_ending = true;
     changed_.notify_all();
@@ -54,7 +43,7 @@ class CameraWorker {
   // Only when idle.
   void set_seed(std::uint64_t seed) { camera_.set_seed(seed); }
   // Only when idle.
-  void start(Job job) {
+  void start(CameraJob job) {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
     {
       auto state = state_.lock();
@@ -71,7 +60,7 @@ class CameraWorker {
 
  private:
   struct State {
-    std::optional<Job> job;
+    std::optional<CameraJob> job;
     bool is_busy = false;
     bool is_ending = false;
     bool should_rest = false;
@@ -102,7 +91,7 @@ class CameraWorker {
 
   // A picture to draw or, without one, the context to give back.
   struct Work {
-    std::optional<Job> job;
+    std::optional<CameraJob> job;
     bool is_rest = false;
   };
   std::optional<Work> next() {
@@ -115,46 +104,25 @@ class CameraWorker {
     return Work{std::exchange(state->job, std::nullopt), is_rest};
   }
 
-  void draw(const Job& job) {
+  void draw(const CameraJob& job) {
     auto done = take(job);
     if (!done && !has_failed_) base::log(base::Level::error, channels_.front().writer->name(), "{}", done.error().message);
     has_failed_ = !done;
-    if (done) publish(job);
+    if (done) publish(camera_, job, channels_);
   }
 
-  base::Result<void> take(const Job& job) {
+  base::Result<void> take(const CameraJob& job) {
     if (!renderer_) {
       auto opened = Renderer::open();
       if (!opened) return opened.error();
       renderer_ = std::move(*opened);
     }
-    bool needs_color = false, needs_depth = false;
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      if (job.channels[i]) (channels_[i].type == shm::IfaceType::camera ? needs_color : needs_depth) = true;
-    }
-    const auto wanted = !needs_depth ? Camera::Output::color : needs_color ? Camera::Output::color_and_depth : Camera::Output::depth;
+    const auto wanted = output_of(channels_, job.channels);
     return camera_.take(*renderer_, job.snapshot.scene, *job.snapshot.poses, job.pose, job.time.count(), wanted);
   }
 
-  void publish(const Job& job) {
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      if (!job.channels[i]) continue;
-      auto frame = channels_[i].writer->begin_frame();
-      if (!frame) continue;  // readers hold every slot: counted by the ring
-      fill(channels_[i].type, *frame);
-      channels_[i].writer->publish_frame(job.time, to_pose(job.pose));
-    }
-  }
-
-  void fill(shm::IfaceType type, std::span<std::byte> frame) const {
-    if (type == shm::IfaceType::camera) return camera_.write_color({reinterpret_cast<std::uint8_t*>(frame.data()), frame.size()});
-    const std::span<float> floats(reinterpret_cast<float*>(frame.data()), frame.size() / sizeof(float));
-    if (type == shm::IfaceType::points) return camera_.write_points(floats);
-    std::copy_n(camera_.depth().begin(), std::min(floats.size(), camera_.depth().size()), floats.begin());
-  }
-
   Camera camera_;
-  std::vector<Channel> channels_;
+  std::vector<CameraChannel> channels_;
   std::unique_ptr<Renderer> renderer_;
   bool has_failed_ = false;
   base::Guarded<State, base::Rank::worker> state_;
@@ -165,7 +133,7 @@ class CameraWorker {
 // Carries the first iface and does the work for all of them.
 class CameraDevice final : public Device, public CameraPlaceSource {
  public:
-  CameraDevice(DeviceWorld& world, Mount mount, double rate, Camera camera, const std::vector<Channel>& channels)
+  CameraDevice(DeviceWorld& world, Mount mount, double rate, Camera camera, const std::vector<CameraChannel>& channels)
       : world_(world), mount_(mount), def_(camera.def()), schedule_(rate), channels_(channels), worker_(std::move(camera), channels) {}
 
   shm::IfaceWriter& iface() override { return *channels_.front().writer; }
@@ -187,7 +155,7 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     // that one, too.
     if (world_.pictures->is_synchronous()) worker_.wait();
     if (!worker_.is_idle() || !is_ready()) return false;
-    job_ = Job{world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, std::move(wanted)};
+    job_ = job_of(moment, std::move(wanted));
     return true;
   }
   void take_sample(const Moment&) override { worker_.start(std::move(*job_)); }
@@ -198,12 +166,12 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     if (world_.pictures->is_synchronous()) worker_.wait();
   }
   bool owes_sample() override {
-    return std::any_of(channels_.begin(), channels_.end(), [](const Channel& channel) { return channel.writer->owes_sample(); }) &&
+    return std::any_of(channels_.begin(), channels_.end(), [](const CameraChannel& channel) { return channel.writer->owes_sample(); }) &&
            is_ready();
   }
   void show(const Moment& moment) override {
     worker_.wait();
-    worker_.start({world_.pictures->snapshot(moment.time), mount_.in_world(world_.physics), moment.time, subscribed_channels()});
+    worker_.start(job_of(moment, subscribed_channels()));
     worker_.wait();
     schedule_.shown(moment.time, era());
     last_picture_ = moment.time;
@@ -217,6 +185,14 @@ class CameraDevice final : public Device, public CameraPlaceSource {
 
  private:
   bool is_ready() { return world_.pictures->is_synchronous() || world_.pictures->prepare(Scene::Content::visuals); }
+
+  CameraJob job_of(const Moment& moment, std::vector<bool> wanted) {
+    const Eigen::Isometry3d pose = mount_.in_world(world_.physics);
+    constexpr double lapse = 0.0065;  // [K/m] of the standard atmosphere
+    const double altitude = world_.world.spherical.elevation + pose.translation().z();
+    const double air = world_.world.physics.atmosphere_temperature - lapse * altitude;
+    return {world_.pictures->snapshot(moment.time), pose, moment.time, std::move(wanted), air};
+  }
 
   void rest_when_long_idle(std::chrono::nanoseconds now) {
     constexpr std::chrono::seconds long_idle{10};
@@ -242,22 +218,26 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   Mount mount_;
   CameraDef def_;
   Schedule schedule_;
-  std::vector<Channel> channels_;
-  std::optional<Job> job_;
+  std::vector<CameraChannel> channels_;
+  std::optional<CameraJob> job_;
   std::optional<std::chrono::nanoseconds> last_picture_;  // since it had to open a context
   CameraWorker worker_;
 };
 
-// Only shows that the iface is there; the sensor's CameraDevice does the work.
+// Another iface of a camera, whose CameraDevice does the work.
 class SecondIface final : public Device {
  public:
-  SecondIface(ModelId model, std::shared_ptr<shm::IfaceWriter> writer) : model_(model), writer_(std::move(writer)) {}
+  SecondIface(CameraDevice& camera, std::shared_ptr<shm::IfaceWriter> writer) : camera_(camera), writer_(std::move(writer)) {}
   shm::IfaceWriter& iface() override { return *writer_; }
-  ModelId model() const override { return model_; }
+  ModelId model() const override { return camera_.model(); }
   bool owes_sample() override { return false; }
+  // Ifaces of one name are shown together.
+  void show(const Moment& moment) override {
+    if (writer_->name() != camera_.iface().name()) camera_.show(moment);
+  }
 
  private:
-  ModelId model_;
+  CameraDevice& camera_;
   std::shared_ptr<shm::IfaceWriter> writer_;
 };
 
@@ -285,58 +265,27 @@ shm::CameraInfo info_of(const Camera& camera, const DeviceWorld& world, const Mo
   return info;
 }
 
-shm::Format format_of(shm::IfaceType type, const Camera& camera) {
-  if (type == shm::IfaceType::depth) return shm::Format::depth_float;
-  if (type == shm::IfaceType::points) return shm::Format::points_float;
-  switch (camera.def().format) {
-    case PixelFormat::rgb8:
-    case PixelFormat::float32:
-      return shm::Format::rgb8;
-    case PixelFormat::bgr8:
-      return shm::Format::bgr8;
-    case PixelFormat::rgba8:
-      return shm::Format::rgba8;
-    case PixelFormat::bgra8:
-      return shm::Format::bgra8;
-    case PixelFormat::mono8:
-      return shm::Format::mono8;
-    case PixelFormat::mono16:
-      return shm::Format::mono16;
-    case PixelFormat::bayer_rggb8:
-      return shm::Format::bayer_rggb8;
-    case PixelFormat::bayer_bggr8:
-      return shm::Format::bayer_bggr8;
-    case PixelFormat::bayer_gbrg8:
-      return shm::Format::bayer_gbrg8;
-    case PixelFormat::bayer_grbg8:
-      return shm::Format::bayer_grbg8;
-  }
-  return shm::Format::rgb8;
-}
-
 }  // namespace
 
 base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& world, Mount mount, const SensorDef& sensor) {
   std::vector<std::unique_ptr<Device>> devices;
-  const bool is_depth = sensor.kind == SensorKind::depth_camera, is_rgbd = sensor.kind == SensorKind::rgbd_camera;
-  const auto output = is_depth ? Camera::Output::depth : is_rgbd ? Camera::Output::color_and_depth : Camera::Output::color;
+  const auto all = seen_by(sensor.kind);
   for (const auto& def : std::get<CameraSetDef>(sensor.data).cameras) {
     std::string name = iface_name(world.physics.def(mount.link.model), sensor);
     if (sensor.kind == SensorKind::multi_camera) name += "::" + without_slashes(def.name);
-    Camera camera(def, output, seed_of(world.seed, name));
+    Camera camera(def, output_of(all), seed_of(world.seed, name));
     const Mount place{mount.link, mount.pose * def.pose};
-    std::vector<Channel> channels;
-    for (const auto type : {shm::IfaceType::camera, shm::IfaceType::depth, shm::IfaceType::points}) {
-      if (type == shm::IfaceType::camera ? is_depth : !is_depth && !is_rgbd) continue;
-      shm::CameraInfo info = info_of(camera, world, place, sensor);
-      info.format = static_cast<std::uint32_t>(format_of(type, camera));
-      auto writer = world.shm.create(shm::camera_spec(type, name, info));
-      if (!writer) return writer.error();
-      channels.push_back({type, std::move(*writer)});
+    const shm::CameraInfo info = info_of(camera, world, place, sensor);
+    std::vector<CameraChannel> channels;
+    for (const CameraSees what : all) {
+      auto channel = make_channel(world, what, name + ending_of(what), info, camera.def());
+      if (!channel) return channel.error();
+      channels.push_back(std::move(*channel));
     }
-    devices.push_back(std::make_unique<CameraDevice>(world, place, sensor.update_rate, std::move(camera), channels));
-    for (std::size_t i = 1; i < channels.size(); ++i)
-      devices.push_back(std::make_unique<SecondIface>(mount.link.model, channels[i].writer));
+    auto device = std::make_unique<CameraDevice>(world, place, sensor.update_rate, std::move(camera), channels);
+    CameraDevice& first = *device;
+    devices.push_back(std::move(device));
+    for (std::size_t i = 1; i < channels.size(); ++i) devices.push_back(std::make_unique<SecondIface>(first, channels[i].writer));
   }
   return devices;
 }

@@ -1,6 +1,6 @@
-// Cameras of all kinds: camera, depth, rgbd, multicamera. Each camera draws in a thread of its own, with a context of its own, and only
-// while somebody subscribes; ten simulated seconds after the last picture it gives its context back. The frame of time t shows the world at
-// t, and its pose is the camera's at t. See device.h for the thread rule.
+// Cameras of all kinds: camera, depth, rgbd, multicamera, segmentation, bounding box, thermal. Each camera draws in a thread of its own,
+// with a context of its own, and only while somebody subscribes; ten simulated seconds after the last picture it gives its context back.
+// The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ class CameraPlaceSource {
 };
 
 // The devices of one sensor: one for each iface. A camera has a `camera` iface, a depth camera `depth` and `points`, an rgbd camera all
-// three under the same name; the cameras of a set are named sensor::camera.
+// three under the same name; the cameras of a set are named sensor::camera. A bounding box camera has a `camera` iface and a `boxes` iface,
+// a segmentation camera the `camera` ifaces sensor::labels_map and sensor::colored_map.
 base::Result<std::vector<std::unique_ptr<Device>>> make_cameras(DeviceWorld& world, Mount mount, const SensorDef& sensor);
 
 }  // namespace sim

@@ -52,6 +52,7 @@ base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::
   const auto fail = [&](const std::string& what) { return base::Error{"fault " + kind + " of " + order.iface + ": " + what}; };
   const auto& row = shm::row_of(writer.type());
   if (row.sample_size == 0) return fail("its frames cannot be changed");
+  if (writer.type() == shm::IfaceType::boxes) return fail("its boxes come with frames, which cannot be changed");
   if (order.kind == Kind::missing && !has_ranges(writer)) return fail("only lasers and sonars have beams");
   const bool is_changed = order.kind == Kind::bias || order.kind == Kind::noise;
   if (joint && (order.kind == Kind::off || order.kind == Kind::dropout))

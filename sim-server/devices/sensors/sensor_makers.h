@@ -26,6 +26,8 @@ MadeDevice make_localization(const SensorSite& site);
 
 // A joint that the sensor names and the model does not have, or that turns about no single axis; empty: none. Of wheel encoders.
 std::string missing_wheel(const ModelDef& model, const SensorDef& sensor);
+MadeDevice make_logical_camera(const SensorSite& site);
+MadeDevice make_fiducial(const SensorSite& site);
 
 struct SensorMaker {
   SensorKind kind;
@@ -49,6 +51,8 @@ inline constexpr std::array sensor_makers{
     SensorMaker{SensorKind::wireless_receiver, make_wireless},
     SensorMaker{SensorKind::wheels, make_wheels},
     SensorMaker{SensorKind::localization, make_localization},
+    SensorMaker{SensorKind::logical_camera, make_logical_camera},
+    SensorMaker{SensorKind::fiducial, make_fiducial},
 };
 
 }  // namespace sim

@@ -128,9 +128,9 @@ void set_noise(pugi::xml_node sensor, const std::string& value) {
   };
   walk(sensor);
   if (found) return;
-  for (const char* kind : {"lidar", "ray", "camera", "altimeter", "air_pressure"}) {
-    if (auto node = sensor.child(kind))
-      change(child_made(std::string(kind) == "altimeter" ? child_made(node, "vertical_position") : node, "noise"));
+  for (const std::string kind : {"lidar", "ray", "camera", "altimeter", "air_pressure", "fiducial"}) {
+    const char* part = kind == "altimeter" ? "vertical_position" : kind == "fiducial" ? "position" : nullptr;
+    if (auto node = sensor.child(kind.c_str())) change(child_made(part != nullptr ? child_made(node, part) : node, "noise"));
   }
 }
 

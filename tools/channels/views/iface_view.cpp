@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/jpeg.h"
+#include "channels/views/seen_view.h"
 #include "channels/views/view_parts.h"
 
 namespace channels {
@@ -51,23 +52,47 @@ ros::PointCloud2 cloud_message(const shm::Stamp& stamp, const std::string& frame
           .data = data};
 }
 
-// A scanner of several layers: its hits, in the order of beams; NaN where there is none.
-std::vector<float> points_of(const shm::LaserInfo& info, const shm::ScanView& scan) {
-  std::vector<float> points;
-  points.reserve(scan.ranges.size() * 4);
+// A scanner of several layers: its hits, in the order of beams; NaN where there is none. `ring` 0 is the lowest layer, `time` [s] counts
+// from the first beam, which the stamp of the message is that of.
+struct RayPoint {
+  float x, y, z, intensity;
+  std::uint16_t ring, padding;
+  float time;
+};
+static_assert(sizeof(RayPoint) == 24);
+
+std::vector<RayPoint> points_of(const shm::LaserInfo& info, const shm::ScanView& scan) {
+  std::vector<RayPoint> points;
+  points.reserve(scan.ranges.size());
   const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
+  const double sweep = info.beams > 1 ? 1e-9 * scan.sample->sweep_ns / (info.beams - 1) : 0;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
-    const double yaw = info.min_angle + static_cast<double>(i % info.beams) * info.angle_step;
-    const double pitch = info.min_vertical + static_cast<double>(i / info.beams) * rise;
+    const std::size_t beam = i % info.beams, layer = i / info.beams;
+    const double yaw = info.min_angle + static_cast<double>(beam) * info.angle_step;
+    const double pitch = info.min_vertical + static_cast<double>(layer) * rise;
     const bool is_hit = std::isfinite(range);
     const auto coordinate = [&](double factor) {
       return is_hit ? static_cast<float>(range * factor) : std::numeric_limits<float>::quiet_NaN();
     };
-    points.insert(points.end(), {coordinate(std::cos(pitch) * std::cos(yaw)), coordinate(std::cos(pitch) * std::sin(yaw)),
-                                 coordinate(std::sin(pitch)), i < scan.intensities.size() ? scan.intensities[i] : 0.0F});
+    points.push_back({coordinate(std::cos(pitch) * std::cos(yaw)), coordinate(std::cos(pitch) * std::sin(yaw)), coordinate(std::sin(pitch)),
+                      i < scan.intensities.size() ? scan.intensities[i] : 0.0F, static_cast<std::uint16_t>(layer), 0,
+                      static_cast<float>(sweep * static_cast<double>(beam))});
   }
   return points;
+}
+
+ros::PointCloud2 ring_message(const shm::LaserInfo& info, const shm::ScanView& scan, const std::string& frame,
+                              std::span<const RayPoint> points) {
+  shm::Stamp begin = scan.sample->stamp;
+  begin.sim_time_ns = std::max<std::int64_t>(begin.sim_time_ns - scan.sample->sweep_ns, 0);
+  ros::PointCloud2 message = cloud_message(begin, frame, info.beams, info.layers, true,
+                                           {reinterpret_cast<const std::uint8_t*>(points.data()), points.size_bytes()});
+  message.point_fields.push_back({"ring", 16, ros::PointField::uint16});
+  message.point_fields.push_back({"time", 20});
+  message.point_step = sizeof(RayPoint);
+  message.row_step = message.point_step * info.beams;
+  return message;
 }
 
 IfaceView laser_view(const shm::Iface& iface) {
@@ -80,8 +105,7 @@ IfaceView laser_view(const shm::Iface& iface) {
     if (scan.sample->stamp.valid == 0) return;
     const auto& info = from.info<shm::LaserInfo>();
     const auto points = points_of(info, scan);
-    said.add(0, cloud_message(scan.sample->stamp, from.name(), info.beams, info.layers, true,
-                              {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(float)}));
+    said.add(0, ring_message(info, scan, from.name(), points));
   };
   return view;
 }
@@ -293,6 +317,12 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
     case wheels:
     case localization:
       return plain_view(iface);
+    case logical_camera:
+      return logical_camera_view(iface);
+    case boxes:
+      return boxes_view(iface);
+    case fiducial:
+      return fiducial_view(iface);
     case simulation:
     case truth:
       break;

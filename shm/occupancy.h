@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-namespace simctl {
+namespace shm {
 
-using Point = std::array<double, 3>;
+using MapPoint = std::array<double, 3>;
 
 struct MapArea {
   double x = 0, y = 0;  // lower left corner
@@ -27,26 +27,26 @@ class OccupancyMap {
   explicit OccupancyMap(const MapArea& area);
 
   // One shape: three points for each triangle.
-  void add_mesh(std::span<const Point> triangles);
+  void add_mesh(std::span<const MapPoint> triangles);
   // An endless plane, solid below it; `normal` points up.
-  void add_plane(const Point& point, const Point& normal);
+  void add_plane(const MapPoint& point, const MapPoint& normal);
 
   // Rows from the top, a byte for each cell, as map_server reads them: 0 occupied, 254 free, 205 unknown. After the last shape.
   std::vector<std::uint8_t> pixels();
 
  private:
-  using Polygon = std::vector<Point>;
+  using MapPolygon = std::vector<MapPoint>;
   struct Span {
     int first = 0, last = 0;  // last = first - 1: on the border of these two
   };
-  Span span_of(const Polygon& polygon, std::size_t axis) const;
+  Span span_of(const MapPolygon& polygon, std::size_t axis) const;
   double line(std::size_t axis, int cell) const;
   std::size_t index(int column, int row) const;
   bool is_inside(int column, int row) const;
   void occupy(int column, int row);
-  void mark(const Polygon& polygon);
-  void mark_floor(const Polygon& polygon);
-  void fill(std::span<const Point> triangles);
+  void mark(const MapPolygon& polygon);
+  void mark_floor(const MapPolygon& polygon);
+  void fill(std::span<const MapPoint> triangles);
   void fill_row(int row, std::vector<double>& crossings);
 
   const MapArea area_;
@@ -55,4 +55,4 @@ class OccupancyMap {
   std::vector<std::pair<std::array<int, 2>, std::array<int, 2>>> borders_;  // pairs of cells with a surface exactly between them
 };
 
-}  // namespace simctl
+}  // namespace shm

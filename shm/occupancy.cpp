@@ -1,38 +1,38 @@
-#include "simctl/occupancy.h"
+#include "shm/occupancy.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-namespace simctl {
+namespace shm {
 namespace {
 
-using Polygon = std::vector<Point>;
+using MapPolygon = std::vector<MapPoint>;
 
-enum class Side { above, below };
+enum class MapSide { above, below };
 
-Point between(const Point& a, const Point& b, std::size_t axis, double at) {
+MapPoint between(const MapPoint& a, const MapPoint& b, std::size_t axis, double at) {
   const double t = (at - a[axis]) / (b[axis] - a[axis]);
-  Point p;
+  MapPoint p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = a[i] + t * (b[i] - a[i]);
   p[axis] = at;
   return p;
 }
 
 // The part of a convex polygon on one side of a plane across an axis.
-Polygon clipped(const Polygon& polygon, std::size_t axis, double at, Side side) {
-  Polygon out;
-  const auto is_kept = [&](const Point& p) { return side == Side::above ? p[axis] >= at : p[axis] <= at; };
+MapPolygon clipped(const MapPolygon& polygon, std::size_t axis, double at, MapSide side) {
+  MapPolygon out;
+  const auto is_kept = [&](const MapPoint& p) { return side == MapSide::above ? p[axis] >= at : p[axis] <= at; };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const MapPoint &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     if (is_kept(a)) out.push_back(a);
     if (is_kept(a) != is_kept(b)) out.push_back(between(a, b, axis, at));
   }
   return out;
 }
 
-std::pair<double, double> extent(const Polygon& polygon, std::size_t axis) {
-  const auto [least, most] = std::ranges::minmax_element(polygon, {}, [&](const Point& p) { return p[axis]; });
+std::pair<double, double> extent(const MapPolygon& polygon, std::size_t axis) {
+  const auto [least, most] = std::ranges::minmax_element(polygon, {}, [&](const MapPoint& p) { return p[axis]; });
   return {(*least)[axis], (*most)[axis]};
 }
 
@@ -49,7 +49,7 @@ OccupancyMap::OccupancyMap(const MapArea& area)
 
 double OccupancyMap::line(std::size_t axis, int cell) const { return (axis == 0 ? area_.x : area_.y) + cell * area_.resolution; }
 
-OccupancyMap::Span OccupancyMap::span_of(const Polygon& polygon, std::size_t axis) const {
+OccupancyMap::Span OccupancyMap::span_of(const MapPolygon& polygon, std::size_t axis) const {
   const auto [least, most] = extent(polygon, axis);
   const double origin = line(axis, 0);
   return {cell_at((least + tolerance_ - origin) / area_.resolution), cell_at((most - tolerance_ - origin) / area_.resolution)};
@@ -65,7 +65,7 @@ void OccupancyMap::occupy(int column, int row) {
   if (is_inside(column, row)) is_occupied_[index(column, row)] = true;
 }
 
-void OccupancyMap::mark(const Polygon& polygon) {
+void OccupancyMap::mark(const MapPolygon& polygon) {
   const Span rows = span_of(polygon, 1);
   if (rows.last < rows.first) {
     const Span columns = span_of(polygon, 0);
@@ -74,7 +74,8 @@ void OccupancyMap::mark(const Polygon& polygon) {
     return;
   }
   for (int r = std::max(rows.first, 0); r <= std::min(rows.last, area_.height - 1); ++r) {
-    const Polygon strip = clipped(clipped(polygon, 1, line(1, r) + tolerance_, Side::above), 1, line(1, r + 1) - tolerance_, Side::below);
+    const MapPolygon strip =
+        clipped(clipped(polygon, 1, line(1, r) + tolerance_, MapSide::above), 1, line(1, r + 1) - tolerance_, MapSide::below);
     if (strip.empty()) continue;
     const Span columns = span_of(strip, 0);
     if (columns.last < columns.first) borders_.push_back({{columns.last, r}, {columns.first, r}});
@@ -83,12 +84,12 @@ void OccupancyMap::mark(const Polygon& polygon) {
 }
 
 // Cells whose centres the polygon covers.
-void OccupancyMap::mark_floor(const Polygon& polygon) {
+void OccupancyMap::mark_floor(const MapPolygon& polygon) {
   const auto [least, most] = extent(polygon, 1);
   const int first = cell_at((least - line(1, 0)) / area_.resolution), last = cell_at((most - line(1, 0)) / area_.resolution);
   for (int r = std::max(first, 0); r <= std::min(last, area_.height - 1); ++r) {
     const double centre = line(1, r) + 0.5 * area_.resolution;
-    const Polygon cut = clipped(clipped(polygon, 1, centre, Side::above), 1, centre, Side::below);
+    const MapPolygon cut = clipped(clipped(polygon, 1, centre, MapSide::above), 1, centre, MapSide::below);
     if (cut.empty()) continue;
     const auto [from, to] = extent(cut, 0);
     const int begin = cell_at((from - line(0, 0)) / area_.resolution + 0.5), end = cell_at((to - line(0, 0)) / area_.resolution - 0.5);
@@ -96,28 +97,29 @@ void OccupancyMap::mark_floor(const Polygon& polygon) {
   }
 }
 
-void OccupancyMap::add_mesh(std::span<const Point> triangles) {
+void OccupancyMap::add_mesh(std::span<const MapPoint> triangles) {
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-    const Polygon triangle(triangles.begin() + static_cast<std::ptrdiff_t>(i), triangles.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+    const MapPolygon triangle(triangles.begin() + static_cast<std::ptrdiff_t>(i), triangles.begin() + static_cast<std::ptrdiff_t>(i) + 3);
     const auto [least, most] = extent(triangle, 2);
-    if (most > area_.low && least < area_.high) mark(clipped(clipped(triangle, 2, area_.low, Side::above), 2, area_.high, Side::below));
-    if (least <= area_.low) mark_floor(clipped(triangle, 2, area_.low, Side::below));
+    if (most > area_.low && least < area_.high)
+      mark(clipped(clipped(triangle, 2, area_.low, MapSide::above), 2, area_.high, MapSide::below));
+    if (least <= area_.low) mark_floor(clipped(triangle, 2, area_.low, MapSide::below));
   }
   fill(triangles);
 }
 
 // The inside, in the middle between the heights: along each row the surface leads into the shape and out of it in turn.
-void OccupancyMap::fill(std::span<const Point> triangles) {
+void OccupancyMap::fill(std::span<const MapPoint> triangles) {
   const double middle = 0.5 * (area_.low + area_.high);
   std::map<int, std::vector<double>> crossings;
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-    Polygon cut;
+    MapPolygon cut;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Point &a = triangles[i + k], &b = triangles[i + (k + 1) % 3];
+      const MapPoint &a = triangles[i + k], &b = triangles[i + (k + 1) % 3];
       if ((a[2] >= middle) != (b[2] >= middle)) cut.push_back(between(a, b, 2, middle));
     }
     if (cut.size() != 2) continue;
-    const Point &from = cut[0][1] < cut[1][1] ? cut[0] : cut[1], &to = cut[0][1] < cut[1][1] ? cut[1] : cut[0];
+    const MapPoint &from = cut[0][1] < cut[1][1] ? cut[0] : cut[1], &to = cut[0][1] < cut[1][1] ? cut[1] : cut[0];
     const auto row_after = [&](double y) { return cell_at(std::ceil((y - line(1, 0)) / area_.resolution - 0.5)); };
     for (int r = std::max(row_after(from[1]), 0); r < std::min(row_after(to[1]), area_.height); ++r)
       crossings[r].push_back(between(from, to, 1, line(1, r) + 0.5 * area_.resolution)[0]);
@@ -137,7 +139,7 @@ void OccupancyMap::fill_row(int row, std::vector<double>& crossings) {
   }
 }
 
-void OccupancyMap::add_plane(const Point& point, const Point& normal) {
+void OccupancyMap::add_plane(const MapPoint& point, const MapPoint& normal) {
   if (!(normal[2] > 1e-6)) return;
   for (int r = 0; r < area_.height; ++r) {
     for (int c = 0; c < area_.width; ++c) {
@@ -168,4 +170,4 @@ std::vector<std::uint8_t> OccupancyMap::pixels() {
   return out;
 }
 
-}  // namespace simctl
+}  // namespace shm

@@ -1,0 +1,165 @@
+#include "rtc_map.h"
+
+#include <base/text.h>
+#include <shm/control.h>
+
+#include <algorithm>
+
+static const iface::Specification specification{
+    .type_name = "RTCMap",
+    .description = "Occupancy grid map of the simulated world",
+    .phase = iface::sensor_phase,
+    .parameters = {{"resolution", "0.05", "double", "text", "0.001<=x<=100"},
+                   {"lowest", "0.05", "double", "text"},
+                   {"highest", "0.5", "double", "text"},
+                   {"area", "", "string", "text"},
+                   {"movable", "0", "int", "radio", "(0,1)"},
+                   {"row_order", "bottom_up", "string", "radio", "(bottom_up,top_down)"},
+                   {"values", "grey", "string", "radio", "(grey,percent)"}},
+};
+
+namespace {
+
+constexpr std::chrono::minutes map_timeout{1};
+constexpr std::uint8_t grey_occupied = 0, grey_unknown = 205;
+
+std::uint8_t in_percent(std::uint8_t grey) {
+  constexpr std::uint8_t occupied = 100, unknown = 255;
+  return grey == grey_occupied ? occupied : grey == grey_unknown ? unknown : 0;
+}
+
+RTC::OGMapConfig config_of(const shm::MapArea& area) {
+  return {area.resolution,
+          area.resolution,
+          static_cast<CORBA::ULong>(area.width),
+          static_cast<CORBA::ULong>(area.height),
+          {{area.x, area.y}, 0}};
+}
+
+// Empty: it is no area. None is one, too.
+std::optional<std::vector<double>> area_of(const std::string& text) {
+  std::vector<double> area;
+  for (const auto& word : base::split_list(text)) {
+    const auto number = base::parse_number(word);
+    if (!number) return std::nullopt;
+    area.push_back(*number);
+  }
+  if (area.empty() || (area.size() == 4 && area[2] > area[0] && area[3] > area[1])) return area;
+  return std::nullopt;
+}
+
+// `pixels` have the row of the highest y first.
+void fill_tile(const shm::WorldMap& map, bool is_top_down, bool is_percent, RTC::OGMapTile& tile) {
+  const auto columns = static_cast<CORBA::ULong>(map.area.width), rows = static_cast<CORBA::ULong>(map.area.height);
+  tile.width = std::min(tile.width, columns - std::min(tile.column, columns));
+  tile.height = std::min(tile.height, rows - std::min(tile.row, rows));
+  tile.cells.length(tile.width * tile.height);
+  for (CORBA::ULong y = 0; y < tile.height; ++y) {
+    const CORBA::ULong row = is_top_down ? tile.row + y : rows - 1 - (tile.row + y);
+    for (CORBA::ULong x = 0; x < tile.width; ++x) {
+      const std::uint8_t grey = map.pixels[std::size_t{row} * columns + tile.column + x];
+      tile.cells[y * tile.width + x] = is_percent ? in_percent(grey) : grey;
+    }
+  }
+}
+
+}  // namespace
+
+base::Result<shm::WorldMap> MapSource::fresh() {
+  const MapSettings wanted = settings();
+  auto requester = shm::Requester::open(static_cast<std::uint32_t>(wanted.server_id));
+  auto map = requester ? shm::world_map(*requester, wanted.options, map_timeout) : base::Result<shm::WorldMap>(requester.error());
+  if (map) {
+    *latest_.lock() = *map;
+  } else {
+    say_(map.error().message);
+  }
+  return map;
+}
+
+base::Result<shm::WorldMap> MapSource::latest() {
+  if (const auto known = *latest_.lock()) return *known;
+  return fresh();
+}
+
+RTC::OGMapConfig OGMapService::GetConfig() {
+  const auto map = source_.fresh();
+  if (!map) throw CORBA::TRANSIENT();  // the operation has no other way to say no
+  return config_of(map->area);
+}
+
+RTC::OGMapTile* OGMapService::GetTile(const RTC::OGMapTile& tile) {
+  const auto map = source_.latest();
+  if (!map) throw CORBA::TRANSIENT();
+  RTC::OGMapTile_var filled = new RTC::OGMapTile(tile);
+  const MapSettings settings = source_.settings();
+  fill_tile(*map, settings.is_top_down, settings.is_percent, filled.inout());
+  return filled._retn();
+}
+
+MobileRobot::RETURN_VALUE OGMapServerService::requestCurrentBuiltMap(MobileRobot::OGMap_out map) {
+  MobileRobot::OGMap_var out = new MobileRobot::OGMap();
+  out->tm = {0, 0};
+  const auto made = source_.fresh();
+  if (made) {
+    out->config = config_of(made->area);
+    out->map.column = out->map.row = 0;
+    out->map.width = out->config.width;
+    out->map.height = out->config.height;
+    fill_tile(*made, true, false, out->map);
+  }
+  map = out._retn();
+  return made ? MobileRobot::RETVAL_OK : MobileRobot::RETVAL_EMPTY_MAP;
+}
+
+RTCMap::RTCMap(RTC::Manager* manager)
+    : RTC::DataFlowComponentBase(manager),
+      source_([this](const std::string& line) { RTC_ERROR(("%s", line.c_str())); }),
+      map_(source_),
+      server_(source_),
+      service_port_("map") {}
+
+RTC::ReturnCode_t RTCMap::onInitialize() {
+  service_port_.registerProvider("map", "RTC::OGMap", map_);
+  service_port_.registerProvider("server", "RTC::OGMapServer", server_);
+  addPort(service_port_);
+  bindParameter("server_id", settings_.server_id, std::to_string(iface::default_server()).c_str());
+  bindParameter("resolution", settings_.options.resolution, specification.value_of("resolution"));
+  bindParameter("lowest", lowest_, specification.value_of("lowest"));
+  bindParameter("highest", highest_, specification.value_of("highest"));
+  bindParameter("area", area_, specification.value_of("area"));
+  bindParameter("movable", movable_, specification.value_of("movable"));
+  bindParameter("row_order", row_order_, specification.value_of("row_order"));
+  bindParameter("values", values_, specification.value_of("values"));
+  follow_configuration();
+  return RTC::RTC_OK;
+}
+
+void RTCMap::follow_configuration() {
+  settings_.options.heights = {lowest_, highest_};
+  settings_.options.area = area_of(area_).value_or(std::vector<double>());
+  settings_.options.with_movable = movable_ != 0;
+  settings_.is_top_down = row_order_ == "top_down";
+  settings_.is_percent = values_ == "percent";
+  source_.set(settings_);
+}
+
+RTC::ReturnCode_t RTCMap::onActivated(RTC::UniqueId) {
+  follow_configuration();
+  if (!area_of(area_)) {
+    RTC_ERROR(("area must be four numbers, xmin,ymin,xmax,ymax [m], got \"%s\"", area_.c_str()));
+    return RTC::RTC_ERROR;
+  }
+  if (highest_ > lowest_) return RTC::RTC_OK;
+  RTC_ERROR(("highest must be above lowest (%s m), got %s", base::format_number(lowest_).c_str(), base::format_number(highest_).c_str()));
+  return RTC::RTC_ERROR;
+}
+
+RTC::ReturnCode_t RTCMap::onExecute(RTC::UniqueId) {
+  follow_configuration();
+  return RTC::RTC_OK;
+}
+
+extern "C" {
+void RTCMapInit(RTC::Manager* manager) { iface::register_type<RTCMap>(manager, specification); }
+}
