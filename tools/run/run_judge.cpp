@@ -101,10 +101,12 @@ Result<void> RunJudge::look(const Session& session, const std::vector<std::strin
   }
   if (auto models = simulator_.models()) seen_.models = std::move(*models);
   if (const auto looked = look_at_grips(); !looked) return looked;
-  for (const auto& component : system_.components) {
-    const auto view = session.component(component.instance + ".rtc", {.contexts = true});
-    seen_.states[component.instance] = view ? state_text(view->state()) : "gone";
-    if (view) providers_.merge(providers_of(*view));
+  std::vector<std::string> paths;
+  for (const auto& component : system_.components) paths.push_back(component.instance + ".rtc");
+  const auto views = session.components(paths, {.contexts = true});
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    seen_.states[system_.components[i].instance] = views[i] ? state_text(views[i]->state()) : "gone";
+    if (views[i]) providers_.merge(providers_of(*views[i]));
   }
   check_states(result);
   // What a script takes down takes its connections with it.

@@ -1,6 +1,7 @@
 #include "run/run_wiring.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/interrupt.h"
 #include "base/text.h"
@@ -82,23 +83,24 @@ Result<void> RunWiring::wire_again(const RunHosts::Members& members) {
 // Every context on simulated time takes part before the first step, or the run would not be the same each time.
 Result<void> RunWiring::wait_for_participants() {
   auto expected = parts_.foreign.names();
+  std::vector<std::string> paths;
   for (const auto& component : parts_.system.components) {
-    if (!parts_.hosts.has(component.instance)) continue;  // killed by a script
-    const auto view = session_->component(component.instance + ".rtc", {.contexts = true});
+    if (parts_.hosts.has(component.instance)) paths.push_back(component.instance + ".rtc");  // else killed by a script
+  }
+  for (const auto& view : session_->components(paths, {.contexts = true})) {
     if (!view) return view.error();
-    for (const auto& context : view->contexts) {
-      if (context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext") {
-        expected.push_back(component.instance);
-        break;
-      }
-    }
+    const bool has_time = std::ranges::any_of(view->contexts, [](const ContextView& context) {
+      return context.is_owned && context.is_running && property(context.properties, "type") == "SimTimeContext";
+    });
+    if (has_time) expected.push_back(view->instance);
   }
   std::string missing;
   const auto waited = wait_until_("simulated time", [&] {
-    const auto there = parts_.simulator.participants();
+    std::set<std::string> there;
+    for (const auto& one : parts_.simulator.participants()) there.insert(one.name);
     missing.clear();
     for (const auto& name : expected) {
-      if (!is_among(there, name)) missing = name;
+      if (!there.contains(name)) missing = name;
     }
     return missing.empty();
   });

@@ -1,9 +1,11 @@
 #include "system/session.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <ranges>
 #include <set>
+#include <unordered_map>
 
 #include "base/text.h"
 
@@ -73,22 +75,54 @@ Result<ComponentView> Session::component(const std::string& path, Detail detail)
   return component;
 }
 
+namespace {
+
+// The ids that the last segment of an address can mean.
+std::array<std::string, 3> ids_of(const Address& address) {
+  const auto& last = address.segments.back();
+  return {split_kind(last).first, last, last.substr(0, last.rfind('.'))};
+}
+
+using EntriesById = std::unordered_multimap<std::string, const Entry*>;
+
+// For addresses of one segment, as NAME or NAME.rtc: the one thing of that name. Nullptr: none or several, or another form.
+const Entry* only_entry(const EntriesById& entries, const Address& address) {
+  if (address.is_absolute || address.segments.size() != 1) return nullptr;
+  const Entry* only = nullptr;
+  for (const auto& id : ids_of(address)) {
+    for (auto [at, end] = entries.equal_range(id); at != end; ++at) {
+      if (at->second == only || !matches(address.segments.back(), at->second->id, at->second->kind_text)) continue;
+      if (only) return nullptr;
+      only = at->second;
+    }
+  }
+  return only && only->kind == EntryKind::component && only->health == Health::alive ? only : nullptr;
+}
+
+}  // namespace
+
 std::vector<Result<ComponentView>> Session::components(const std::vector<std::string>& paths, Detail detail) const {
   std::set<std::string> ids;
   for (const auto& path : paths) {
     const auto address = parse_address(path, working_path());
     if (!address || address->segments.empty()) continue;
-    const auto& last = address->segments.back();
-    for (const auto& id : {split_kind(last).first, last, last.substr(0, last.rfind('.'))}) ids.insert(id);
+    for (const auto& id : ids_of(*address)) ids.insert(id);
   }
   const auto names = NamingTree::read(orb_, server_, call_timeout_, {.address = nullptr, .ids = &ids});
   std::vector<std::optional<ComponentView>> views(paths.size());
   if (names && paths.size() > 1) {
+    EntriesById entries;
+    for (const auto* entry : names->objects()) entries.emplace(entry->id, entry);
     in_parallel(paths.size(), call_timeout_, [&](std::size_t i) {
       const auto address = parse_address(paths[i], working_path());
-      const auto entry = address ? names->find_component(*address) : Result<const Entry*>(address.error());
-      if (!entry) return;
-      auto view = read_component(**entry, detail);
+      if (!address) return;
+      const Entry* entry = only_entry(entries, *address);
+      if (!entry) {
+        const auto found = names->find_component(*address);
+        if (!found) return;
+        entry = *found;
+      }
+      auto view = read_component(*entry, detail);
       if (view.problem.empty()) views[i] = std::move(view);
     });
   }
