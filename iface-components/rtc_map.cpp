@@ -4,6 +4,7 @@
 #include <shm/control.h>
 
 #include <algorithm>
+#include <optional>
 
 static const iface::Specification specification{
     .type_name = "RTCMap",
@@ -65,31 +66,32 @@ void fill_tile(const shm::WorldMap& map, bool is_top_down, bool is_percent, RTC:
 
 }  // namespace
 
-base::Result<shm::WorldMap> MapSource::fresh() {
+MapSource::Map MapSource::fresh() {
   const MapSettings wanted = settings();
   auto requester = shm::Requester::open(static_cast<std::uint32_t>(wanted.server_id));
-  auto map = requester ? shm::world_map(*requester, wanted.options, map_timeout) : base::Result<shm::WorldMap>(requester.error());
-  if (map) {
-    *latest_.lock() = *map;
-  } else {
-    say_(map.error().message);
+  auto made = requester ? shm::world_map(*requester, wanted.options, map_timeout) : base::Result<shm::WorldMap>(requester.error());
+  if (!made) {
+    say_(made.error().message);
+    return nullptr;
   }
+  auto map = std::make_shared<const shm::WorldMap>(std::move(*made));
+  *latest_.lock() = map;
   return map;
 }
 
-base::Result<shm::WorldMap> MapSource::latest() {
-  if (const auto known = *latest_.lock()) return *known;
+MapSource::Map MapSource::latest() {
+  if (Map known = *latest_.lock()) return known;
   return fresh();
 }
 
 RTC::OGMapConfig OGMapService::GetConfig() {
-  const auto map = source_.fresh();
+  const MapSource::Map map = source_.fresh();
   if (!map) throw CORBA::TRANSIENT();  // the operation has no other way to say no
   return config_of(map->area);
 }
 
 RTC::OGMapTile* OGMapService::GetTile(const RTC::OGMapTile& tile) {
-  const auto map = source_.latest();
+  const MapSource::Map map = source_.latest();
   if (!map) throw CORBA::TRANSIENT();
   RTC::OGMapTile_var filled = new RTC::OGMapTile(tile);
   const MapSettings settings = source_.settings();
@@ -100,7 +102,7 @@ RTC::OGMapTile* OGMapService::GetTile(const RTC::OGMapTile& tile) {
 MobileRobot::RETURN_VALUE OGMapServerService::requestCurrentBuiltMap(MobileRobot::OGMap_out map) {
   MobileRobot::OGMap_var out = new MobileRobot::OGMap();
   out->tm = {0, 0};
-  const auto made = source_.fresh();
+  const MapSource::Map made = source_.fresh();
   if (made) {
     out->config = config_of(made->area);
     out->map.column = out->map.row = 0;

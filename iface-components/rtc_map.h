@@ -1,12 +1,12 @@
 // RTCMap: the occupancy grid of the simulated world, as it is when it is asked for: static shapes that something as high as the robot would
 // meet. Service port `map`: RTC::OGMap of the interface guidelines, and RTC::OGMapServer of the public navigation components
-// (OGMapServer.idl; grey values, the row of the highest y first). Configuration: server_id; resolution [m]; lowest, highest: z between
-// which a shape occupies cells [m]; area: xmin,ymin,xmax,ymax [m], empty: where something is; movable: 1 counts models that can move;
-// row_order: bottom_up or top_down, values: grey (0 occupied, 254 free, 205 unknown) or percent (0 free, 100 occupied, 255 unknown), both
-// of RTC::OGMap. A change takes effect while the component is active.
+// (idl/ext/OGMapServer.idl; grey values, the row of the highest y first). Configuration: server_id; resolution [m]; lowest, highest: z
+// between which a shape occupies cells [m]; area: xmin,ymin,xmax,ymax [m], empty: where something is; movable: 1 counts models that can
+// move; row_order: bottom_up or top_down, values: grey (0 occupied, 254 free, 205 unknown) or percent (0 free, 100 occupied, 255 unknown),
+// both of RTC::OGMap. A change takes effect while the component is active.
 #pragma once
 
-#include <OGMapServerSkel.h>
+#include <rtm/ext/OGMapServerSkel.h>
 #include <rtm/ext/OGMapSkel.h>
 
 #include <rtm/CorbaPort.h>
@@ -17,7 +17,7 @@
 #include <shm/world_map.h>
 
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,19 +33,20 @@ struct MapSettings {
 class MapSource {
  public:
   using Say = std::function<void(const std::string& line)>;
+  using Map = std::shared_ptr<const shm::WorldMap>;  // null: there is none
   explicit MapSource(Say say) : say_(std::move(say)) {}
 
   void set(const MapSettings& settings) { *settings_.lock() = settings; }
   MapSettings settings() const { return *settings_.lock(); }
   // As it is now. A failure is said.
-  base::Result<shm::WorldMap> fresh();
+  Map fresh();
   // The one of the last call, which a client reads in tiles; a fresh one if there is none.
-  base::Result<shm::WorldMap> latest();
+  Map latest();
 
  private:
   Say say_;
   mutable base::Guarded<MapSettings, base::Rank::details> settings_;
-  base::Guarded<std::optional<shm::WorldMap>, base::Rank::details> latest_;
+  base::Guarded<Map, base::Rank::details> latest_;
 };
 
 // A client that no map can be sent to gets CORBA::TRANSIENT.

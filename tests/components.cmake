@@ -33,7 +33,7 @@ foreach(case sonar imu gps bumper ranger places point_cloud odometry goals meter
 endforeach()
 
 # Components of devices that look.
-rtmsim_component(SeenProbe scenario/seen_probe.cpp IDL ${PROJECT_SOURCE_DIR}/iface-components/OGMapServer.idl)
+rtmsim_component(SeenProbe scenario/seen_probe.cpp)
 foreach(case logical_camera boxes fiducial multicamera thermal map)
   add_test(NAME seen_devices.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/seen_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

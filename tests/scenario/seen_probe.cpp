@@ -1,12 +1,12 @@
 // A component that calls the services of devices that look: what its parameter `call` says, when it is activated. It goes to the error
 // state at an answer that is not as expected.
-#include <OGMapServerStub.h>
 #include <rtm/CorbaConsumer.h>
 #include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
 #include <rtm/Manager.h>
 #include <rtm/ext/FiducialSkel.h>
 #include <rtm/ext/MulticameraSkel.h>
+#include <rtm/ext/OGMapServerSkel.h>
 #include <rtm/ext/OGMapSkel.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ class SeenProbe : public RTC::DataFlowComponentBase {
 
   bool is_stereo() {
     const RTC::MulticameraGeometry_var geometry = multicamera_->GetGeometry();
-    const RTC::MulticameraInfoList_var infos = multicamera_->GetCameraInfos();
+    RTC::MulticameraInfoList_var infos = multicamera_->GetCameraInfos();
     const auto& cameras = geometry->cameraGeometries;
     const double focal = 160 / std::tan(0.6);  // 320 pixels see 1.2 rad
     return cameras.length() == 2 && infos->length() == 2 && is_near(cameras[0].pose.position.y - cameras[1].pose.position.y, 0.12) &&

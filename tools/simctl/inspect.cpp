@@ -77,7 +77,7 @@ void list(Control& control, bool all_servers) {
                     {"size", found.size}});
     if (control.json()) continue;
     if (all_servers) std::printf("%-6u ", found.name.server_id);
-    std::printf("%-12s %-40s %s, %u subscribers%s\n", std::string(shm::to_text(found.name.type)).c_str(), found.name.iface.c_str(),
+    std::printf("%-14s %-40s %s, %u subscribers%s\n", std::string(shm::to_text(found.name.type)).c_str(), found.name.iface.c_str(),
                 state.c_str(), found.subscribers, found.problem.empty() ? "" : (", " + found.problem).c_str());
   }
   if (control.json()) control.print(json);
