@@ -390,9 +390,9 @@ def slow_subscriber():
         rig.gateway(robots=2)
         slow, quick = rig.peer(), rig.peer()
         for peer in (slow, quick):
-            peer.subscribe("/leader/scan", "sensor_msgs/LaserScan")
-            peer.message("/leader/scan", "sensor_msgs/LaserScan")
-        reader = bytes.fromhex(slow.guids["/leader/scan"])
+            peer.subscribe("/clock", "rosgraph_msgs/Clock")
+            peer.message("/clock", "rosgraph_msgs/Clock")
+        reader = bytes.fromhex(slow.guids["/clock"])
         slow.writer("own", "ros_discovery_info", wire.type_on_wire("rmw_dds_common/ParticipantEntitiesInfo"), durability="transient", user_data=jazzy_hash)
         node = {"node_namespace": "/", "node_name": "sleeper", "reader_gid_seq": [{"data": reader}], "writer_gid_seq": []}
         slow.put("own", "rmw_dds_common/ParticipantEntitiesInfo", {"gid": {"data": reader[:12] + b"\0\0\1\xc1"}, "node_entities_info_seq": [node]})
@@ -400,8 +400,8 @@ def slow_subscriber():
         slow.await_matched("own")
         os.kill(slow.process.pid, signal.SIGSTOP)
         try:
-            count = len(quick.samples["/leader/scan"])
-            await_("scans for the other one", lambda: len(quick.samples["/leader/scan"]) > count + 30)
+            count = len(quick.samples["/clock"])
+            await_("clocks for the other one", lambda: len(quick.samples["/clock"]) > count + 300)
             await_("the count", lambda: "samples were not confirmed in time by every reader" in rig.log(rig.process))
             assert "/sleeper" in rig.log(rig.process), rig.log(rig.process)
         finally:

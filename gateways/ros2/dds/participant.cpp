@@ -294,7 +294,8 @@ class FastReader final : public Reader, private rtps::ReaderListener {
     if (change->kind == rtps::ALIVE && payload.data != nullptr) {
       Received sample{{to_guid(change->writerGUID), from_sequence(change->sequenceNumber)}, std::nullopt, {}};
       sample.bytes.assign(payload.data, payload.data + payload.length);
-      const auto& related = change->write_params.related_sample_identity();
+      // Where Fast DDS puts the related identity of what it receives.
+      const auto& related = change->write_params.sample_identity();
       if (related.writer_guid() != rtps::GUID_t::unknown())
         sample.related = {to_guid(related.writer_guid()), from_sequence(related.sequence_number())};
       inbox_.put(Sampled{id_, std::move(sample)});
