@@ -22,7 +22,7 @@ namespace {
 enum Event : std::uint64_t { signal_event, dds_event, alarm_event, errand_event, turn_event };
 
 constexpr std::chrono::milliseconds look_period{200}, resend_period{50}, tend_period{10};
-constexpr std::chrono::seconds report_period{10}, paused_clock_period{1};
+constexpr std::chrono::seconds report_period{5}, paused_clock_period{1};
 constexpr int idle_wait = 20;  // [ms]
 
 std::set<std::string> robots_in(const Listed& listed) {

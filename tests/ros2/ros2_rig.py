@@ -59,6 +59,8 @@ class Peer:
                 self.guids[words[1]] = words[2]
             elif words[0] == "matched":
                 self.counts[words[1]] = int(words[2])
+            elif words[0] == "peer" and words[2].startswith("DCPS"):
+                continue  # of Cyclone itself
             elif words[0] == "peer":
                 self.list.append(words[1:])
             elif words[0] == "end":
