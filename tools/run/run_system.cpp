@@ -14,6 +14,7 @@
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
+#include "run/module_files.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -243,6 +244,22 @@ class Run final : public RunningSystem {
     return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of third-party components");
   }
 
+  // One process for all, except that each component of Python has one of its own: they would share an interpreter.
+  Result<void> start_hosts_of(const RunHosts::Members& all) {
+    RunHosts::Members together;
+    for (const auto* component : all) {
+      const auto parts = base::split_list(component->id, ':');
+      const auto type = parts.size() >= 4 ? parts[3] : component->instance;
+      const bool is_alone = options_.one_process_each || module_kind(type, options_.module_paths) == ModuleKind::python;
+      if (!is_alone) {
+        together.push_back(component);
+      } else if (const auto started = hosts_.start(RunHosts::Members{component}); !started) {
+        return started;
+      }
+    }
+    return together.empty() ? Result<void>() : hosts_.start(together);
+  }
+
   Result<void> start_hosts() {
     RunHosts::Members all;
     for (const auto& component : system_.components) {
@@ -250,13 +267,7 @@ class Run final : public RunningSystem {
     }
     if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
     if (const auto started = start_time_host(); !started) return started;
-    if (!options_.one_process_each) {
-      if (const auto started = all.empty() ? Result<void>() : hosts_.start(all); !started) return started;
-    } else {
-      for (const auto* component : all) {
-        if (const auto started = hosts_.start(RunHosts::Members{component}); !started) return started;
-      }
-    }
+    if (const auto started = start_hosts_of(all); !started) return started;
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
     if (const auto there = await_components(expected, start_limit()); !there) return there;
