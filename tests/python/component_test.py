@@ -71,8 +71,8 @@ def test_two_programs_of_python_exchange_samples_and_both_generations_of_listene
     counter, printer = program(system, "Counter.py"), program(system, "Printer.py")
     seen(system, "Counter0")
     seen(system, "Printer0")
-    system.rtse("connect", "Counter0:number", "Printer0:number")
-    system.rtse("activate", "Counter0", "Printer0")
+    system.rtse("con", "Counter0:number", "Printer0:number")
+    system.rtse("act", "Counter0", "Printer0")
     log = says(system, printer, "received 5 True")
     assert "old listener ON_BUFFER_WRITE" in log and "new listener 0" in log
     assert "connected" in log and "push" in log
@@ -84,9 +84,9 @@ def test_a_parameter_that_a_tool_changes_reaches_the_list_that_is_bound(system):
     printer = program(system, "Printer.py")
     seen(system, "Printer0")
     seen(system, "Counter0")
-    system.rtse("connect", "Counter0:number", "Printer0:number")
+    system.rtse("con", "Counter0:number", "Printer0:number")
     system.rtse("conf", "Counter0", "set", "step", "1000000")
-    system.rtse("activate", "Counter0", "Printer0")
+    system.rtse("act", "Counter0", "Printer0")
     says(system, printer, "received 3000000")
 
 
@@ -95,8 +95,8 @@ def test_a_component_of_cpp_receives_what_python_sends(system):
     system.rtcd("NumberIn")
     seen(system, "Counter0")
     seen(system, "NumberIn0")
-    system.rtse("connect", "Counter0:number", "NumberIn0:in")
-    system.rtse("activate", "Counter0", "NumberIn0")
+    system.rtse("con", "Counter0:number", "NumberIn0:in")
+    system.rtse("act", "Counter0", "NumberIn0")
     await_("samples", lambda: "ACTIVE" in system.rtse("ls", "-l").upper() or True)
 
 
@@ -104,8 +104,8 @@ def test_rtcd_hosts_a_module_of_python(system):
     host = system.rtcd(str(sources / "Counter.py"), str(sources / "Printer.py"))
     seen(system, "Counter0")
     seen(system, "Printer0")
-    system.rtse("connect", "Counter0:number", "Printer0:number")
-    system.rtse("activate", "Counter0", "Printer0")
+    system.rtse("con", "Counter0:number", "Printer0:number")
+    system.rtse("act", "Counter0", "Printer0")
     says(system, host, "received 3 True")
 
 
@@ -117,7 +117,7 @@ def test_an_exception_in_on_execute_ends_in_the_error_state_with_its_traceback_i
 """)
     process = program(system, file, folder=tmp_path)
     seen(system, "Broken0")
-    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "activate", "Broken0"], timeout=60, capture_output=True)
+    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "act", "Broken0"], timeout=60, capture_output=True)
     log = says(system, process, "has no attribute 'no_such_thing'")
     assert "Traceback" in log and "Broken.py" in log and "onExecute" in log
     await_("error state", lambda: "rror" in system.rtse("ls", "-l"))
@@ -131,7 +131,7 @@ def test_anything_but_a_return_code_is_an_error(system, tmp_path, statement, why
 """)
     process = program(system, file, folder=tmp_path)
     seen(system, "Odd0")
-    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "activate", "Odd0"], timeout=60, capture_output=True)
+    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "act", "Odd0"], timeout=60, capture_output=True)
     says(system, process, why)
     assert process.poll() is None
 
@@ -155,7 +155,7 @@ def test_a_wrong_value_is_one_log_line_with_port_member_and_types(system, tmp_pa
 """)
     process = program(system, file, folder=tmp_path)
     seen(system, "Wrong0")
-    system.rtse("activate", "Wrong0")
+    system.rtse("act", "Wrong0")
     log = says(system, process, "twenty times")
     lines = [line for line in log.splitlines() if "cannot be written" in line]
     assert len(lines) == 1

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "run/call_order.h"
+#include "run/module_files.h"
 #include "run/same_math.h"
 #include "system/transitions.h"
 
@@ -25,8 +26,7 @@ std::string type_of(const SavedComponent& component) {
 }
 
 bool has_module(const std::string& type, const std::vector<std::string>& paths) {
-  return std::ranges::any_of(paths,
-                             [&](const auto& path) { return std::filesystem::exists(std::filesystem::path(path) / (type + ".so")); });
+  return module_kind(type, paths) != ModuleKind::none;
 }
 
 std::string shortened(const std::string& command) {

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "corba/members/remote_participant.h"
 #include "corba/transport/transport.h"
+#include "run/module_files.h"
 #include "run/same_math.h"
 #include "run/time_members.h"
 #include "run/warm_program.h"
@@ -77,8 +78,10 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .empty_file = configuration,
                               .options = more,
                               .creations = creations};
-  auto started = start_program(
-      hooks_.warm, {host_words(settings), {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()}, log});
+  std::map<std::string, std::string> environment = {
+      {"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()};
+  environment.merge(same_python());
+  auto started = start_program(hooks_.warm, {host_words(settings), environment, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
   return {};

@@ -9,6 +9,8 @@
 
 #include "base/command.h"
 #include "base/text.h"
+#include "run/module_files.h"
+#include "system/profile/rts_profile.h"
 #include "system/profile/system_template.h"
 
 namespace editor {
@@ -44,9 +46,8 @@ Result<void> check_modules(const std::vector<std::string>& paths) {
   for (const auto& path : paths) {
     std::error_code error;
     const std::filesystem::directory_iterator entries(path, error);
-    const auto is_module = [](const auto& entry) { return entry.path().extension() == ".so"; };
-    if (std::none_of(begin(entries), end(entries), is_module))
-      return Error{"module path " + base::in_quotes(path) + ": holds no modules (*.so)"};
+    if (std::none_of(begin(entries), end(entries), [](const auto& entry) { return is_module(entry.path()); }))
+      return Error{"module path " + base::in_quotes(path) + ": holds no modules (*.so, *.py)"};
   }
   return {};
 }

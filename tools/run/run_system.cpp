@@ -14,6 +14,7 @@
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
+#include "run/module_files.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -244,6 +245,28 @@ class Run final : public RunningSystem {
     return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of third-party components");
   }
 
+  // In as many processes as was asked for, except that each component of Python has one of its own: they would share an interpreter.
+  Result<void> start_hosts_of(const RunHosts::Members& all) {
+    RunHosts::Members together;
+    for (const auto* component : all) {
+      const auto parts = base::split_list(component->id, ':');
+      const auto type = parts.size() >= 4 ? parts[3] : component->instance;
+      const bool is_alone = options_.one_process_each || module_kind(type, options_.module_paths) == ModuleKind::python;
+      if (!is_alone) {
+        together.push_back(component);
+      } else if (const auto started = hosts_.start(RunHosts::Members{component}); !started) {
+        return started;
+      }
+    }
+    const auto count = std::min(together.size(), static_cast<std::size_t>(options_.hosts));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto begin = static_cast<std::ptrdiff_t>(i * together.size() / count),
+                 end = static_cast<std::ptrdiff_t>((i + 1) * together.size() / count);
+      if (const auto started = hosts_.start(RunHosts::Members(together.begin() + begin, together.begin() + end)); !started) return started;
+    }
+    return {};
+  }
+
   Result<void> start_hosts() {
     RunHosts::Members all;
     for (const auto& component : system_.components) {
@@ -251,12 +274,7 @@ class Run final : public RunningSystem {
     }
     if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
     if (const auto started = start_time_host(); !started) return started;
-    const auto count = std::min(all.size(), options_.one_process_each ? all.size() : static_cast<std::size_t>(options_.hosts));
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto begin = static_cast<std::ptrdiff_t>(i * all.size() / count),
-                 end = static_cast<std::ptrdiff_t>((i + 1) * all.size() / count);
-      if (const auto started = hosts_.start(RunHosts::Members(all.begin() + begin, all.begin() + end)); !started) return started;
-    }
+    if (const auto started = start_hosts_of(all); !started) return started;
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
     if (const auto there = await_components(expected, start_limit()); !there) return there;

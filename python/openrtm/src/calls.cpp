@@ -243,8 +243,12 @@ class Upcall final : public omniCallDescriptor {
 
   // Throws the CORBA exception that is set; else its text.
   std::string raised() {
+    // Modules are imported without an exception that is set.
+    PyObject *set_type = nullptr, *set_value = nullptr, *set_trace = nullptr;
+    PyErr_Fetch(&set_type, &set_value, &set_trace);
     static PyObject* const user = of_module("omniORB.CORBA", "UserException");
     static PyObject* const system = of_module("omniORB.CORBA", "SystemException");
+    PyErr_Restore(set_type, set_value, set_trace);
     if (user && PyErr_ExceptionMatches(user)) {
       PyObject *type = nullptr, *value = nullptr, *trace = nullptr;
       PyErr_Fetch(&type, &value, &trace);

@@ -28,6 +28,7 @@ struct Options {
   std::string name;
   std::string specification;
   std::string folder;
+  std::string language = "cpp";
   std::string description, vendor, category, version;
   std::optional<double> rate;
   std::vector<std::string> in_ports, out_ports, parameters, provided, required, idl_files, actions;
@@ -70,8 +71,8 @@ Result<NewComponent> component_of(const Options& options) {
   return component;
 }
 
-Result<void> write_skeleton(const NewComponent& component, const std::filesystem::path& folder) {
-  const auto files = skeleton(component);
+Result<void> write_skeleton(const NewComponent& component, bool is_python, const std::filesystem::path& folder) {
+  const auto files = is_python ? python_skeleton(component) : skeleton(component);
   if (!files) return files.error();
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
@@ -90,7 +91,12 @@ void make_component(Console& console, const Options& options) {
   const auto component = component_of(options);
   if (!component) return console.fail(component.error());
   const auto folder = options.folder.empty() ? component->name : options.folder;
-  if (const auto written = write_skeleton(*component, folder); !written) return console.fail(written.error());
+  const bool is_python = options.language == "python";
+  if (const auto written = write_skeleton(*component, is_python, folder); !written) return console.fail(written.error());
+  if (is_python) {
+    std::cout << "wrote " << folder << "; run it: cd " << folder << " && python3 " << component->name << ".py\n";
+    return;
+  }
   std::cout << "wrote " << folder << "; build it: cmake -S " << folder << " -B " << folder << "/build && cmake --build " << folder
             << "/build\n";
 }
@@ -98,9 +104,11 @@ void make_component(Console& console, const Options& options) {
 }  // namespace
 
 void add_new(base::Command& app, Chosen& chosen) {
-  auto* command = app.add_subcommand("new", "Write the sources of a new component: CMake project, module, program, test");
+  auto* command = app.add_subcommand("new", "Write the sources of a new component, with a test: a CMake project, or a module of Python");
   auto options = std::make_shared<Options>();
   command->add_option("NAME", options->name, "Name of the component; a C++ identifier");
+  command->add_option("--language", options->language, "Language of the component: cpp or python (default cpp)")
+      ->check(base::one_of({"cpp", "python"}));
   command->add_option("--spec", options->specification,
                       "RTC.xml (RTCBuilder) or YAML with name, in_ports, out_ports, parameters, services");
   command->add_option("--idl", options->idl_files, "IDL file with data types of ports; it is copied, with its includes")

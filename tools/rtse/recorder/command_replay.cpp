@@ -13,6 +13,7 @@
 #include "recording/ring.h"
 #include "rtse/command.h"
 #include "rtse/recorder/recorder_commands.h"
+#include "run/module_files.h"
 #include "run/recorded_run.h"
 #include "run/replay.h"
 #include "run/run_page.h"
@@ -43,12 +44,9 @@ std::string after_dot(const std::string& port_name) { return port_name.substr(po
 base::Result<void> check_module(const Options& options, const editor::SavedComponent& component) {
   if (options.module_paths.empty() || !options.start.empty()) return {};
   const auto parts = base::split_list(component.id, ':');
-  const auto file = (parts.size() >= 4 ? parts[3] : component.instance) + ".so";
-  std::error_code error;
-  if (std::ranges::any_of(options.module_paths,
-                          [&](const auto& path) { return std::filesystem::exists(std::filesystem::path(path) / file, error); }))
-    return {};
-  return base::Error{"component " + component.instance + ": module " + file + " is not in --module-path " +
+  const auto type = parts.size() >= 4 ? parts[3] : component.instance;
+  if (editor::module_kind(type, options.module_paths) != editor::ModuleKind::none) return {};
+  return base::Error{"component " + component.instance + ": module " + editor::module_names(type) + " is not in --module-path " +
                      base::join(options.module_paths, ", ")};
 }
 

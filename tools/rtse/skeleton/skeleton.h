@@ -54,5 +54,7 @@ bool is_product_type(const std::string& type);
 const std::vector<std::string>& further_actions();
 // File name -> content.
 base::Result<std::map<std::string, std::string>> skeleton(const NewComponent& component);
+// The same for a component in Python.
+base::Result<std::map<std::string, std::string>> python_skeleton(const NewComponent& component);
 
 }  // namespace editor
