@@ -12,7 +12,7 @@ void Power::show_sample() {
   player::PowerState state;
   state.volts = static_cast<float>(sample.voltage);
   state.percent = static_cast<float>(100 * sample.level);
-  state.joules = static_cast<float>(sample.charge * seconds * sample.voltage);
+  state.joules = static_cast<float>(sample.charge * seconds * iface().info<shm::BatteryInfo>().constant);
   state.watts = static_cast<float>(-sample.voltage * sample.current);
   state.charging = sample.state == RTMSIM_BATTERY_CHARGES ? 1 : -1;
   publish(1, player::encode(state), sample.stamp);

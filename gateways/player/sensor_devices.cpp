@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "protocol/payloads.h"
 
@@ -102,19 +103,22 @@ shm::Pose product(const shm::Pose& a, const shm::Pose& b) {
 
 }  // namespace
 
-// From now on the present orientation is this one.
+// That of the next sample is this one.
 bool Imu::reset(const player::Pose3d& angles) {
   for (const double angle : {angles.roll, angles.pitch, angles.yaw}) {
     if (!std::isfinite(angle)) return false;
   }
-  if (iface().type() != shm::IfaceType::imu || !iface().read()) return false;
-  auto back = turn_of(iface().sample<shm::ImuSample>().orientation);
-  back = {0, 0, 0, back.qw, -back.qx, -back.qy, -back.qz};
-  turned_ = product(shm::euler_pose(0, 0, 0, angles.roll, angles.pitch, angles.yaw), back);
+  if (iface().type() != shm::IfaceType::imu) return false;
+  asked_ = angles;
   return true;
 }
 
 void Imu::show(shm::ImuSample sample, Source* magnetometer) {
+  if (const auto asked = std::exchange(asked_, std::nullopt)) {
+    auto back = turn_of(sample.orientation);
+    back = {0, 0, 0, back.qw, -back.qx, -back.qy, -back.qz};
+    turned_ = product(shm::euler_pose(0, 0, 0, asked->roll, asked->pitch, asked->yaw), back);
+  }
   const shm::Pose turned = product(turned_, turn_of(sample.orientation));
   auto& q = sample.orientation;
   q[0] = turned.qw, q[1] = turned.qx, q[2] = turned.qy, q[3] = turned.qz;

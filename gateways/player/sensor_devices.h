@@ -56,6 +56,7 @@ class Imu final : public Device {
   void show(shm::ImuSample sample, Source* magnetometer);
   bool reset(const player::Pose3d& angles);
   std::uint8_t kind_ = 4;
+  std::optional<player::Pose3d> asked_;    // of a reset, until the next sample
   shm::Pose turned_{0, 0, 0, 1, 0, 0, 0};  // what resets add before the orientation
 };
 

@@ -187,14 +187,14 @@ TEST(Wireless, receives_what_free_space_leaves_and_less_behind_a_wall) {
 }
 
 TEST(Wheels, count_the_ticks_that_a_wheel_has_turned) {
-  SimulationFixture f(
-      world_of_text("<gravity>0 0 0</gravity><model name='m'><link name='l'><inertial><mass>10</mass></inertial><sensor name='wheels' "
-                    "type='custom' gz:type='wheel_encoders'><gz:wheel_encoders>"
-                    "<joint>j</joint><ticks>500</ticks><gear_ratio>2</gear_ratio></gz:wheel_encoders></sensor></link>"
-                    "<joint name='fixed' type='fixed'><parent>world</parent><child>l</child></joint>"
-                    "<link name='wheel'><inertial><mass>1</mass></inertial><collision "
-                    "name='c'><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>"
-                    "<joint name='j' type='revolute'><parent>l</parent><child>wheel</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
+  SimulationFixture f(world_of_text(
+      "<gravity>0 0 0</gravity><model name='m'><link name='l'><inertial><mass>10</mass></inertial><sensor name='wheels' "
+      "type='custom' gz:type='wheel_encoders'><gz:wheel_encoders>"
+      "<joint>j</joint><ticks>500</ticks><gear_ratio>2</gear_ratio></gz:wheel_encoders></sensor></link>"
+      "<joint name='fixed' type='fixed'><parent>world</parent><child>l</child></joint>"
+      "<link name='wheel'><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia></inertial><collision "
+      "name='c'><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>"
+      "<joint name='j' type='revolute'><parent>l</parent><child>wheel</child><axis><xyz>0 0 1</xyz></axis></joint></model>"));
   auto iface = f.open(IfaceType::wheels, "m::wheels");
   EXPECT_EQ(iface.info<shm::WheelsInfo>().ticks, 1000);
   EXPECT_EQ(iface.info_elements<shm::Wheel>()[0].radius, 0.1);
