@@ -24,7 +24,8 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  return kind != PluginKind::joint_controller && kind != PluginKind::implied && kind != PluginKind::unknown && kind != PluginKind::buoyancy;
+  return is_wheel_drive(kind) || kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower ||
+         kind == PluginKind::unsupported_drive;
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {
