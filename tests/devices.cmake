@@ -3,3 +3,4 @@ rtmsim_test(follower_test devices/follower_test.cpp devices/path_test.cpp LIBRAR
 rtmsim_test(camera_device_test devices/camera_device_test.cpp LIBRARIES simserver LABELS sim render)
 rtmsim_test(actor_test devices/actor_test.cpp LIBRARIES simserver LABELS sim render)
 
+rtmsim_test(vehicles_test devices/vehicles_test.cpp LIBRARIES simserver LABELS sim)
