@@ -43,7 +43,9 @@ struct SetVelocityRequest {
 struct WrenchRequest {
   std::string name;
   double force[3] = {}, torque[3] = {};
-  double duration = 0;  // [s], 0 = one step
+  double duration = 0;  // [s], 0 = one step; until_the_next
+  // The wrench stays, in place of all others of the link that stay; one of zeros ends them.
+  static constexpr double until_the_next = -1;
 };
 struct ListRequest {};
 struct TreeRequest {

@@ -781,14 +781,14 @@ enum {
       6, /* name = model; values 0..6 = pose; velocities become 0. flags 1: values 0 1 2 = x y yaw, height and tilt kept */
   RTMSIM_REQUEST_GET_VELOCITY = 7, /* name = model or link; reply values 0..5 = linear, angular, world frame */
   RTMSIM_REQUEST_SET_VELOCITY = 8, /* name = model; values 0..5; the whole model moves as one body */
-  RTMSIM_REQUEST_WRENCH =
-      9, /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = duration [s], 0 = one step */
-  RTMSIM_REQUEST_LIST = 10,       /* reply text: JSON, see docs/shared-memory.md */
-  RTMSIM_REQUEST_TREE = 11,       /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
-  RTMSIM_REQUEST_SPAWN = 12,      /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a
-                                     shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose; bit 2:
-                                     nothing outside of the model path is opened. Reply message = name given */
-  RTMSIM_REQUEST_DELETE = 13,     /* name = model */
+  RTMSIM_REQUEST_WRENCH = 9,  /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = [s], 0: one step,
+                                 -1: until the next -1 */
+  RTMSIM_REQUEST_LIST = 10,   /* reply text: JSON, see docs/shared-memory.md */
+  RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
+  RTMSIM_REQUEST_SPAWN = 12,  /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a
+                                 shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose; bit 2:
+                                 nothing outside of the model path is opened. Reply message = name given */
+  RTMSIM_REQUEST_DELETE = 13, /* name = model */
   RTMSIM_REQUEST_SCREENSHOT = 14, /* text = absolute path of the PNG, or empty: the PNG is the text of the reply (a shared server writes no
                                      files; RTMSIM_VIEW_PIXELS: width x height x 3 bytes, red, green, blue, rows from the top
                                      down); width, height; flags RTMSIM_VIEW_*; name = model to follow; values 0..6 = pose of the

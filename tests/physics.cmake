@@ -13,3 +13,5 @@ rtmsim_test(carried_loads_test physics/carried_loads_test.cpp LIBRARIES simphysi
 find_package(orocos_kdl REQUIRED)
 rtmsim_test(joint_control_test physics/joint_control_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(joint_dynamics_test physics/joint_dynamics_test.cpp LIBRARIES simphysics orocos-kdl LABELS sim)
+rtmsim_test(displacement_test physics/displacement_test.cpp LIBRARIES simphysics LABELS sim)
+rtmsim_test(water_test physics/water_test.cpp LIBRARIES simphysics LABELS sim)

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "world/body_force_defs.h"
+
 namespace sim {
 
 Schedule::Schedule(double rate) {
@@ -39,25 +41,11 @@ double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1
 
 std::string scoped_model(const ModelDef& model, const std::string& scope) { return scope.empty() ? model.name : model.name + "::" + scope; }
 
-namespace {
-
-template <class Parts>
-std::optional<std::uint32_t> index_of(const Parts& parts, const std::string& scope, const std::string& name) {
-  for (const std::string& full : {scope.empty() ? name : scope + "::" + name, name}) {
-    for (std::uint32_t i = 0; i < parts.size(); ++i) {
-      if (parts[i].name == full) return i;
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 std::optional<std::uint32_t> link_of(const ModelDef& model, const std::string& scope, const std::string& name) {
-  return index_of(model.links, scope, name);
+  return link_named(model, scope, name);
 }
 std::optional<std::uint32_t> joint_of(const ModelDef& model, const std::string& scope, const std::string& name) {
-  return index_of(model.joints, scope, name);
+  return joint_named(model, scope, name);
 }
 
 }  // namespace sim

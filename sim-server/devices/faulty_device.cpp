@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/drives/position2d.h"
+#include "devices/drives/drive.h"
 #include "devices/joints/joints_device.h"
 #include "shm/iface_types.h"
 
@@ -25,7 +25,7 @@ std::chrono::nanoseconds period_of(shm::IfaceWriter& writer) {
 FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, std::uint64_t seed)
     : device_(std::move(device)),
       seed_(seed),
-      drive_(dynamic_cast<Position2d*>(device_.get())),
+      drive_(dynamic_cast<Drive*>(device_.get())),
       joints_(dynamic_cast<JointsDevice*>(device_.get())),
       sensor_(dynamic_cast<Sensor*>(device_.get())),
       period_(period_of(iface())) {}
@@ -45,7 +45,7 @@ base::Result<void> FaultyDevice::add(const FaultOrder& order) {
   if (!joint) return joint.error();
   if (row.is_of_drive) {
     if (drive_ == nullptr && joints_ == nullptr)
-      return base::Error{"fault " + std::string(row.name) + " of " + order.iface + ": it is no position2d and has no joints"};
+      return base::Error{"fault " + std::string(row.name) + " of " + order.iface + ": it is no position2d or position3d and has no joints"};
     entries_.push_back({order, std::nullopt, *joint});
     return {};
   }

@@ -12,8 +12,8 @@
 
 namespace sim {
 
+class Drive;
 class JointsDevice;
-class Position2d;
 class Sensor;
 
 class FaultyDevice final : public Device {
@@ -57,7 +57,7 @@ class FaultyDevice final : public Device {
   std::unique_ptr<Device> device_;
   std::uint64_t seed_;
   std::vector<Entry> entries_;
-  Position2d* drive_;     // the device, when it is one
+  Drive* drive_;          // the device, when it is one
   JointsDevice* joints_;  // the same
   Sensor* sensor_;        // the same
   std::chrono::nanoseconds period_{0}, silent_until_{0};

@@ -8,6 +8,7 @@
 #include "devices/device.h"
 #include "devices/drives/position2d.h"
 #include "devices/drives/position3d.h"
+#include "devices/drives/vehicle3d.h"
 #include "devices/joints/joints_device.h"
 #include "devices/sensors/camera.h"
 #include "devices/sensors/sensor_makers.h"
@@ -32,6 +33,7 @@ struct Makers {
   std::vector<std::unique_ptr<Device>> devices;
   std::optional<base::Error> failure;
   std::map<std::uint32_t, std::string> driven;  // joints, and the plugins whose motors turn them
+  std::shared_ptr<Propellers> propellers;       // null: none
 
   // False, with a line, for names that are too long: those of models may fill an iface's name alone.
   bool can_name(const std::string& iface, const std::string& what) {
@@ -189,22 +191,61 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
     case PluginKind::detachable_joint:  // Attachments have it
-    case PluginKind::buoyancy:
-    case PluginKind::battery:  // after all that it drives
+    case PluginKind::battery:           // after all that it drives
     case PluginKind::label:
     case PluginKind::thermal:
     case PluginKind::thermal_sensor:
     case PluginKind::fiducial:  // detectors look for it
+    case PluginKind::buoyancy:  // the physics have these
+    case PluginKind::hydrodynamics:
+    case PluginKind::lift_drag:
+    case PluginKind::rotor:  // make_vehicle and the joints have these
+    case PluginKind::thruster:
+    case PluginKind::multicopter_control:
+    case PluginKind::joint_force:
+    case PluginKind::link_wrench:
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;
   }
 }
 
+bool flies_by_itself(const ModelDef& def) {
+  return std::any_of(def.plugins.begin(), def.plugins.end(), [](const PluginDef& plugin) {
+    return kind_of(plugin) == PluginKind::velocity_control || kind_of(plugin) == PluginKind::trajectory_follower;
+  });
+}
+
+// A position3d for a model with rotors or thrusters; those of a plugin for multicopters by its numbers.
+void make_vehicle(Makers& m) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  m.propellers = Propellers::of(m.world, m.model, m.left_out);
+  const auto plugin_of = [&](PluginKind kind) {
+    return std::find_if(def.plugins.begin(), def.plugins.end(), [kind](const PluginDef& plugin) { return kind_of(plugin) == kind; });
+  };
+  const auto control = plugin_of(PluginKind::multicopter_control), none = def.plugins.end();
+  if (!m.propellers) {
+    if (control != none) {
+      m.left_out.push_back(fmt::format("{}: plugin {}: model {} has no rotor; the plugin is left out", control->source,
+                                       base::in_quotes(control->name), base::in_quotes(def.name)));
+    }
+    return;
+  }
+  const auto& all = m.propellers->all();
+  const auto rotors = std::count_if(all.begin(), all.end(), [](const Propeller& propeller) { return propeller.setup().is_rotor; });
+  const bool is_copter = control != none || rotors >= 4;
+  if (flies_by_itself(def) || (!is_copter && rotors == static_cast<std::ptrdiff_t>(all.size()))) return;
+  const PluginDef& plugin = control != none ? *control : is_copter ? *plugin_of(PluginKind::rotor) : *plugin_of(PluginKind::thruster);
+  if (!m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
+  auto made = is_copter ? make_multicopter(m.world, m.model, plugin, *m.propellers, m.left_out)
+                        : make_thruster_control(m.world.physics, m.model, *m.propellers);
+  if (made) m.take(Vehicle3d::make(m.world, m.model, plugin, m.propellers, std::move(made)));
+}
+
 void make_joints(Makers& m) {
   const ModelDef& def = m.world.physics.def(m.model);
   if (commandable_joints(def).empty() || !m.can_name(JointsDevice::name_of(def), "joints")) return;
-  m.take(JointsDevice::make(m.world, m.model));
+  m.take(JointsDevice::make(m.world, m.model, m.propellers));
 }
 
 void make_batteries(Makers& m) {
@@ -224,9 +265,10 @@ void make_batteries(Makers& m) {
 }  // namespace
 
 base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
-  Makers m{world, model, left_out, {}, {}, {}};
+  Makers m{world, model, left_out, {}, {}, {}, {}};
   const ModelDef& def = world.physics.def(model);
   for (const auto& plugin : def.plugins) make_plugin(m, plugin);
+  make_vehicle(m);
   for (std::uint32_t l = 0; l < def.links.size(); ++l) {
     for (const auto& sensor : def.links[l].sensors) {
       if (!is_sonar(sensor)) make_sensor(m, {{model, l}, sensor.pose}, sensor);

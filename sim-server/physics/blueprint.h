@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "world/body_force_defs.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -38,7 +39,10 @@ struct Blueprint {
   std::uint32_t canonical = 0;        // link
   bool is_static = false;             // no assembly moves
   bool is_joined_to_world = false;    // has a joint that is not fixed between a link and the world
+  std::vector<HydrodynamicsDef> hydrodynamics;
+  std::vector<WingDef> wings;
   std::vector<std::string> notes;     // one line each: what is simulated in another way than written
+  std::vector<std::string> left_out;  // the same of what is not simulated
 
   // Fails when a number is not finite or a mass or size cannot be simulated.
   static base::Result<std::shared_ptr<const Blueprint>> of(std::shared_ptr<const ModelDef> model);

@@ -49,6 +49,8 @@ class JointServo {
   // From the next step on. False: the value was outside the limits, and the nearest one counts.
   bool take(const JointOrder& order, const JointState& now);
   bool is_active() const { return mode_ != JointMode::none; }
+  // By a speed or an effort that was asked for.
+  bool is_turning() const { return mode_ == JointMode::velocity || mode_ == JointMode::effort; }
   bool wants_gravity() const;
 
   // The part of its highest effort that the motor has left, 0 to 1. Brakes keep theirs. 1 after a reset.

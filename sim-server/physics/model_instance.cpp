@@ -11,10 +11,6 @@
 namespace sim {
 namespace {
 
-bool is_carried_by(const std::optional<FluidDef>& fluid, const std::string& model) {
-  return fluid && (fluid->models.empty() || std::find(fluid->models.begin(), fluid->models.end(), model) != fluid->models.end());
-}
-
 // Wider than high is no wheel but a drum, which stands on its whole width.
 bool is_wheel(const ModelDef& model, const LinkDef& link, const CollisionDef& collision) {
   const auto* cylinder = std::get_if<CylinderShape>(&collision.geometry);
@@ -67,8 +63,6 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& los
       shape->is_wheel = !is_anchored && is_wheel(model, model.links[l], collision);
       shape_in_body_.push_back(blueprint_->link_in_body[l] * collision.pose * geom_in_collision(collision.geometry));
       shapes_.push_back(std::move(*shape));
-      const auto solid = solid_properties(collision.geometry);
-      shape_volumes_.push_back(solid ? solid->volume : 0);
     }
   }
 }
@@ -97,9 +91,9 @@ void ModelInstance::place_anchored() {
 
 // --- the model
 
-ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base, ShapeStore& shapes,
-                             std::vector<std::string>& lost)
-    : id_(id), blueprint_(std::move(blueprint)), base_(base) {
+ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base,
+                             const PhysicsDef& physics, ShapeStore& shapes, std::vector<std::string>& lost)
+    : id_(id), blueprint_(std::move(blueprint)), base_(base), forces_(*blueprint_, physics, shapes, lost) {
   ode::prepare_thread();
   const auto& joints = blueprint_->model->joints;
   for (std::uint32_t follower = 0; follower < joints.size(); ++follower) {
@@ -153,9 +147,8 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     dGeomSetBody(shapes_[i].geom.id(), body);
     ode::set_offset(shapes_[i].geom.id(), shape_in_body_[i]);
   }
-  has_forces_ =
-      std::any_of(blueprint_->assemblies.begin(), blueprint_->assemblies.end(), [](const Assembly& a) { return a.wind_mass > 0; });
-  has_forces_ = has_forces_ || is_carried_by(physics.fluid, blueprint_->model->name);
+  has_forces_ = !forces_.is_empty();
+  forces_.forget();
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
   tree_ = joint_tree(bodies_, joints_);
   joint_rows_ = std::accumulate(joints_.begin(), joints_.end(), 0U, [](auto sum, const auto& joint) { return sum + joint.rows(); });
@@ -278,33 +271,7 @@ void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& ph
   for (auto& joint : joints_) {
     if (joint.has_forces()) joint.apply(step_joints, physics.step);
   }
-  if (is_carried_by(physics.fluid, blueprint_->model->name)) float_in(*physics.fluid, physics.gravity);
-  if (physics.wind.isZero()) return;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const dBodyID body = bodies_[i].id();
-    const double mass = blueprint_->assemblies[i].wind_mass;
-    if (body == nullptr || mass <= 0 || dBodyIsEnabled(body) == 0) continue;
-    const Eigen::Vector3d force = mass * (physics.wind - ode::vector(dBodyGetLinearVel(body)));
-    dBodyAddForce(body, force.x(), force.y(), force.z());
-  }
-}
-
-// Each shape is lifted by the fluid that it takes the place of, layer by layer, at its middle.
-void ModelInstance::float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity) {
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const dBodyID body = bodies_[shapes_[i].assembly].id();
-    if (body == nullptr || shape_volumes_[i] <= 0 || dBodyIsEnabled(body) == 0) continue;
-    const Aabb box = box_of(shapes_[i].geom.id());
-    const double low = box.low.z(), high = box.high.z();
-    double density = fluid.density, mean = fluid.density;
-    for (const auto& [height, above] : fluid.changes) {
-      mean += (above - density) * std::clamp((high - height) / std::max(high - low, 1e-9), 0.0, 1.0);
-      density = above;
-    }
-    const Eigen::Vector3d force = -mean * shape_volumes_[i] * gravity;
-    const dReal* place = dGeomGetPosition(shapes_[i].geom.id());
-    dBodyAddForceAtPos(body, force.x(), force.y(), force.z(), place[0], place[1], place[2]);
-  }
+  if (!forces_.is_empty()) forces_.apply(bodies_, joints_, physics);
 }
 
 JointInstance* ModelInstance::joint(std::uint32_t index) {
@@ -323,6 +290,7 @@ ModelInstance::State ModelInstance::save() const {
   State now;
   for_each_state([&now](const BodyState& body) { now.bodies.push_back(body); });
   for (const auto& joint : joints_) now.joints.push_back(joint.places());
+  now.forces = forces_.memories();
   return now;
 }
 
@@ -340,6 +308,7 @@ void ModelInstance::restore(const State& state, double dt) {
     s.is_awake ? dBodyEnable(body) : dBodyDisable(body);
   }
   for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j].take(state.joints[j], dt);
+  forces_.remember(state.forces);
   left_neighbourhood = may_be_awake = true;
 }
 
@@ -374,7 +343,7 @@ bool ModelInstance::lies_still(double dt, bool touches) {
   constexpr double slow = 0.004, slow_turn = 0.01, slow_time = 0.5;
   constexpr double still = 0.0005, still_turn = 0.001, still_time = 0.1;
   constexpr std::uint32_t least_steps = 10;
-  if (!blueprint_->model->allow_auto_disable) return false;
+  if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches)) return false;
   double speed = 0, turn = 0;
   for (const auto& handle : bodies_) {
     if (handle.id() == nullptr) continue;

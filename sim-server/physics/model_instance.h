@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/blueprint.h"
+#include "physics/body_forces.h"
 #include "physics/joint_tree.h"
 #include "physics/joints.h"
 #include "physics/ode.h"
@@ -32,8 +33,8 @@ class ModelInstance {
  public:
   // Anchored assemblies have shapes, but no body. `base` is where the model stands at the start.
   // Shapes that are missing, because a file cannot be read or they cannot move, add a line to `lost`.
-  ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base, ShapeStore& shapes,
-                std::vector<std::string>& lost);
+  ModelInstance(ModelId id, std::shared_ptr<const Blueprint> blueprint, const Eigen::Isometry3d& base, const PhysicsDef& physics,
+                ShapeStore& shapes, std::vector<std::string>& lost);
 
   // Makes bodies and joints in a world (of the model at its base pose); those it had are gone.
   void enter(dWorldID world, const PhysicsDef& physics);
@@ -45,6 +46,7 @@ class ModelInstance {
   struct State {
     std::vector<BodyState> bodies;
     std::vector<JointInstance::Places> joints;
+    std::vector<BodyForces::Memory> forces;
   };
   State save() const;
   // Its bodies, without a place for all of them.
@@ -80,11 +82,13 @@ class ModelInstance {
   std::uint32_t joint_rows() const { return joint_rows_; }  // of the constraints that its joints make in ODE
   std::uint32_t moving_body_count() const { return moving_bodies_; }
 
-  // Springs, couplings and wind; before each step. Joints that hold for this step alone go into the group.
+  // Springs, couplings, water and air; before each step. Joints that hold for this step alone go into the group.
   void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics);
   // Boxes of the moving shapes where they are now; the union.
   const Aabb& update_boxes();
   const Aabb& moving_box() const { return moving_box_; }
+  BodyForces& forces() { return forces_; }
+  const BodyForces& forces() const { return forces_; }
   void set_gravity(bool on);
   bool make_kinematic();
   void set_drive(JointInstance& joint, int axis, double velocity, double effort);
@@ -133,7 +137,6 @@ class ModelInstance {
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);
   void take_initial_positions();
   void begin_joints(double dt);
-  void float_in(const FluidDef& fluid, const Eigen::Vector3d& gravity);
   int assembly_of(const std::string& link) const;
   // Nothing of an anchored one.
   std::optional<BodyState> state(std::size_t assembly) const;
@@ -148,8 +151,8 @@ class ModelInstance {
   std::vector<int> joint_places_;  // in joints_, by index into ModelDef::joints; -1: it has none
   std::vector<ShapeInstance> shapes_;
   std::vector<Eigen::Isometry3d> shape_in_body_;
-  std::vector<double> shape_volumes_;  // [m^3]; 0: not known
   double mass_ = 0;
+  BodyForces forces_;
   bool has_forces_ = false;
   bool has_followed_ = false;  // joints
   bool has_rows_ = false;      // controllers

@@ -70,6 +70,7 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
       auto blueprint = Blueprint::of(std::shared_ptr<const ModelDef>(world_, &model));
       if (!blueprint) dropped->push_back(blueprint.error().message);
       if (blueprint) notes.insert(notes.end(), (*blueprint)->notes.begin(), (*blueprint)->notes.end());
+      if (blueprint) dropped->insert(dropped->end(), (*blueprint)->left_out.begin(), (*blueprint)->left_out.end());
       initial_.push_back(blueprint ? *blueprint : nullptr);
     }
   }
@@ -88,7 +89,7 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
 
 void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, std::vector<std::string>& lost) {
   const Eigen::Isometry3d base = blueprint->model->pose;
-  auto model = std::make_unique<ModelInstance>(id, std::move(blueprint), base, store_, lost);
+  auto model = std::make_unique<ModelInstance>(id, std::move(blueprint), base, world_->physics, store_, lost);
   if (has_bodies(*model)) {
     const auto smallest =
         std::min_element(shards_.begin(), shards_.end(), [](const auto& a, const auto& b) { return a->models.size() < b->models.size(); });
@@ -307,6 +308,7 @@ base::Result<ModelId> Physics::spawn(std::shared_ptr<const ModelDef> model, std:
   auto blueprint = Blueprint::of(std::move(model));
   if (!blueprint) return blueprint.error();
   notes.insert(notes.end(), (*blueprint)->notes.begin(), (*blueprint)->notes.end());
+  notes.insert(notes.end(), (*blueprint)->left_out.begin(), (*blueprint)->left_out.end());
   const auto id = static_cast<ModelId>(impl_->models_.size());
   impl_->models_.emplace_back();
   impl_->add(id, *blueprint, notes);
@@ -388,6 +390,7 @@ base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3
       state.angular.setZero();
       state.is_awake = true;
     }
+    states.forces.assign(states.forces.size(), {});
     instance.restore(states, impl_->world_->physics.step);
   }
   for (const auto& other : impl_->models_) {
@@ -406,6 +409,7 @@ base::Result<void> Physics::set_model_twist(ModelId model, const Twist& twist) {
   if (!impl_->has_bodies(instance)) return base::Error{fmt::format("model {}: is static", def(model).name)};
   const Eigen::Vector3d origin = link_pose(canonical_link(model)).translation();
   instance.wake();
+  instance.forces().forget();
   for (std::uint32_t i = 0; i < instance.body_count(); ++i) {
     const dBodyID body = instance.body(i);
     if (body == nullptr) continue;
@@ -504,6 +508,7 @@ void add_parts_to(StateHash& hash, const ModelInstance& model) {
       hash.add_all(static_cast<std::uint64_t>(axis), static_cast<std::uint64_t>(place.turns), place.low, place.high);
     }
   }
+  model.forces().add_to(hash);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ class ShapeStore {
   };
   base::Result<std::shared_ptr<Mesh>> mesh(const GeometryDef& geometry);
   base::Result<std::shared_ptr<Field>> field(const HeightmapShape& shape);
+  TriangleCache& triangles() { return triangles_; }
 
  private:
   TriangleCache& triangles_;

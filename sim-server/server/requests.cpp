@@ -138,6 +138,10 @@ struct ServerLoop::Handler {
   shm::Reply operator()(const shm::WrenchRequest& request) {
     const auto link = physics.find_link(request.name);
     if (!link) return no_model(physics, request.name);
+    if (request.duration == shm::WrenchRequest::until_the_next) {
+      const auto kept = simulation.keep_wrench(*link, vector(request.force), vector(request.torque));
+      return kept ? shm::Reply{} : failed(kept.error());
+    }
     const auto duration = std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e6) * 1e9));
     const auto done = simulation.add_wrench(*link, vector(request.force), vector(request.torque), duration);
     return done ? shm::Reply{} : failed(done.error());

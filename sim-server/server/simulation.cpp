@@ -5,6 +5,7 @@
 #include <iterator>
 #include <set>
 
+#include "base/text.h"
 #include "devices/faulty_device.h"
 
 namespace sim {
@@ -70,6 +71,15 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (!s->can_have_faults(fault.iface)) return no_iface(fault);
   }
   s->sort_devices();
+  s->standing_ = standing_wrenches_of(*s->world_);
+  for (ModelId id = 0; id < s->initial_models_; ++id) {
+    if (s->physics_->exists(id)) s->add_standing_wrenches(id);
+  }
+  for (const StandingWrench& wrench : s->standing_) {
+    if (!s->physics_->find_link(wrench.entity))
+      notes.push_back(wrench.source + ": there is no " + base::in_quotes(wrench.entity) +
+                      " that <persistent> pushes; it is pushed when it is spawned");
+  }
   return s;
 }
 
@@ -122,9 +132,7 @@ void Simulation::step(PartTimes& times) {
   for (const JointHold& hold : holds_) hold.before_step(*physics_);  // a drive that has the same joint wins
   attachments_.before_step(*physics_, time_);
   for_followers([&](Device& device) { device.before_step(moment); });
-  for (const auto& wrench : wrenches_) {
-    if (physics_->exists(wrench.link.model)) (void)physics_->add_wrench(wrench.link, wrench.force, wrench.torque);
-  }
+  push();
   times.mark(Part::commands);
   physics_->step();
   ++steps_;
@@ -135,6 +143,24 @@ void Simulation::step(PartTimes& times) {
   for_followers([&](Device& device) { device.after_step(after); });
   if (steps_ % 16 == 0) follow_trails();
   times.mark(Part::commands);
+}
+
+void Simulation::push() {
+  for (const auto& wrench : wrenches_) {
+    if (!physics_->exists(wrench.link.model)) continue;
+    Eigen::Vector3d torque = wrench.torque;
+    if (wrench.is_at_origin)
+      torque += (physics_->link_pose(wrench.link).translation() - physics_->center_of_mass(wrench.link)).cross(wrench.force);
+    (void)physics_->add_wrench(wrench.link, wrench.force, torque);
+  }
+}
+
+void Simulation::add_standing_wrenches(ModelId model) {
+  for (const StandingWrench& wrench : standing_) {
+    const auto link = physics_->find_link(wrench.entity);
+    if (!link || link->model != model || !physics_->can_move(*link)) continue;
+    wrenches_.push_back({*link, wrench.force, wrench.torque, std::chrono::nanoseconds::max(), true, true});
+  }
 }
 
 bool Simulation::sense(PartTimes& times, const std::function<bool()>& before_writing) {
@@ -246,6 +272,7 @@ base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
   ++resets_;
   for (ModelId id = 0; id < initial_models_; ++id) {
     if (!physics_->exists(id)) continue;
+    add_standing_wrenches(id);
     if (was_there[id]) {
       rays_->moved(id);
       continue;
@@ -320,7 +347,7 @@ void Simulation::reset_poses() {
     if (physics_->exists(id)) rays_->moved(id);
   }
   for (auto& device : devices_) device->reset();
-  wrenches_.clear();
+  std::erase_if(wrenches_, [](const Wrench& wrench) { return !wrench.stays; });
   trails_.clear();
 }
 
@@ -343,6 +370,7 @@ base::Result<ModelId> Simulation::spawn_whole(const ModelDef& model, std::vector
     return made.error();
   }
   sort_devices();
+  add_standing_wrenches(*id);
   return id;
 }
 
@@ -367,11 +395,23 @@ base::Result<void> Simulation::set_pose(ModelId model, const Eigen::Isometry3d& 
 
 base::Result<void> Simulation::add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
                                           std::chrono::nanoseconds duration) {
+  if (const auto good = check_wrench(link, force, torque); !good) return good;
+  wrenches_.push_back({link, force, torque, time_ + std::max(duration, step_)});
+  return {};
+}
+
+base::Result<void> Simulation::keep_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
+  if (const auto good = check_wrench(link, force, torque); !good) return good;
+  std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.stays && wrench.link == link; });
+  if (!force.isZero(0) || !torque.isZero(0)) wrenches_.push_back({link, force, torque, std::chrono::nanoseconds::max(), true});
+  return {};
+}
+
+base::Result<void> Simulation::check_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) const {
   if (!physics_->can_move(link)) return base::Error{"model " + physics_->def(link.model).name + ": cannot move"};
   if (!force.allFinite() || !torque.allFinite() || force.cwiseAbs().maxCoeff() > 1e7 || torque.cwiseAbs().maxCoeff() > 1e7) {
     return base::Error{"model " + physics_->def(link.model).name + ": force and torque must be finite and below 1e7"};
   }
-  wrenches_.push_back({link, force, torque, time_ + std::max(duration, step_)});
   return {};
 }
 
@@ -387,6 +427,12 @@ std::uint64_t Simulation::hash() const {
   physics_->add_to(hash);
   for (const auto& device : devices_) device->add_to(hash);
   attachments_.add_to(hash);
+  for (const auto& wrench : wrenches_) {
+    if (!wrench.stays) continue;
+    hash.add_all(std::uint64_t{wrench.link.model}, std::uint64_t{wrench.link.link});
+    hash.add(wrench.force);
+    hash.add(wrench.torque);
+  }
   return hash.value();
 }
 

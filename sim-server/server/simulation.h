@@ -19,6 +19,7 @@
 #include "physics/physics.h"
 #include "server/statistics.h"
 #include "shm/server.h"
+#include "world/body_force_defs.h"
 
 namespace sim {
 
@@ -69,6 +70,9 @@ class Simulation {
   // For `duration` from the next step on; at least one step.
   base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
                                 std::chrono::nanoseconds duration);
+  // The same until the next of these for the link, in place of all that stay there; of zeros: ends them. A reset brings back those of the
+  // world's file and ends all others.
+  base::Result<void> keep_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
 
   // Whether a fault can be of this: an iface, or a joint of one (arm::joints::elbow) whatever it is called.
   bool can_have_faults(std::string_view name) const;
@@ -115,7 +119,12 @@ class Simulation {
     LinkId link;
     Eigen::Vector3d force, torque;
     std::chrono::nanoseconds until;
+    bool stays = false, is_at_origin = false;  // of the link; else at the centre of mass
   };
+  void push();
+  base::Result<void> check_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) const;
+  // Those of the world's file that mean the model.
+  void add_standing_wrenches(ModelId model);
 
   std::shared_ptr<const WorldDef> world_;
   SimulationOptions options_;
@@ -135,6 +144,7 @@ class Simulation {
   Attachments attachments_;
   std::vector<Device*> due_;
   std::vector<Wrench> wrenches_;
+  std::vector<StandingWrench> standing_;  // of the world's file
   std::vector<Trail> trails_;
   std::size_t initial_models_ = 0;
   std::chrono::nanoseconds step_, time_{0};

@@ -93,7 +93,8 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
                   " is not commanded: its joints keep the position or speed that it starts with, until a client of the iface joints "
                   "commands them");
   } else if (kind_of(plugin) == PluginKind::unknown ||
-             (kind_of(plugin) == PluginKind::buoyancy && std::string_view(node.parent().name()) != "world")) {
+             ((kind_of(plugin) == PluginKind::buoyancy || kind_of(plugin) == PluginKind::link_wrench) &&
+              std::string_view(node.parent().name()) != "world")) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   }
   return plugin;
@@ -194,6 +195,11 @@ void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildCon
     context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is corrected");
   link.center_of_mass = pose.translation();
   link.inertia = pose.linear() * inertia * pose.linear().transpose();
+  if (const pugi::xml_node added = node.child("fluid_added_mass")) {
+    Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.linear();
+    link.added_mass = turn * symmetric_matrix(added) * turn.transpose();
+  }
 }
 
 class ModelBuilder {

@@ -26,6 +26,17 @@ const std::map<std::string_view, PluginKind>& table() {
       {"buoyancy", buoyancy},
       {"linearbattery", battery},
       {"battery", battery},
+      {"hydrodynamics", hydrodynamics},
+      {"liftdrag", lift_drag},
+      {"thruster", thruster},
+      {"multicopter", unsupported_drive},
+      {"multicoptermotormodel", rotor},
+      {"motormodel", rotor},
+      {"rotorsgazebomotormodel", rotor},
+      {"multicoptervelocitycontrol", multicopter_control},
+      {"multicoptercontrol", multicopter_control},
+      {"applyjointforce", joint_force},
+      {"applylinkwrench", link_wrench},
       {"jointpositioncontroller", joint_controller},
       {"jointcontroller", joint_controller},
       {"jointtrajectorycontroller", joint_controller},
@@ -40,12 +51,6 @@ const std::map<std::string_view, PluginKind>& table() {
       {"trackcontroller", unsupported_drive},
       {"simpletrackedvehicle", unsupported_drive},
       {"kinematicskidsteerdrive", unsupported_drive},
-      {"multicopter", unsupported_drive},
-      {"multicoptermotormodel", unsupported_drive},
-      {"multicoptervelocitycontrol", unsupported_drive},
-      {"liftdrag", unsupported_drive},
-      {"hydrodynamics", unsupported_drive},
-      {"thruster", unsupported_drive},
       {"vehicle", unsupported_drive},
       {"cartdemo", unsupported_drive},
       {"label", label},
@@ -157,6 +162,8 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name) {
 bool is_wheel_drive(PluginKind kind) {
   return kind == PluginKind::differential_drive || kind == PluginKind::skid_steer_drive || kind == PluginKind::car_drive;
 }
+
+bool is_propeller(PluginKind kind) { return kind == PluginKind::thruster || kind == PluginKind::rotor; }
 
 std::string iface_own_name(const PluginDef& plugin) {
   if (kind_of(plugin) == PluginKind::battery) {

@@ -20,6 +20,13 @@ enum class PluginKind {
   thermal,              // of a visual: its temperature
   thermal_sensor,       // of a thermal camera: how it counts
   fiducial,             // of a model: a mark that detectors recognise
+  hydrodynamics,        // damping and added mass of a link in water
+  lift_drag,            // a wing, sail, fin or blade
+  thruster,             // a propeller in water, on a joint
+  rotor,                // a propeller in air, on a joint
+  multicopter_control,  // turns rotors as a commanded velocity needs
+  joint_force,          // a joint that clients command by its effort
+  link_wrench,          // of the world: forces that stay
   implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
@@ -31,6 +38,9 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
 
 // Those with an iface position2d.
 bool is_wheel_drive(PluginKind kind);
+
+// Propellers: their joints take commands like others, and push.
+bool is_propeller(PluginKind kind);
 
 // What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
 // a class. Of a battery: its <battery_name>, or "battery".

@@ -195,6 +195,8 @@ struct LinkDef {
   double mass = 1;                                                // positive
   Eigen::Vector3d center_of_mass{0, 0, 0};                        // in the link
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();          // about the centre of mass, along the link's axes; positive definite
+  // Of the fluid that goes along, positive; about the centre of mass, along the link's axes: linear, then angular.
+  std::optional<Eigen::Matrix<double, 6, 6>> added_mass;
   bool gravity = true;
   bool kinematic = false;
   bool self_collide = false;

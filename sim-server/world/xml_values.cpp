@@ -1,5 +1,6 @@
 #include "world/xml_values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -117,6 +118,20 @@ Color color_at(pugi::xml_node node, std::string_view path, const Color& fallback
 
 Eigen::Isometry3d pose_at(pugi::xml_node node, std::string_view path) {
   return parse_pose(child_at(node, path)).value_or(Eigen::Isometry3d::Identity());
+}
+
+Eigen::Matrix<double, 6, 6> symmetric_matrix(pugi::xml_node node) {
+  constexpr std::string_view axes = "xyzpqr";
+  constexpr double largest = 1e9;
+  Eigen::Matrix<double, 6, 6> matrix;
+  for (std::size_t row = 0; row < axes.size(); ++row) {
+    for (std::size_t column = row; column < axes.size(); ++column) {
+      const double entry = number_at(node, std::string{axes[row], axes[column]}, 0);
+      const auto i = static_cast<Eigen::Index>(row), k = static_cast<Eigen::Index>(column);
+      matrix(i, k) = matrix(k, i) = std::isfinite(entry) ? std::clamp(entry, -largest, largest) : 0;
+    }
+  }
+  return matrix;
 }
 
 ParameterNode parameters_of(pugi::xml_node node) {

@@ -1,5 +1,5 @@
 // What the simulator costs, each number beside its limit and beside the bare libraries doing the same work in the same run. Prints a table.
-//   sim_bench [rays] [steps] [robots] [load] [calls]      all of them when none is named
+//   sim_bench [rays] [steps] [robots] [vehicles] [load] [calls]      all of them when none is named
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
@@ -20,8 +20,10 @@
 #include "bare_loops.h"
 #include "base/log.h"
 #include "shm/request_board.h"
+#include "support/physics_fixture.h"
 #include "support/simulation_fixture.h"
 #include "support/usage.h"
+#include "support/vehicles.h"
 #include "support/worlds.h"
 #include "world/world_loader.h"
 
@@ -479,18 +481,39 @@ void bench_calls() {
         "calls", Goal::at_most, 0.01);
 }
 
+// ---- vehicles ----
+
+// Fifty quadcopters that fly apart, each step of 1 ms.
+void bench_vehicles() {
+  std::string text = "<gravity>0 0 -9.81</gravity>";
+  for (int i = 0; i < 50; ++i)
+    text += quadcopter("c" + std::to_string(i), std::to_string(3 * (i % 10)) + " " + std::to_string(3 * (i / 10)) + " 5 0 0 0");
+  SimulationFixture f(world_of_text(text), 1, static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U)));
+  std::vector<shm::Iface> pilots;
+  for (int i = 0; i < 50; ++i) {
+    pilots.push_back(f.open(shm::IfaceType::position3d, "c" + std::to_string(i) + "::position3d"));
+    (void)pilots.back().command(shm::CommandKind::velocity, std::array<double, 6>{0.5, 0.1, 0, 0, 0, 0.2});
+  }
+  std::vector<double> times;
+  for (int round = 0; round < 5; ++round) {
+    constexpr int steps = 500;
+    const auto start = Clock::now();
+    for (int i = 0; i < steps; ++i) f.simulation->step(f.times);
+    times.push_back(us_since(start) / steps);
+  }
+  print("50 quadcopters, 1 ms: times real time", 1000 / least(times), "x", Goal::at_least, 3);
+}
+
 }  // namespace
 }  // namespace sim::bench
 
 int main(int argc, char** argv) {
-  ::test::answer_help(argc, argv,
-                      "sim_bench [rays|steps|robots|load|calls]...\nMeasures the simulator beside plain ODE and Embree (all parts).");
+  ::test::answer_help(
+      argc, argv, "sim_bench [rays|steps|robots|vehicles|load|calls]...\nMeasures the simulator beside plain ODE and Embree (all parts).");
   base::set_log_level(base::Level::error);
-  const std::pair<const char*, void (*)()> parts[] = {{"rays", sim::bench::bench_rays},
-                                                      {"steps", sim::bench::bench_steps},
-                                                      {"robots", sim::bench::bench_robots},
-                                                      {"load", sim::bench::bench_load},
-                                                      {"calls", sim::bench::bench_calls}};
+  const std::pair<const char*, void (*)()> parts[] = {{"rays", sim::bench::bench_rays},     {"steps", sim::bench::bench_steps},
+                                                      {"robots", sim::bench::bench_robots}, {"vehicles", sim::bench::bench_vehicles},
+                                                      {"load", sim::bench::bench_load},     {"calls", sim::bench::bench_calls}};
   for (const auto& [name, part] : parts) {
     const bool is_wanted =
         argc == 1 || std::any_of(argv + 1, argv + argc, [&, name = name](const char* word) { return std::string_view(word) == name; });

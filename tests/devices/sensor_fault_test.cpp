@@ -238,7 +238,7 @@ TEST(Faults, that_an_iface_cannot_have_are_refused_and_change_nothing) {
   };
   EXPECT_EQ(refused("robot::nose", FaultKind::off), "fault off: the world has no iface robot::nose");
   EXPECT_EQ(refused(drive_name, FaultKind::missing), "fault missing of robot::position2d: only lasers and sonars have beams");
-  EXPECT_EQ(refused(laser_name, FaultKind::weak), "fault weak of robot::laser: it is no position2d and has no joints");
+  EXPECT_EQ(refused(laser_name, FaultKind::weak), "fault weak of robot::laser: it is no position2d or position3d and has no joints");
   EXPECT_TRUE(f.simulation->faults().empty());
   EXPECT_NEAR(f.ahead(1)[0], 2.8, 0.05);
 }

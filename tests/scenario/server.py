@@ -90,6 +90,14 @@ def motion():
     ok("wrench", "crate::l", "0", "6", "0")
     ok("step")
     near(read("velocity", "crate")["linear"][1:2], [6 / 2 * step], 1e-4)
+    ok("wrench", "crate", "--persistent", "-4", "0", "0")
+    ok("step", "100")
+    near(read("velocity", "crate")["linear"][0:1], [0.2 - 4 / 2 * 100 * step], 1e-3)
+    ok("wrench", "crate", "--clear")
+    ok("step", "100")
+    near(read("velocity", "crate")["linear"][0:1], [0.2 - 4 / 2 * 100 * step], 1e-3)
+    for words in (["--clear", "1", "0", "0"], ["--persistent"], ["--persistent", "--for", "1", "1", "0", "0"]):
+        refused("wrench", "crate", *words, code=2)
 
     ok("odometry", f"{robot}::position2d", "3", "2", "0.5")
     near(read("echo", f"{robot}::position2d", "-n", "1")["odometry"], (3, 2, 0.5), 1e-3)

@@ -260,6 +260,17 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::unsupported_drive) << name;
   for (const char* name : {"libRayPlugin.so", "libgazebo_ros_velodyne_gpu_laser.so", "libgazebo_ros_block_laser.so"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;
+  for (const char* name : {"gz-sim-multicopter-motor-model-system", "libignition-gazebo-multicopter-motor-model-system.so",
+                           "librotors_gazebo_motor_model.so", "libgazebo_motor_model.so"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::rotor) << name;
+  EXPECT_EQ(kind_of_plugin("libignition-gazebo-multicopter-control-system.so", "x"), PluginKind::multicopter_control);
+  for (const char* name : {"ignition-gazebo-lift-drag-system", "libLiftDragPlugin.so"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::lift_drag) << name;
+  for (const char* name : {"gz-sim-thruster-system", "ignition-gazebo-thruster-system"})
+    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::thruster) << name;
+  EXPECT_EQ(kind_of_plugin("gz-sim-hydrodynamics-system", "x"), PluginKind::hydrodynamics);
+  EXPECT_EQ(kind_of_plugin("gz-sim-apply-joint-force-system", "x"), PluginKind::joint_force);
+  EXPECT_EQ(kind_of_plugin("gz-sim-apply-link-wrench-system", "x"), PluginKind::link_wrench);
   EXPECT_EQ(kind_of_plugin("libMyOwn.so", "diff_drive"), PluginKind::unknown);
 }
 

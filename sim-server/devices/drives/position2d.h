@@ -5,13 +5,14 @@
 #include <array>
 #include <optional>
 
+#include "devices/drives/drive.h"
 #include "devices/drives/drive_train.h"
 #include "devices/drives/traction.h"
 #include "devices/sensors/sensor.h"
 
 namespace sim {
 
-class Position2d final : public Sensor {
+class Position2d final : public Sensor, public Drive {
  public:
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train);
   Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train);
@@ -24,7 +25,7 @@ class Position2d final : public Sensor {
   bool is_working() const override;
   void set_power(bool has_power) override { has_power_ = has_power; }
   // Out of order on purpose: follows this fraction of what is asked for; goes on as it was told last, whatever it is told.
-  void set_fault(double strength, bool is_halted);
+  void set_fault(double strength, bool is_halted) override;
 
  private:
   void measure(const Moment& moment) const override;

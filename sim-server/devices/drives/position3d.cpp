@@ -22,6 +22,27 @@ Eigen::Vector3d three(const std::optional<std::string>& text) {
 
 }  // namespace
 
+Eigen::Vector4d velocity_towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw, double acceleration) {
+  const double heading = yaw_of(pose);
+  const Eigen::Vector3d error = Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()) * (place - pose.translation());
+  Eigen::Vector4d v(0, 0, 0, 1.5 * wrapped(yaw - heading));
+  if (error.norm() > 1e-9) v.head<3>() = error.normalized() * std::min(1.5 * error.norm(), std::sqrt(acceleration * error.norm()));
+  return v;
+}
+
+void measure_body(const Physics& physics, ModelId model, const Eigen::Isometry3d& odometry_origin, shm::Position3dSample& out) {
+  const Eigen::Isometry3d pose = physics.model_pose(model);
+  const LinkId link = physics.canonical_link(model);
+  const Eigen::Vector3d v = pose.linear().transpose() * physics.point_velocity(link, pose.translation());
+  const Eigen::Vector3d w = pose.linear().transpose() * physics.link_twist(link).angular;
+  out.odometry = to_pose(odometry_origin * pose);
+  out.true_pose = to_pose(pose);
+  for (int i = 0; i < 3; ++i) {
+    out.velocity[i] = out.true_velocity[i] = v[i];
+    out.velocity[i + 3] = out.true_velocity[i + 3] = w[i];
+  }
+}
+
 MadeDevice Position3d::make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path) {
   const ModelDef& def = world.physics.def(model);
   shm::Position3dInfo info{};
@@ -49,17 +70,8 @@ Position3d::Position3d(Setup setup, const PluginDef& plugin, std::optional<Path>
   restart();
 }
 
-// As fast as allows to stop there.
-Eigen::Vector4d Position3d::towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const {
-  const double heading = yaw_of(pose);
-  const Eigen::Vector3d error = Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()) * (place - pose.translation());
-  Eigen::Vector4d v(0, 0, 0, 1.5 * wrapped(yaw - heading));
-  if (error.norm() > 1e-9) v.head<3>() = error.normalized() * std::min(1.5 * error.norm(), std::sqrt(max_acceleration_ * error.norm()));
-  return v;
-}
-
 Eigen::Vector4d Position3d::to_goal(const Eigen::Isometry3d& pose) const {
-  return towards(odometry_origin_ * pose, goal_->head<3>(), (*goal_)[3]);
+  return velocity_towards(odometry_origin_ * pose, goal_->head<3>(), (*goal_)[3], max_acceleration_);
 }
 
 void Position3d::move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity, double yaw_rate) {
@@ -112,10 +124,10 @@ void Position3d::before_step(const Moment& moment) {
   const Eigen::Isometry3d pose = physics().model_pose(model());
   const bool is_on_the_way = path_ && !is_commanded_;
   if (is_on_the_way && keep_to_path(moment, pose)) return;
-  Eigen::Vector4d wanted = goal_ ? to_goal(pose) : command_;
+  Eigen::Vector4d wanted = halted_at_ ? *halted_at_ : strength_ * (goal_ ? to_goal(pose) : command_);
   if (is_on_the_way) {
     const Eigen::Isometry3d back = path_->at(path_time_);
-    wanted = towards(pose, back.translation(), yaw_of(back));
+    wanted = velocity_towards(pose, back.translation(), yaw_of(back), max_acceleration_);
   }
   if (const double speed = wanted.head<3>().norm(); speed > max_speed_) wanted.head<3>() *= max_speed_ / speed;
   wanted[3] = std::clamp(wanted[3], -max_yaw_rate_, max_yaw_rate_);
@@ -128,18 +140,12 @@ void Position3d::before_step(const Moment& moment) {
 
 void Position3d::measure(const Moment&) const {
   auto& out = sample<shm::Position3dSample>();
-  const Eigen::Isometry3d pose = physics().model_pose(model());
-  const LinkId link = physics().canonical_link(model());
-  const Eigen::Vector3d v = pose.linear().transpose() * physics().point_velocity(link, pose.translation());
-  const Eigen::Vector3d w = pose.linear().transpose() * physics().link_twist(link).angular;
-  out.odometry = to_pose(odometry_origin_ * pose);
-  out.true_pose = to_pose(pose);
+  measure_body(physics(), model(), odometry_origin_, out);
   for (int i = 0; i < 3; ++i) {
-    out.velocity[i] = out.true_velocity[i] = v[i];
-    out.velocity[i + 3] = out.true_velocity[i + 3] = w[i];
     out.command[i] = velocity_[i];
     out.command[i + 3] = i == 2 ? velocity_[3] : 0;
   }
+  const Eigen::Map<const Eigen::Vector3d> v(out.velocity);
   out.stalled = velocity_.head<3>().norm() > 0.1 && v.norm() < 0.2 * velocity_.head<3>().norm() ? 1 : 0;
   out.motors_enabled = can_fly() ? 1 : 0;
   out.commanded = is_commanded_ ? 1 : 0;
@@ -158,6 +164,7 @@ void Position3d::restart() {
   command_ = initial_command_;
   velocity_.setZero();
   goal_.reset();
+  halted_at_.reset();
   path_time_ = 0;
   motors_enabled_ = has_power_ = true;
   odometry_origin_ = physics().model_pose(model()).inverse();
@@ -173,6 +180,12 @@ void Position3d::add_state_to(StateHash& hash) const {
 bool Position3d::set_odometry(const Eigen::Isometry3d& pose) {
   odometry_origin_ = pose * physics().model_pose(model()).inverse();
   return true;
+}
+
+void Position3d::set_fault(double strength, bool is_halted) {
+  strength_ = strength;
+  if (!is_halted) halted_at_.reset();
+  if (is_halted && !halted_at_) halted_at_ = velocity_;
 }
 
 // Without its motors it falls.

@@ -8,12 +8,19 @@
 // way points alone.
 #pragma once
 
+#include "devices/drives/drive.h"
 #include "devices/drives/path.h"
 #include "devices/sensors/sensor.h"
 
 namespace sim {
 
-class Position3d final : public Sensor {
+// The velocity vx vy vz and yaw rate, in the level frame of a body at `pose`, that leads it to a place and yaw [rad]: as fast as allows to
+// stop there with this acceleration.
+Eigen::Vector4d velocity_towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw, double acceleration);
+// Pose and velocity of the model as it is; the rest of the sample is the device's own.
+void measure_body(const Physics& physics, ModelId model, const Eigen::Isometry3d& odometry_origin, shm::Position3dSample& out);
+
+class Position3d final : public Sensor, public Drive {
  public:
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::optional<Path> path);
   Position3d(Setup setup, const PluginDef& plugin, std::optional<Path> path);
@@ -24,6 +31,8 @@ class Position3d final : public Sensor {
   bool set_motors(bool enabled) override;
   bool is_working() const override { return !velocity_.isZero(); }
   void set_power(bool has_power) override;
+  // Of its commands; the way points of a path are followed as they are.
+  void set_fault(double strength, bool is_halted) override;
 
  private:
   void measure(const Moment& moment) const override;
@@ -31,7 +40,6 @@ class Position3d final : public Sensor {
   void begin();
   bool can_fly() const { return motors_enabled_ && has_power_; }
   void add_state_to(StateHash& hash) const override;
-  Eigen::Vector4d towards(const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, double yaw) const;
   Eigen::Vector4d to_goal(const Eigen::Isometry3d& pose) const;
   bool keep_to_path(const Moment& moment, const Eigen::Isometry3d& pose);
   void move(const Eigen::Isometry3d& pose, const Eigen::Vector3d& velocity, double yaw_rate);
@@ -46,6 +54,8 @@ class Position3d final : public Sensor {
   double path_time_ = 0;  // how far along the path it is; stands still while it is off the path
   bool motors_enabled_ = true, has_power_ = true, is_commanded_ = false, is_kinematic_ = false;
   bool is_idle_ = false;  // nobody has commanded it yet
+  double strength_ = 1;
+  std::optional<Eigen::Vector4d> halted_at_;  // what was asked for then
 };
 
 }  // namespace sim

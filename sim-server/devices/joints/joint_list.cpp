@@ -25,10 +25,8 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  constexpr std::array others{PluginKind::joint_controller, PluginKind::detachable_joint, PluginKind::implied,
-                              PluginKind::unknown,          PluginKind::buoyancy,         PluginKind::label,
-                              PluginKind::thermal,          PluginKind::fiducial,         PluginKind::thermal_sensor};
-  return std::ranges::find(others, kind) == others.end();
+  return is_wheel_drive(kind) || kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower ||
+         kind == PluginKind::unsupported_drive;
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {

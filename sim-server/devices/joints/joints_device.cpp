@@ -21,6 +21,19 @@ std::string shortened(const std::string& text, std::size_t most) {
   return text.size() <= most ? text : std::string(cut) + text.substr(text.size() - most + cut.size());
 }
 
+// A propeller's limits are those of its speed and thrust.
+void list_propellers(std::vector<ListedJoint>& joints, const Propellers& propellers) {
+  for (ListedJoint& listed : joints) {
+    const auto place = propellers.find(listed.joint);
+    if (!place) continue;
+    const Propeller& propeller = propellers.all()[*place];
+    listed.setup.velocity = propeller.setup().most_speed;
+    listed.setup.effort = propeller.most_thrust();
+    listed.setup.is_compensated = false;
+    listed.gains_from = "propeller of " + propeller.setup().source;
+  }
+}
+
 std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<ListedJoint>& joints, const JointDynamics& dynamics) {
   std::vector<shm::Joint> all;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -48,26 +61,29 @@ std::vector<shm::Joint> describe(const ModelDef& model, const std::vector<Listed
 
 }  // namespace
 
-base::Result<std::unique_ptr<Device>> JointsDevice::make(DeviceWorld& world, ModelId model) {
+base::Result<std::unique_ptr<Device>> JointsDevice::make(DeviceWorld& world, ModelId model, std::shared_ptr<Propellers> propellers) {
   const ModelDef& def = world.physics.def(model);
   const auto joints = commandable_joints(def);
   if (joints.empty()) return std::unique_ptr<Device>();
   JointDynamics dynamics(def, joints);
   auto list = list_joints(def, joints, dynamics, world.world.physics.gravity.norm());
+  if (propellers) list_propellers(list, *propellers);
   shm::JointsInfo info{};
   info.rate = stated_rate(world, 0);
   shm::set_text(info.model, def.name);
   const auto described = describe(def, list, dynamics);
   auto setup = set_up(world, model, 0, shm::joints_spec(name_of(def), info, described), {});
   if (!setup) return setup.error();
-  return std::unique_ptr<Device>(std::make_unique<JointsDevice>(std::move(*setup), std::move(list), std::move(dynamics)));
+  return std::unique_ptr<Device>(
+      std::make_unique<JointsDevice>(std::move(*setup), std::move(list), std::move(dynamics), std::move(propellers)));
 }
 
-JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDynamics dynamics)
-    : Sensor(std::move(setup)), dynamics_(std::move(dynamics)) {
+JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDynamics dynamics, std::shared_ptr<Propellers> propellers)
+    : Sensor(std::move(setup)), dynamics_(std::move(dynamics)), propellers_(std::move(propellers)) {
   for (auto& listed : joints) {
     const JointServo servo(listed.setup);
     axes_.push_back({std::move(listed), servo});
+    if (propellers_) axes_.back().propeller = propellers_->find(axes_.back().listed.joint);
   }
   positions_.resize(axes_.size());
   gravity_.resize(axes_.size());
@@ -162,13 +178,14 @@ void JointsDevice::compute_gravity() {
 
 void JointsDevice::before_step(const Moment& moment) {
   iface().poll_commands([this](std::uint64_t owner, const shm::Command& command) { take(owner, command); });
+  if (is_active_) brake_lost_joints();
+  if (propellers_) turn_propellers(moment);
   if (!is_active_) return;
-  brake_lost_joints();
   for (std::size_t i = 0; i < axes_.size(); ++i) positions_[i] = state_of(axes_[i]).position;
   compute_gravity();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
-    if (!axis.servo.is_active()) continue;
+    if (!axis.servo.is_active() || axis.propeller) continue;
     const bool was_disabled = axis.servo.mode() == JointMode::disabled;
     const JointRow row = axis.servo.row(state_of(axis), axis.servo.wants_gravity() ? gravity_[i] : 0, moment.dt);
     if (!was_disabled && axis.servo.mode() == JointMode::disabled)
@@ -177,10 +194,22 @@ void JointsDevice::before_step(const Moment& moment) {
   }
 }
 
+// Those that a client commands follow it, the others the vehicle.
+void JointsDevice::turn_propellers(const Moment& moment) {
+  for (Axis& axis : axes_) {
+    if (!axis.propeller) continue;
+    Propeller& propeller = propellers_->all()[*axis.propeller];
+    Propellers::Wish wish = propellers_->wishes[*axis.propeller];
+    if (axis.owner != 0) wish = {axis.servo.mode() == JointMode::effort, axis.servo.is_turning() ? axis.servo.target() : 0};
+    wish.is_thrust ? propeller.set_thrust(wish.value) : propeller.set_speed(wish.value);
+    propeller.before_step(world().physics, world().world.physics.wind, moment.dt);
+  }
+}
+
 void JointsDevice::after_step(const Moment& moment) {
   if (!is_active_) return;
   for (Axis& axis : axes_) {
-    if (axis.servo.is_active()) axis.servo.follow(state_of(axis), moment.dt);
+    if (axis.servo.is_active() && !axis.propeller) axis.servo.follow(state_of(axis), moment.dt);
   }
 }
 
@@ -199,6 +228,11 @@ void JointsDevice::measure(const Moment&) const {
                  axis.servo.target(),
                  static_cast<std::uint32_t>(axis.servo.mode()),
                  static_cast<std::uint32_t>(axis.servo.status())};
+    if (!axis.propeller) continue;
+    const Propeller& propeller = propellers_->all()[*axis.propeller];
+    states[i].velocity = propeller.speed(physics());
+    states[i].effort = propeller.thrust();
+    states[i].status = now.velocity != 0 ? RTMSIM_JOINT_MOVING : RTMSIM_JOINT_IDLE;
   }
 }
 
@@ -214,7 +248,7 @@ base::Result<std::size_t> JointsDevice::find(std::string_view joint) const {
 void JointsDevice::set_fault(std::size_t joint, double strength, bool is_halted) {
   Axis& axis = axes_[joint];
   axis.strength = strength;
-  axis.servo.set_strength(has_power_ ? strength : 0);
+  apply_strength(axis);
   axis.is_halted = is_halted;
   if (is_halted || !axis.told) return;
   const Told told = *std::exchange(axis.told, std::nullopt);
@@ -224,7 +258,13 @@ void JointsDevice::set_fault(std::size_t joint, double strength, bool is_halted)
 
 void JointsDevice::set_power(bool has_power) {
   has_power_ = has_power;
-  for (Axis& axis : axes_) axis.servo.set_strength(has_power_ ? axis.strength : 0);
+  for (Axis& axis : axes_) apply_strength(axis);
+}
+
+void JointsDevice::apply_strength(Axis& axis) {
+  const double strength = has_power_ ? axis.strength : 0;
+  axis.servo.set_strength(strength);
+  if (axis.propeller) propellers_->all()[*axis.propeller].set_strength(strength);
 }
 
 void JointsDevice::restart() {
@@ -237,9 +277,14 @@ void JointsDevice::restart() {
     axis.was_within = true;
   }
   is_active_ = false;
+  for (std::size_t i = 0; propellers_ && i < propellers_->all().size(); ++i) {
+    propellers_->all()[i].reset();
+    propellers_->wishes[i] = {};
+  }
 }
 
 void JointsDevice::add_state_to(StateHash& hash) const {
+  for (std::size_t i = 0; propellers_ && i < propellers_->all().size(); ++i) propellers_->all()[i].add_to(hash);
   if (!is_active_) return;  // worlds whose joints nobody commands keep their hashes
   hash.add(writer().name());
   for (const Axis& axis : axes_) {

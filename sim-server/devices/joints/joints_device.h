@@ -1,12 +1,16 @@
 // The joints of a model that nothing else drives: commands of all clients, each for its own joints, go to controllers in the solver. A
 // joint that no client has commanded is as the file has it. When the client that commands a joint detaches or exits, the joint brakes. See
 // device.h for the thread rule.
+//
+// A joint that turns a propeller takes the speed of the propeller [rad/s] as velocity and its thrust [N] as effort, and has no position to
+// hold; all other orders stop it. While no client commands it, it does as the vehicle asks (vehicle3d.h).
 #pragma once
 
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "devices/drives/propeller.h"
 #include "devices/joints/joint_list.h"
 #include "devices/sensors/sensor.h"
 
@@ -15,10 +19,10 @@ namespace sim {
 class JointsDevice final : public Sensor {
  public:
   // Nothing, when the model has no such joints.
-  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model);
+  static base::Result<std::unique_ptr<Device>> make(DeviceWorld& world, ModelId model, std::shared_ptr<Propellers> propellers);
   static std::string name_of(const ModelDef& model) { return model.name + "::joints"; }
 
-  JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDynamics dynamics);
+  JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDynamics dynamics, std::shared_ptr<Propellers> propellers);
 
   bool follows_steps() const override { return true; }
   void before_step(const Moment& moment) override;
@@ -47,6 +51,7 @@ class JointsDevice final : public Sensor {
     bool was_within = true;   // of the limits, the last command; said once
     bool is_halted = false;
     std::optional<Told> told{};  // while it was halted
+    std::optional<std::size_t> propeller{};
   };
   void measure(const Moment& moment) const override;
   void restart() override;
@@ -60,9 +65,13 @@ class JointsDevice final : public Sensor {
   const std::string& name_of(const Axis& axis) const { return physics().def(model()).joints[axis.listed.joint].name; }
   void warn(const std::string& line) const;
 
+  void turn_propellers(const Moment& moment);
+  void apply_strength(Axis& axis);
+
   std::vector<Axis> axes_;
   JointDynamics dynamics_;
-  bool is_active_ = false;  // a joint has been commanded
+  std::shared_ptr<Propellers> propellers_;  // null: none
+  bool is_active_ = false;                  // a joint has been commanded
   bool has_power_ = true;
   std::uint32_t owners_seen_ = 0;
   std::vector<double> positions_, gravity_;

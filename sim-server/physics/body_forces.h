@@ -1,0 +1,81 @@
+// Forces of water and air on the bodies of a model before each step: wind, buoyancy, damping and added mass, lift and drag. Private to
+// physics/. The stepping thread of the shard.
+//
+// Added mass is not a mass for ODE, whose bodies have one number for all directions. Its force is that of the acceleration which the forces
+// of the last step give a body with both masses. What a change of the forces leaves over, against the momentum of the water, is paid in the
+// next step. So the step is stable however large the added mass is, and the body moves as one of both masses from the second step on.
+#pragma once
+
+#include <vector>
+
+#include "physics/blueprint.h"
+#include "physics/displacement.h"
+#include "physics/hash.h"
+#include "physics/ode.h"
+#include "physics/shapes.h"
+#include "world/body_force_defs.h"
+
+namespace sim {
+
+class JointInstance;
+
+class BodyForces {
+ public:
+  // The bodies are those of the assemblies. Collisions without a known volume add a line to `lost` where a fluid carries the model.
+  BodyForces(const Blueprint& blueprint, const PhysicsDef& physics, ShapeStore& shapes, std::vector<std::string>& lost);
+
+  bool is_empty() const { return !has_wind_ && floats_.empty() && waters_.empty() && wings_.empty(); }
+  // Water or air carries it: it never rests but where it touches something.
+  bool carries() const { return !floats_.empty() || !waters_.empty() || !wings_.empty(); }
+  void apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics);
+
+  // What added mass remembers of the last step.
+  struct Memory {
+    Vector6 velocity = Vector6::Zero(), effort = Vector6::Zero(), debt = Vector6::Zero();
+    bool has_velocity = false;
+  };
+  const std::vector<Memory>& memories() const { return memories_; }
+  void remember(const std::vector<Memory>& memories) { memories_ = memories; }
+  // Its bodies were put somewhere, or were given velocities.
+  void forget() { memories_.assign(memories_.size(), {}); }
+  void add_to(StateHash& hash) const;
+
+ private:
+  struct Float {
+    std::uint32_t assembly = 0;
+    Displacement shape;
+    Eigen::Isometry3d in_body;
+  };
+  struct Water {
+    std::uint32_t assembly = 0;
+    HydrodynamicsDef def;
+    Eigen::Isometry3d in_body;  // the link
+    double mass = 1;            // of the body
+    Eigen::Vector3d inertia{1, 1, 1};
+    Matrix6 own = Matrix6::Identity();      // mass of the body
+    Matrix6 of_both = Matrix6::Identity();  // inverse of that and the added mass
+    bool has_added = false;
+  };
+  struct Wing {
+    std::uint32_t assembly = 0;
+    WingDef def;
+    Eigen::Isometry3d in_body;
+  };
+
+  void add_floats(ShapeStore& shapes, std::vector<std::string>& lost);
+  void add_waters();
+  void blow(const std::vector<ode::Body>& bodies, const PhysicsDef& physics) const;
+  static void lift(const Float& one, dBodyID body, const FluidDef& fluid, const Eigen::Vector3d& gravity);
+  static void damp(const Water& water, Memory& memory, dBodyID body, double dt);
+  static Vector6 drag_along(const Water& water, Memory& memory, const Vector6& velocity, double dt);
+  static void fly(const Wing& wing, dBodyID body, double control, const Eigen::Vector3d& wind);
+
+  const Blueprint& blueprint_;
+  bool has_wind_ = false;
+  std::vector<Float> floats_;
+  std::vector<Water> waters_;
+  std::vector<Memory> memories_;  // of waters_
+  std::vector<Wing> wings_;
+};
+
+}  // namespace sim

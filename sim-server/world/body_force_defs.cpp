@@ -1,0 +1,175 @@
+#include "world/body_force_defs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "world/plugin_kind.h"
+#include "world/xml_values.h"
+
+namespace sim {
+namespace {
+
+constexpr std::string_view axes = "xyzkmn", rates = "UVWPQR";
+constexpr double largest = 1e9;  // of a coefficient
+
+template <class Parts>
+std::optional<std::uint32_t> part_named(const Parts& parts, const std::string& scope, const std::string& name) {
+  for (const std::string& full : {scope.empty() ? name : scope + "::" + name, name}) {
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].name == full) return i;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string about(const PluginDef& plugin) { return plugin.source + ": plugin " + base::in_quotes(plugin.name) + ": "; }
+
+// The link of <link_name>; else a line.
+std::optional<std::uint32_t> link_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
+  const auto name = plugin.parameters.text_of({"link_name"});
+  const auto link = name ? link_named(model, plugin.scope, *name) : std::nullopt;
+  if (!link) {
+    left_out.push_back(
+        about(plugin) +
+        (name ? "model " + base::in_quotes(model.name) + " has no link " + base::in_quotes(*name) : "expected a <link_name>") +
+        "; the plugin is left out");
+  }
+  return link;
+}
+
+// Its place among the letters, or -1.
+int place_of(std::string_view letters, char letter) {
+  const auto place = letters.find(letter);
+  return place == std::string_view::npos ? -1 : static_cast<int>(place);
+}
+
+// "xU", "xDotU", "xUV", "xUabsV". False: it is none of these.
+bool take_coefficient(HydrodynamicsDef& def, std::string_view name, double value) {
+  const int to = name.empty() ? -1 : place_of(axes, name.front());
+  const int last = name.empty() ? -1 : place_of(rates, name.back());
+  if (to < 0 || last < 0) return false;
+  name.remove_prefix(1), name.remove_suffix(1);
+  if (name.empty()) return def.linear(to, last) = value, true;
+  if (name == "Dot") return def.added(to, last) = value, true;
+  const int by = place_of(rates, name.front());
+  name.remove_prefix(1);
+  if (by < 0 || !(name.empty() || name == "abs")) return false;
+  // <xUU> was <xUabsU> once. Without the amount it would push a body that goes backwards.
+  if (value != 0) def.quadratic.push_back({to, by, last, !name.empty() || by == last, value});
+  return true;
+}
+
+std::optional<HydrodynamicsDef> hydrodynamics_of_plugin(const ModelDef& model, const PluginDef& plugin,
+                                                        std::vector<std::string>& left_out) {
+  const auto link = link_of_plugin(model, plugin, left_out);
+  if (!link) return std::nullopt;
+  HydrodynamicsDef def;
+  def.link = *link;
+  for (const ParameterNode& child : plugin.parameters.children) {
+    const auto value = base::parse_number(child.text);
+    if (!take_coefficient(def, child.name, value.value_or(0)) || (value && std::abs(*value) <= largest)) continue;
+    left_out.push_back(about(plugin) + "<" + child.name + "> must be a number within 1e9, got " + base::in_quotes(child.text) +
+                       "; the plugin is left out");
+    return std::nullopt;
+  }
+  def.current = vector_of(plugin.parameters, "default_current", def.current);
+  def.has_coriolis = !plugin.parameters.bool_of({"disable_coriolis"}).value_or(false);
+  if (plugin.parameters.bool_of({"disable_added_mass"}).value_or(false)) def.added.setZero();
+  return def;
+}
+
+std::optional<WingDef> wing_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
+  const auto link = link_of_plugin(model, plugin, left_out);
+  if (!link) return std::nullopt;
+  const ParameterNode& p = plugin.parameters;
+  WingDef wing;
+  wing.link = *link;
+  const auto take = [&](double& number, const char* name) { number = std::clamp(p.number_of({name}).value_or(number), -largest, largest); };
+  take(wing.a0, "a0"), take(wing.stall, "alpha_stall");
+  take(wing.lift, "cla"), take(wing.drag, "cda");
+  take(wing.lift_stalled, "cla_stall"), take(wing.drag_stalled, "cda_stall");
+  take(wing.area, "area"), take(wing.density, "air_density");
+  take(wing.lift_by_joint, "control_joint_rad_to_cl");
+  wing.is_radial = p.bool_of({"radial_symmetry"}).value_or(false);
+  wing.center = vector_of(p, "cp", wing.center);
+  const auto direction = [&](Eigen::Vector3d& out, const char* name) {
+    const Eigen::Vector3d along = vector_of(p, name, out);
+    if (along.norm() > 1e-9) out = along.normalized();
+  };
+  direction(wing.forward, "forward"), direction(wing.upward, "upward");
+  if (const auto name = p.text_of({"control_joint_name"})) {
+    wing.control_joint = joint_named(model, plugin.scope, *name);
+    if (!wing.control_joint) {
+      left_out.push_back(about(plugin) + "model " + base::in_quotes(model.name) + " has no joint " + base::in_quotes(*name) +
+                         "; the plugin is left out");
+      return std::nullopt;
+    }
+  }
+  return wing;
+}
+
+template <class Def, class Read>
+std::vector<Def> all_of(const ModelDef& model, PluginKind kind, std::vector<std::string>& left_out, const Read& read) {
+  std::vector<Def> all;
+  for (const PluginDef& plugin : model.plugins) {
+    if (kind_of(plugin) != kind) continue;
+    if (const auto def = read(model, plugin, left_out)) all.push_back(*def);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> link_named(const ModelDef& model, const std::string& scope, const std::string& name) {
+  return part_named(model.links, scope, name);
+}
+std::optional<std::uint32_t> joint_named(const ModelDef& model, const std::string& scope, const std::string& name) {
+  return part_named(model.joints, scope, name);
+}
+
+Eigen::Vector3d vector_of(const ParameterNode& parameters, std::string_view name, const Eigen::Vector3d& fallback) {
+  const auto text = parameters.text_of({name});
+  const auto numbers = text ? parse_numbers(*text) : std::nullopt;
+  if (!numbers || numbers->size() != 3) return fallback;
+  const Eigen::Vector3d vector((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+  return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest ? vector : fallback;
+}
+
+std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world) {
+  std::vector<StandingWrench> wrenches;
+  for (const PluginDef& plugin : world.plugins) {
+    if (kind_of(plugin) != PluginKind::link_wrench) continue;
+    for (const ParameterNode& one : plugin.parameters.children) {
+      if (one.name != "persistent") continue;
+      wrenches.push_back({one.text_of({"entity_name"}).value_or(""), vector_of(one, "force", Eigen::Vector3d::Zero()),
+                          vector_of(one, "torque", Eigen::Vector3d::Zero()), plugin.source});
+    }
+  }
+  return wrenches;
+}
+
+std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out) {
+  auto all = all_of<HydrodynamicsDef>(model, PluginKind::hydrodynamics, left_out, hydrodynamics_of_plugin);
+  for (std::uint32_t link = 0; link < model.links.size(); ++link) {
+    const LinkDef& def = model.links[link];
+    if (!def.added_mass) continue;
+    auto of_link = std::find_if(all.begin(), all.end(), [link](const HydrodynamicsDef& one) { return one.link == link; });
+    if (of_link == all.end()) {
+      all.emplace_back();
+      of_link = all.end() - 1;
+      of_link->link = link;
+    }
+    // From the centre of mass to the origin.
+    Matrix6 to_center = Matrix6::Identity();
+    const Eigen::Vector3d& c = def.center_of_mass;
+    to_center.topRightCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
+    of_link->added -= to_center.transpose() * *def.added_mass * to_center;
+  }
+  return all;
+}
+std::vector<WingDef> wings_of(const ModelDef& model, std::vector<std::string>& left_out) {
+  return all_of<WingDef>(model, PluginKind::lift_drag, left_out, wing_of_plugin);
+}
+
+}  // namespace sim
