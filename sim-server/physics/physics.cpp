@@ -424,6 +424,10 @@ void Physics::set_row(JointId joint, const JointRow& row) {
   if (JointInstance* instance = model.joint(joint.joint)) model.set_row(*instance, row);
 }
 
+void Physics::set_belt(LinkId link, const Belt& belt) {
+  if (belt.axis.allFinite() && std::isfinite(belt.speed)) impl_->at(link.model).set_belt(link.link, belt);
+}
+
 std::optional<Wrench> Physics::joint_load(JointId joint) const {
   const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
   return instance == nullptr ? std::nullopt : instance->load();

@@ -44,6 +44,13 @@ int group_of(const SensorDef& sensor) {
   }
 }
 
+// Of plugins whose iface is not called after them.
+const char* own_name(PluginKind kind) {
+  if (kind == PluginKind::odometry_publisher) return "odometry";
+  if (kind == PluginKind::joint_state_publisher) return "joint_states";
+  return "position3d";
+}
+
 class Namer {
  public:
   Namer(const ModelDef& model, Complaints& complaints) : model_(model), complaints_(complaints) {}
@@ -58,10 +65,13 @@ class Namer {
 
   void name(PluginDef& plugin) {
     const PluginKind kind = kind_of(plugin);
-    if (is_wheel_drive(kind)) plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
+    if (has_own_drive(model_, plugin))
+      plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     // One way of moving for each model, so one name.
     if (kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower)
       plugin.iface = scoped_and_short(plugin.scope, "position3d");
+    if (kind == PluginKind::odometry_publisher || kind == PluginKind::joint_state_publisher)
+      plugin.iface = scoped_and_short(plugin.scope, own_name(kind));
   }
 
   // Rings have taken their names before the others come.
@@ -123,7 +133,8 @@ std::string iface_name(const ModelDef& model, const SensorDef& sensor) {
 }
 
 std::string iface_name(const ModelDef& model, const PluginDef& plugin) {
-  return after(model, plugin.iface, plugin.scope, is_wheel_drive(kind_of(plugin)) ? iface_own_name(plugin) : "position3d");
+  const PluginKind kind = kind_of(plugin);
+  return after(model, plugin.iface, plugin.scope, is_wheel_drive(kind) ? iface_own_name(plugin) : own_name(kind));
 }
 
 }  // namespace sim

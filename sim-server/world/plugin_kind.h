@@ -12,9 +12,18 @@ enum class PluginKind {
   velocity_control,     // the model moves as it is told, without wheels
   trajectory_follower,  // the model follows way points
   joint_controller,     // joints keep the position or speed that it starts with until they are commanded
-  unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
-  buoyancy,             // of the world
-  implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
+  unsupported_drive,    // drives with other wheels or none: rotors, ...
+  // On land.
+  mecanum_drive,          // four wheels with rollers at 45 degrees
+  omni_drive,             // wheels with rollers that stand square to them, wherever they are
+  tricycle_drive,         // one wheel is driven and steered
+  tracked_vehicle,        // tracks on both sides
+  track_controller,       // of a track of a vehicle, or of a belt
+  wheel_slip,             // wheels slip the more the faster they turn
+  odometry_publisher,     // the true pose, with noise
+  joint_state_publisher,  // angles of joints that nobody commands
+  buoyancy,               // of the world
+  implied,                // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
 
@@ -25,6 +34,11 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
 
 // Those with an iface position2d.
 bool is_wheel_drive(PluginKind kind);
+
+// Of a model: false for a controller of a track that a vehicle's own plugin drives, which only gives limits.
+bool has_own_drive(const ModelDef& model, const PluginDef& plugin);
+// The links that a vehicle's plugin calls so (left_track, right_track): of gz-sim in an element <link>, of Gazebo classic as the text.
+std::vector<std::string> tracks_of(const PluginDef& vehicle, std::string_view side);
 
 // What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
 // a class.

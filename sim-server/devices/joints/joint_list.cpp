@@ -1,6 +1,7 @@
 #include "devices/joints/joint_list.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -24,7 +25,11 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  return kind != PluginKind::joint_controller && kind != PluginKind::implied && kind != PluginKind::unknown && kind != PluginKind::buoyancy;
+  using enum PluginKind;
+  constexpr std::array others{joint_controller,     implied,          unknown,    buoyancy,
+                              tracked_vehicle,      track_controller, wheel_slip, odometry_publisher,
+                              joint_state_publisher};
+  return std::find(others.begin(), others.end(), kind) == others.end();
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {
