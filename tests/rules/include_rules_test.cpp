@@ -71,6 +71,7 @@ const std::vector<Layer> layers = {
     {"clients/examples", {"rtm", "coil", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
     {"clients/box-stacker", {"rtm", "coil", "stubs"}},
+    {"clients/way-points", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "base"}},
     {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
