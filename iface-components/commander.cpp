@@ -41,13 +41,13 @@ void Commander::detach() {
   is_driving_ = false;
 }
 
-void Commander::received(std::span<const double> velocity) {
+void Commander::received(std::span<const double> velocity, shm::CommandKind kind) {
   {
     const auto mine = turn_.take();
     run_of_newest_ = run();
   }
   arrivals_.fetch_add(1, std::memory_order_acq_rel);
-  if (!in_simulated_time_.load(std::memory_order_acquire)) drive(velocity);  // pairs with set_simulated_time
+  if (!in_simulated_time_.load(std::memory_order_acquire)) drive(velocity, kind);  // pairs with set_simulated_time
 }
 
 Commander::Run Commander::run() {
@@ -61,7 +61,7 @@ bool Commander::is_newest_of_this_run() {
   return run_of_newest_ == run();
 }
 
-void Commander::drive(std::span<const double> velocity) {
+void Commander::drive(std::span<const double> velocity, shm::CommandKind kind) {
   std::string problem;
   {
     const auto mine = turn_.take();
@@ -70,7 +70,7 @@ void Commander::drive(std::span<const double> velocity) {
     const bool is_plausible = std::ranges::all_of(velocity, [](double v) { return std::abs(v) <= fastest; });
     const auto done =
         is_plausible
-            ? robot->command(shm::CommandKind::velocity, velocity)
+            ? robot->command(kind, velocity)
             : base::Error{"velocity (" + text_of(velocity) + "): each must be a number of at most 1e6 m/s or rad/s; it is ignored"};
     is_driving_ = is_driving_ || done.ok();
     if (!done && !refused_) problem = done.error().message;

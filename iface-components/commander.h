@@ -18,9 +18,9 @@ class Commander {
   base::Result<void> attach(const Device& device);
   void detach();
 
-  // A velocity has come, in the order of the iface's command values. Drives at once in real time.
-  void received(std::span<const double> velocity);
-  void drive(std::span<const double> velocity);
+  // A velocity (or another command of that kind) has come, in the order of the iface's command values. Drives at once in real time.
+  void received(std::span<const double> velocity, shm::CommandKind kind = shm::CommandKind::velocity);
+  void drive(std::span<const double> velocity, shm::CommandKind kind = shm::CommandKind::velocity);
   // True when the robot had been driven.
   bool stop();
   // False: the simulator has been reset, or is another one, since the newest velocity came. A context of this process has thrown it away

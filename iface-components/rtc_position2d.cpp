@@ -17,6 +17,7 @@ RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position2d),
       pose_in_("pose_control", pose_),
       heading_in_("heading_control", heading_),
+      car_in_("carlike_control", car_),
       odometry_out_("odometry", odometry_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
       odometry_service_([this](const RTC::Pose2D& pose) {
@@ -30,10 +31,14 @@ RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   addVelocityPort();
   addInPort("pose_control", pose_in_);
   addInPort("heading_control", heading_in_);
+  addInPort("carlike_control", car_in_);
   addOutPort("odometry", odometry_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
   service_port().registerProvider("odometry", "RTC::Odometry2D", odometry_service_);
   service_port().registerProvider("velocity_control", "RTC::VelocityControl2D", velocity_service_);
+  service_port().registerProvider("pose_control", "RTC::PoseControl2D", pose_service_);
+  service_port().registerProvider("heading_control", "RTC::HeadingControl2D", heading_service_);
+  service_port().registerProvider("carlike_control", "RTC::CarlikeControl", car_service_);
   bindDrive();
   return RTC::RTC_OK;
 }
@@ -42,7 +47,11 @@ void RTCPosition2d::describe(const shm::Iface& robot) {
   DriveComponent::describe(robot);
   const auto& info = robot_ = robot.info<shm::Position2dInfo>();
   odometry_service_.describe(iface::to_geometry(info.pose, info.size));
-  velocity_service_.describe(iface::to_geometry_2d(info.pose, info.size));
+  const RTC::Geometry2D geometry = iface::to_geometry_2d(info.pose, info.size);
+  velocity_service_.describe(geometry);
+  pose_service_.describe(geometry);
+  heading_service_.describe(geometry);
+  car_service_.describe(geometry);
 }
 
 void RTCPosition2d::detaching() {
@@ -64,6 +73,7 @@ void RTCPosition2d::give_up() {
 
 // Values that are no numbers are ignored with a line: the robot goes on as before.
 void RTCPosition2d::read_goals() {
+  read_car();
   bool has_pose = false, has_heading = false;
   while (pose_in_.isNew()) has_pose = pose_in_.read() || has_pose;
   while (heading_in_.isNew()) has_heading = heading_in_.read() || has_heading;
@@ -88,6 +98,20 @@ void RTCPosition2d::read_goals() {
       RTC_WARN(("pose_control: expected finite numbers, got %g m, %g m and %g rad; ignored", position.x, position.y, angle));
     }
   }
+}
+
+void RTCPosition2d::read_car() {
+  bool has_car = false;
+  while (car_in_.isNew()) has_car = car_in_.read() || has_car;
+  if (!has_car) return;
+  if (robot_.drive != RTMSIM_DRIVE_CAR) {
+    RTC_WARN(("carlike_control: the drive is not steered; ignored"));
+    return;
+  }
+  const double values[] = {car_.data.speed, car_.data.steeringAngle};
+  goal_ = {};
+  commander().received(values, shm::CommandKind::car);  // in real time it drives
+  if (iface::in_simulated_time()) commander().drive(values, shm::CommandKind::car);
 }
 
 void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample) {

@@ -1,10 +1,15 @@
 // RTCPosition2d: drives a position2d iface by the InPort `velocity` (RTC::TimedVelocity2D), and bridges its state to the OutPorts
 // `odometry` (RTC::TimedPose2D) and `actual_velocity` (RTC::TimedVelocity2D). The InPort `pose_control` (RTC::TimedPose2D) takes a pose of
-// the odometry to drive to, `heading_control` (RTC::TimedSpeedHeading2D) a speed and a heading to keep; the newest command of the three
-// counts. Service port `drive` (RTC::Odometry2D, RTC::VelocityControl2D). Configuration and threads: see drive_component.h.
+// the odometry to drive to, `heading_control` (RTC::TimedSpeedHeading2D) a speed and a heading to keep, `carlike_control`
+// (RTC::TimedCarlike) the speed and the steering angle of a car; the newest command of the four counts. Service port `drive`
+// (RTC::Odometry2D, RTC::VelocityControl2D, RTC::PoseControl2D, RTC::HeadingControl2D, RTC::CarlikeControl). Configuration and threads: see
+// drive_component.h.
 #pragma once
 
+#include <rtm/ext/CarlikeControlSkel.h>
+#include <rtm/ext/HeadingControlSkel.h>
 #include <rtm/ext/OdometrySkel.h>
+#include <rtm/ext/PoseControlSkel.h>
 #include <rtm/ext/VelocityControlSkel.h>
 
 #include <rtm/DataOutPort.h>
@@ -34,6 +39,7 @@ class RTCPosition2d : public iface::DriveComponent<RTC::TimedVelocity2D> {
     double speed = 0, angle = 0;  // [m/s], [rad]
   };
   void command(const shm::PlanarPose& velocity);
+  void read_car();
   // Of a goal that is no longer where it was. The robot stops.
   void give_up();
   void go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample);
@@ -46,12 +52,17 @@ class RTCPosition2d : public iface::DriveComponent<RTC::TimedVelocity2D> {
   RTC::InPort<RTC::TimedPose2D> pose_in_;
   RTC::TimedSpeedHeading2D heading_;
   RTC::InPort<RTC::TimedSpeedHeading2D> heading_in_;
+  RTC::TimedCarlike car_;
+  RTC::InPort<RTC::TimedCarlike> car_in_;
   RTC::TimedPose2D odometry_;
   RTC::OutPort<RTC::TimedPose2D> odometry_out_;
   RTC::TimedVelocity2D actual_velocity_;
   RTC::OutPort<RTC::TimedVelocity2D> actual_velocity_out_;
   iface::OdometryService<POA_RTC::Odometry2D, RTC::Pose2D> odometry_service_;
   iface::GeometryService<POA_RTC::VelocityControl2D, RTC::Geometry2D> velocity_service_;
+  iface::GeometryService<POA_RTC::PoseControl2D, RTC::Geometry2D> pose_service_;
+  iface::GeometryService<POA_RTC::HeadingControl2D, RTC::Geometry2D> heading_service_;
+  iface::GeometryService<POA_RTC::CarlikeControl, RTC::Geometry2D> car_service_;
 };
 
 extern "C" {

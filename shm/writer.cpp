@@ -10,6 +10,9 @@
 
 namespace shm {
 
+// Those above are of newer clients: not obeyed.
+static constexpr std::uint32_t last_command_kind = RTMSIM_COMMAND_CHARGE;
+
 IfaceWriter::IfaceWriter(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 IfaceWriter::~IfaceWriter() { impl_->segment.close(); }
@@ -93,7 +96,7 @@ CommandChange IfaceWriter::poll_command(Command& command) {
   impl.seen_command = latest;
   if (owner == 0) return impl.lose();  // commanded and went before we looked
   const bool is_finite = std::ranges::all_of(impl.fresh_values, [](double value) { return std::isfinite(value); });
-  if (!is_finite || fresh.kind > RTMSIM_COMMAND_CHARGE) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  if (!is_finite || fresh.kind > last_command_kind) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.commander = owner;
   impl.commander_lease = index;
   impl.command_values.swap(impl.fresh_values);
@@ -117,7 +120,7 @@ bool IfaceWriter::poll_commands(const TakeCommand& take) {
     CommandHead fresh;
     if (owner == 0 || load(lease.command.sequence) == seen || !impl.read_command(index, fresh)) return;
     if (std::exchange(seen, fresh.sequence) == fresh.sequence) return;
-    if (fresh.kind > RTMSIM_COMMAND_CHARGE || !std::ranges::all_of(impl.fresh_values, [](double v) { return std::isfinite(v); })) return;
+    if (fresh.kind > last_command_kind || !std::ranges::all_of(impl.fresh_values, [](double v) { return std::isfinite(v); })) return;
     take(owner, {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.fresh_values});
   };
   for (std::size_t i = 0; i < count; ++i) {

@@ -21,6 +21,9 @@ foreach(system_and_seconds "pond 60" "quadcopter 45")
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/vehicles.py ${rtse} ${PROJECT_SOURCE_DIR} ${system_and_seconds})
   set_tests_properties(integration.the_${system}_is_alike_in_5_runs PROPERTIES LABELS integration TIMEOUT 900)
 endforeach()
+add_test(NAME integration.a_mecanum_base_goes_round_alike_in_three_runs
+  COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/mecanum.py ${rtse} ${PROJECT_SOURCE_DIR})
+set_tests_properties(integration.a_mecanum_base_goes_round_alike_in_three_runs PROPERTIES LABELS integration TIMEOUT 600)
 add_test(NAME integration.free_run_in_real_time
   COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/free_run.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
 add_test(NAME integration.the_farm_is_seen_from_the_helicopter

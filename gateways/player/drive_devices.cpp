@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t data_state = 1;
 
 namespace commands {
-constexpr std::uint8_t velocity = 1, pose = 2, heading = 4;
+constexpr std::uint8_t velocity = 1, pose = 2, car = 3, heading = 4;
 }
 namespace request2d {
 constexpr std::uint8_t get_geometry = 1, motor_power = 2, velocity_mode = 3, position_mode = 4, set_odometry = 5, reset_odometry = 6,
@@ -122,6 +122,7 @@ std::optional<Answer> Position2d::answer(std::uint8_t subtype, const std::string
 void Position2d::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
   if (subtype == commands::pose) return drive_to(client, payload);
   if (subtype == commands::heading) return keep_heading(client, payload);
+  if (subtype == commands::car) return steer(client, payload);
   if (subtype != commands::velocity) return;
   const auto command = player::decode_velocity2d(payload);
   if (!command) return;
@@ -153,6 +154,13 @@ void Position2d::keep_heading(Client& client, const std::string& payload) {
   take_over(client);
   pursuer_ = &client;
   goal_ = Heading{command->speed, command->angle};
+}
+
+// Speed and steering angle.
+void Position2d::steer(Client& client, const std::string& payload) {
+  const auto command = player::decode_heading_command(payload);  // the same two numbers
+  if (!command || !is_car()) return;
+  if (tell(client, shm::CommandKind::car, std::array{command->speed, command->angle})) end_goal();
 }
 
 void Position2d::go_on(const shm::Position2dSample& sample) {

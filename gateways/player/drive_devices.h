@@ -32,7 +32,8 @@ class Drive : public Device {
 
 // Also drives to poses of its odometry and keeps headings: one velocity per sample, as shm/pose_control.h says. That ends with any other
 // command, also one from elsewhere; when the client lets go; and when the odometry is set or the world is reset, since the goal is no
-// longer where it was. Cars, which can't turn on the spot, keep headings only.
+// longer where it was. Cars, which can't turn on the spot, keep headings only; they alone
+// take car-like commands.
 class Position2d final : public Drive {
  public:
   using Drive::Drive;
@@ -50,6 +51,7 @@ class Position2d final : public Drive {
       {player::Type::request, 8, ""},
       {player::Type::command, 1, "velocity"},
       {player::Type::command, 2, "pose"},
+      {player::Type::command, 3, "car-like"},
       {player::Type::command, 4, "velocity with heading"},
   });
 
@@ -70,6 +72,7 @@ class Position2d final : public Drive {
   bool is_car() const;
   void drive_to(Client& client, const std::string& payload);
   void keep_heading(Client& client, const std::string& payload);
+  void steer(Client& client, const std::string& payload);
   void go_on(const shm::Position2dSample& sample);
   void end_goal();
   // Ends the goal, if there is one, and stops the robot.

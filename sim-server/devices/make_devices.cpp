@@ -1,6 +1,8 @@
 // Which sensors and plugins become which devices.
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 #include "base/text.h"
@@ -11,6 +13,7 @@
 #include "devices/drives/vehicle3d.h"
 #include "devices/joints/joints_device.h"
 #include "devices/sensors/camera.h"
+#include "devices/sensors/published_states.h"
 #include "devices/sensors/sensor_makers.h"
 #include "devices/sensors/sonar.h"
 #include "devices/sensors/truth.h"
@@ -159,17 +162,49 @@ bool can_drive(Makers& m, const PluginDef& plugin, const std::vector<std::uint32
   return true;
 }
 
+MadeTrain (*train_maker_of(PluginKind kind))(Physics&, ModelId, const PluginDef&) {
+  switch (kind) {
+    case PluginKind::car_drive:
+    case PluginKind::tricycle_drive:
+      return make_car;
+    case PluginKind::mecanum_drive:
+    case PluginKind::omni_drive:
+      return make_rollers;
+    case PluginKind::tracked_vehicle:
+    case PluginKind::track_controller:
+      return make_tracks;
+    default:
+      return make_wheel_pairs;
+  }
+}
+
+// Of several such plugins of a (nested) model the first has the iface.
+void make_once(Makers& m, const PluginDef& plugin, MadeDevice (*make)(DeviceWorld&, ModelId, const PluginDef&)) {
+  for (const auto& other : m.world.physics.def(m.model).plugins) {
+    if (&other == &plugin) break;
+    if (other.scope == plugin.scope && kind_of(other) == kind_of(plugin)) return;
+  }
+  auto made = make(m.world, m.model, plugin);
+  if (!made || *made) m.take(std::move(made));
+}
+
 void make_plugin(Makers& m, const PluginDef& plugin) {
   const ModelDef& def = m.world.physics.def(m.model);
-  const bool has_iface = is_wheel_drive(kind_of(plugin)) || kind_of(plugin) == PluginKind::velocity_control ||
-                         kind_of(plugin) == PluginKind::trajectory_follower;
+  using enum PluginKind;
+  constexpr std::array others{velocity_control, trajectory_follower, odometry_publisher, joint_state_publisher};
+  const bool has_iface = has_own_drive(def, plugin) || std::find(others.begin(), others.end(), kind_of(plugin)) != others.end();
   if (has_iface && !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
   switch (kind_of(plugin)) {
     case PluginKind::differential_drive:
     case PluginKind::skid_steer_drive:
-    case PluginKind::car_drive: {
-      const auto make_train = kind_of(plugin) == PluginKind::car_drive ? make_car : make_wheel_pairs;
-      auto train = make_train(m.world.physics, m.model, plugin);
+    case PluginKind::car_drive:
+    case PluginKind::tricycle_drive:
+    case PluginKind::mecanum_drive:
+    case PluginKind::omni_drive:
+    case PluginKind::tracked_vehicle:
+    case PluginKind::track_controller: {
+      if (!has_own_drive(def, plugin)) return;
+      auto train = train_maker_of(kind_of(plugin))(m.world.physics, m.model, plugin);
       // A drive that is wrong is the world's fault, not the machine's: said, left out.
       if (!train) return m.left_out.push_back(train.error().message);
       if (!can_drive(m, plugin, (*train)->joints())) return;
@@ -188,6 +223,11 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       return m.take(Position3d::make(m.world, m.model, plugin, path_of(m, plugin.scope)));
     case PluginKind::trajectory_follower:
       return make_follower(m, plugin);
+    case PluginKind::odometry_publisher:
+      return make_once(m, plugin, make_odometry);
+    case PluginKind::joint_state_publisher:
+      return make_once(m, plugin, make_joint_states);
+    case PluginKind::wheel_slip:  // of the contacts
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
     case PluginKind::detachable_joint:  // Attachments have it

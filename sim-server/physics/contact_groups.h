@@ -29,6 +29,9 @@ class ContactGroups {
   // An exact solution for the models that touch this one makes no sense (solver_choice.h).
   void note_ill_conditioned(const ModelInstance& model) { members_[root(model.group_place)].size.is_ill_conditioned = true; }
 
+  // A belt moves it: its energy is not limited.
+  void note_driven(const ModelInstance& model) { members_[root(model.group_place)].is_exempt = true; }
+
   // After the contacts: which models go to the iterative solver (ModelInstance::is_iterative), and which are tried with TreeSolver first
   // (is_tree_solved).
   void share_out();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/ode.h"
 
@@ -76,6 +77,70 @@ bool wheel_friction_direction(const SurfaceDef& wheel, dGeomID geom, const dSurf
   const Eigen::Vector3d direction = (is_of_axle ? n.cross(rolling) : rolling).normalized();
   out[0] = direction.x(), out[1] = direction.y(), out[2] = direction.z();
   return true;
+}
+
+namespace {
+
+// Along the contact's plane. False when nothing is left of it there.
+bool lay(const Eigen::Vector3d& direction, dContact& contact) {
+  const Eigen::Vector3d normal = ode::vector(contact.geom.normal);
+  const Eigen::Vector3d in_plane = direction - normal * normal.dot(direction);
+  if (!(in_plane.norm() > 1e-6)) return false;
+  const Eigen::Vector3d unit = in_plane.normalized();
+  for (int k = 0; k < 3; ++k) contact.fdir1[k] = unit[k];
+  contact.surface.mode |= dContactFDir1;
+  return true;
+}
+
+}  // namespace
+
+void set_friction_direction(const ShapeInstance& a, const ShapeInstance& b, dContact& contact) {
+  for (const ShapeInstance* shape : {&a, &b}) {
+    const FrictionFrame* frame = shape->friction_frame.get();
+    if (frame == nullptr) continue;
+    static_cast<void>(
+        lay(frame->body != nullptr ? ode::quaternion(dBodyGetQuaternion(frame->body)) * frame->direction : frame->in_world, contact));
+    return;
+  }
+  const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;
+  const dReal* normal = contact.geom.normal;
+  if (wheel != nullptr ? wheel_friction_direction(*wheel->surface, wheel->geom.id(), contact.surface, normal, contact.fdir1)
+                       : friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), normal, contact.fdir1))
+    contact.surface.mode |= dContactFDir1;
+}
+
+void run_belt(const Belt& belt, bool is_of_a, dContact& contact) {
+  constexpr double beside = 0.1;                                                     // sine of the angle between its axis and the normal
+  const Eigen::Vector3d up = ode::vector(contact.geom.normal) * (is_of_a ? 1 : -1);  // into the belt's link
+  const Eigen::Vector3d forward = belt.axis.cross(up);
+  if (!(forward.norm() > beside)) return;
+  Eigen::Vector3d direction = forward;
+  if (belt.center) direction = up.cross(ode::vector(contact.geom.pos) - *belt.center);
+  if (!lay(direction, contact) && !lay(forward, contact)) return;
+  if (belt.is_free) {
+    contact.surface.mu = 0;
+    return;
+  }
+  const double speed = ode::vector(contact.fdir1).dot(forward) < 0 ? -belt.speed : belt.speed;
+  contact.surface.mode |= dContactMotion1;
+  contact.surface.motion1 = is_of_a ? speed : -speed;
+}
+
+void let_slip(const WheelSlip& slip, dContact& contact) {
+  const Eigen::Vector3d axle = ode::quaternion(dBodyGetQuaternion(slip.wheel)) * slip.axle;
+  const Eigen::Vector3d rate =
+      ode::vector(dBodyGetAngularVel(slip.wheel)) -
+      (slip.carrier_body != nullptr ? ode::vector(dBodyGetAngularVel(slip.carrier_body)) : Eigen::Vector3d(0, 0, 0));
+  const double spin = std::abs(axle.dot(rate));
+  const Eigen::Vector3d rolling = axle.cross(ode::vector(contact.geom.normal));
+  if (!(spin > 1e-6) || !(rolling.norm() > 0.1)) return;
+  dSurfaceParameters& surface = contact.surface;
+  if (slip.is_rolling_first) std::swap(surface.mu, surface.mu2);
+  static_cast<void>(lay(ode::vector(contact.geom.normal).cross(rolling), contact));
+  surface.slip1 = spin * slip.lateral;
+  surface.slip2 = spin * slip.longitudinal;
+  if (surface.slip1 > 0) surface.mode |= dContactSlip1;
+  if (surface.slip2 > 0) surface.mode |= dContactSlip2;
 }
 
 double allowed_depth(const SurfaceDef& a, const SurfaceDef& b, const dSurfaceParameters& combined) {

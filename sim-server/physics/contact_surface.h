@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "physics/shapes.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -25,6 +26,16 @@ bool friction_direction(const SurfaceDef& a, dGeomID geom_a, const SurfaceDef& b
 // The same for a wheel. A direction that turns with the wheel means the one in which it rolls, and nothing where the friction is the same
 // in all directions; without any, the first axis is the axle's, as Gazebo has it for a robot that looks along x.
 bool wheel_friction_direction(const SurfaceDef& wheel, dGeomID geom, const dSurfaceParameters& combined, const dReal* normal, dReal* out);
+
+// The first friction axis of a contact: the shape's or the wheel's, or, of surfaces that give a frame for it, that of another link. Without
+// any, the contact stays as it is.
+void set_friction_direction(const ShapeInstance& a, const ShapeInstance& b, dContact& contact);
+
+// A belt moves what touches it along with its surface. `is_of_a`: it is that of the first shape. Nothing where the contact is beside it.
+void run_belt(const Belt& belt, bool is_of_a, dContact& contact);
+
+// A wheel slips along its axle and in the direction in which it rolls, the more the faster it turns; standing it does not.
+void let_slip(const WheelSlip& slip, dContact& contact);
 
 // How deep two bodies may be in each other before their contact pushes back: the smaller of what their surfaces allow, as Gazebo has it,
 // whatever <contact_surface_layer> says. What bounces is let in by a hair more, or it would part from what it rests on in every other step.

@@ -61,15 +61,72 @@ void ModelInstance::make_shapes(ShapeStore& store, std::vector<std::string>& los
       shape->collision = c;
       shape->assembly = assembly;
       shape->is_wheel = !is_anchored && is_wheel(model, model.links[l], collision);
+      if (!collision.surface.friction_link.empty()) add_direction(*shape, collision.surface);
+      if (!model.slips.empty()) add_slip(*shape);
       shape_in_body_.push_back(blueprint_->link_in_body[l] * collision.pose * geom_in_collision(collision.geometry));
       shapes_.push_back(std::move(*shape));
     }
   }
 }
 
+// A direction in the frame of another link, which it turns with.
+void ModelInstance::add_direction(ShapeInstance& shape, const SurfaceDef& surface) {
+  const ModelDef& model = *blueprint_->model;
+  for (std::size_t l = 0; l < model.links.size(); ++l) {
+    if (model.links[l].name != surface.friction_link) continue;
+    shape.friction_frame = std::make_unique<FrictionFrame>();
+    shape.friction_frame->assembly = blueprint_->assembly_of_link[l];
+    shape.friction_frame->direction = blueprint_->link_in_body[l].linear() * *surface.friction_direction;
+    return;
+  }
+}
+
+void ModelInstance::add_slip(ShapeInstance& shape) {
+  const ModelDef& model = *blueprint_->model;
+  const LinkDef& link = model.links[shape.link.link];
+  const auto def = std::find_if(model.slips.begin(), model.slips.end(), [&](const WheelSlipDef& one) { return one.link == link.name; });
+  const auto joint = std::find_if(model.joints.begin(), model.joints.end(),
+                                  [&](const JointDef& one) { return one.child == link.name && !one.axes.empty(); });
+  if (def == model.slips.end() || joint == model.joints.end()) return;
+  shape.slip = std::make_unique<WheelSlip>();
+  WheelSlip& slip = *shape.slip;
+  slip.carrier = assembly_of(joint->parent);
+  const Eigen::Vector3d axle = joint->pose_in_model.linear() * joint->axes.back().xyz;
+  slip.axle = blueprint_->link_in_body[shape.link.link].linear() * link.pose.linear().transpose() * axle;
+  slip.lateral = def->lateral * def->radius / def->normal_force;
+  slip.longitudinal = def->longitudinal * def->radius / def->normal_force;
+  const auto& first = link.collisions[shape.collision].surface.friction_direction;
+  slip.is_rolling_first = first && shape.is_wheel && std::abs(first->z()) <= 0.7;
+}
+
+// After the bodies were made.
+void ModelInstance::find_bodies_of(ShapeInstance& shape) const {
+  if (FrictionFrame* frame = shape.friction_frame.get()) frame->body = bodies_[frame->assembly].id();
+  if (WheelSlip* slip = shape.slip.get()) {
+    slip->wheel = bodies_[shape.assembly].id();
+    slip->carrier_body = slip->carrier < 0 ? nullptr : bodies_[static_cast<std::size_t>(slip->carrier)].id();
+  }
+}
+
+void ModelInstance::set_belt(std::uint32_t link, const Belt& belt) {
+  has_running_belt_ = false;
+  bool lets_go = false;
+  for (auto& shape : shapes_) {
+    if (shape.link.link == link) {
+      if (!shape.belt) shape.belt = std::make_unique<Belt>();
+      lets_go = lets_go || (belt.is_free && !shape.belt->is_free);
+      *shape.belt = belt;
+    }
+    has_running_belt_ = has_running_belt_ || (shape.belt && shape.belt->speed != 0);
+  }
+  if ((belt.speed != 0 || lets_go) && !bodies_.empty()) wake();
+}
+
 void ModelInstance::place_anchored() {
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
     ShapeInstance& shape = shapes_[i];
+    if (FrictionFrame* frame = shape.friction_frame.get())
+      frame->in_world = base_.linear() * blueprint_->assemblies[frame->assembly].in_model.linear() * frame->direction;
     if (!blueprint_->assemblies[shape.assembly].is_anchored) continue;
     const Eigen::Isometry3d pose = base_ * blueprint_->assemblies[shape.assembly].in_model * shape_in_body_[i];
     if (dGeomGetClass(shape.geom.id()) == dPlaneClass) {
@@ -146,6 +203,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
     if (body == nullptr) continue;
     dGeomSetBody(shapes_[i].geom.id(), body);
     ode::set_offset(shapes_[i].geom.id(), shape_in_body_[i]);
+    find_bodies_of(shapes_[i]);
   }
   has_forces_ = !forces_.is_empty();
   forces_.forget();
@@ -253,9 +311,10 @@ void ModelInstance::take_initial_velocities() {
 void ModelInstance::set_drive(JointInstance& joint, int axis, double velocity, double effort) {
   const auto& drive = joint.drive(axis);
   if (drive.is_set && drive.velocity == velocity && drive.effort == effort) return;
+  const bool lets_go = drive.is_set && drive.effort > 0 && effort == 0;  // what it held rolls away
   joint.set_drive(axis, velocity, effort);
   has_forces_ = has_forces_ || joint.has_forces();
-  if (velocity != 0 && effort > 0) wake();
+  if ((velocity != 0 && effort > 0) || lets_go) wake();
 }
 
 void ModelInstance::set_row(JointInstance& joint, const JointRow& row) {
@@ -343,7 +402,11 @@ bool ModelInstance::lies_still(double dt, bool touches) {
   constexpr double slow = 0.004, slow_turn = 0.01, slow_time = 0.5;
   constexpr double still = 0.0005, still_turn = 0.001, still_time = 0.1;
   constexpr std::uint32_t least_steps = 10;
+<<<<<<< HEAD
   if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches)) return false;
+=======
+  if (!blueprint_->model->allow_auto_disable || lies_on_belt) return false;
+>>>>>>> k2
   double speed = 0, turn = 0;
   for (const auto& handle : bodies_) {
     if (handle.id() == nullptr) continue;
@@ -417,9 +480,10 @@ bool ModelInstance::has_stand_ins() const {
 }
 
 bool ModelInstance::has_moving_drive() const {
-  return std::any_of(joints_.begin(), joints_.end(), [](const JointInstance& joint) {
-    return (joint.drive(0).velocity != 0 && joint.drive(0).effort > 0) || (joint.drive(1).velocity != 0 && joint.drive(1).effort > 0);
-  });
+  return has_running_belt_ || std::any_of(joints_.begin(), joints_.end(), [](const JointInstance& joint) {
+           return (joint.drive(0).velocity != 0 && joint.drive(0).effort > 0) ||
+                  (joint.drive(1).velocity != 0 && joint.drive(1).effort > 0);
+         });
 }
 
 void ModelInstance::slow_down(double factor) {

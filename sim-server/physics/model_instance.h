@@ -93,6 +93,7 @@ class ModelInstance {
   bool make_kinematic();
   void set_drive(JointInstance& joint, int axis, double velocity, double effort);
   void set_row(JointInstance& joint, const JointRow& row);
+  void set_belt(std::uint32_t link, const Belt& belt);
   // Joints that follow another one, by indexes into ModelDef::joints.
   struct Mimic {
     std::uint32_t follower = 0, leader = 0;
@@ -127,12 +128,16 @@ class ModelInstance {
   std::vector<std::uint32_t> near_statics;
   std::vector<Contact> contacts, previous_contacts;
   std::uint64_t contacts_so_far = 0;
+  bool lies_on_belt = false;  // of another model, in this step
   bool records_forces = false;
   std::optional<std::uint64_t> put_back_at;  // the step in which it last left the numbers
 
  private:
   void make_shapes(ShapeStore& shapes, std::vector<std::string>& lost);
   void place_anchored();
+  void add_direction(ShapeInstance& shape, const SurfaceDef& surface);
+  void add_slip(ShapeInstance& shape);
+  void find_bodies_of(ShapeInstance& shape) const;
   void make_body(dWorldID world, const Assembly& assembly);
   void make_joint(dWorldID world, const PhysicsDef& physics, std::uint32_t index);
   void take_initial_positions();
@@ -156,6 +161,7 @@ class ModelInstance {
   bool has_forces_ = false;
   bool has_followed_ = false;  // joints
   bool has_rows_ = false;      // controllers
+  bool has_running_belt_ = false;
   std::vector<Mimic> mimics_;
   bool gravity_ = true, is_kinematic_ = false;
   std::uint32_t still_steps_ = 0, slow_steps_ = 0;  // since it was faster

@@ -482,6 +482,10 @@ bool Physics::are_attached(LinkId first, LinkId second) const {
                              [&](const auto& weld) { return weld->joins(first.model, piece_of(first), second.model, piece_of(second)); });
 }
 
+void Physics::set_belt(LinkId link, const Belt& belt) {
+  if (belt.axis.allFinite() && std::isfinite(belt.speed)) impl_->at(link.model).set_belt(link.link, belt);
+}
+
 std::optional<Wrench> Physics::joint_load(JointId joint) const {
   const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
   return instance == nullptr ? std::nullopt : instance->load();

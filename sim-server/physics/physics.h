@@ -53,6 +53,14 @@ struct JointRow {
   bool keeps_awake = false;  // the model does not fall asleep in this step
 };
 
+// A belt that runs round a link: what it touches is moved along with its surface. In the world.
+struct Belt {
+  Eigen::Vector3d axis{0, 1, 0};          // about which it turns: below it the link goes forward, along axis x (up)
+  double speed = 0;                       // of its surface [m/s]; forward is positive
+  std::optional<Eigen::Vector3d> center;  // of the curve that a vehicle drives: friction then acts along the circle about it
+  bool is_free = false;                   // no motor: it gives way along its direction
+};
+
 // On a body, with the torque about a place in the world.
 struct Wrench {
   Eigen::Vector3d force{0, 0, 0}, torque{0, 0, 0};
@@ -140,6 +148,8 @@ class Physics {
   base::Result<void> attach(LinkId first, LinkId second);
   void detach(LinkId first, LinkId second);
   bool are_attached(LinkId first, LinkId second) const;
+  // Of a link, until it is set again. The link and what lies on it stay awake while it runs.
+  void set_belt(LinkId link, const Belt& belt);
 
   // What the joint put on its child link in the last step, about the child body's centre of mass. Measured for joints with sensors or
   // <provide_feedback>; empty for others and for joints that are no more than a weld.

@@ -47,6 +47,23 @@ struct Aabb {
 };
 Aabb box_of(dGeomID geom);
 
+// Where the first friction axis of a shape comes from, when it is not its own frame.
+struct FrictionFrame {
+  std::uint32_t assembly = 0;  // of the model, that the direction turns with
+  dBodyID body = nullptr;      // of that; null: it never moves
+  Eigen::Vector3d direction;   // in the body
+  Eigen::Vector3d in_world;    // where it never moves
+};
+
+// How a wheel slips, by its speed.
+struct WheelSlip {
+  int carrier = -1;  // the assembly of the model that its joint hangs on; -1: the world
+  dBodyID wheel = nullptr, carrier_body = nullptr;
+  Eigen::Vector3d axle{0, 1, 0};         // in the wheel's body
+  double lateral = 0, longitudinal = 0;  // [m/s per N] for each rad/s
+  bool is_rolling_first = false;         // the surface's own first direction is the one in which it rolls
+};
+
 struct ShapeInstance {
   ode::Geom geom;
   LinkId link;
@@ -58,6 +75,9 @@ struct ShapeInstance {
   Aabb box;
   std::uint32_t partners = 0, deep_partners = 0;  // moving shapes that it touches in this step, and those that it is much too deep in
   std::shared_ptr<void> data;
+  std::unique_ptr<FrictionFrame> friction_frame;  // of few
+  std::unique_ptr<WheelSlip> slip;
+  std::unique_ptr<Belt> belt;
 };
 
 // The shape without a place and an owner. Fails when a file cannot be read.

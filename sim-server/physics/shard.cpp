@@ -148,6 +148,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
     has_many_joints_ = has_many_joints_ || model->is_for_tree();
     std::swap(model->contacts, model->previous_contacts);
     model->contacts.clear();
+    model->lies_on_belt = false;
     for (auto& shape : model->shapes()) shape.partners = shape.deep_partners = 0;
     groups_.add(*model);
   }
@@ -346,8 +347,9 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
     count = dCollide(a.geom.id(), b.geom.id(), most, found, sizeof(dContactGeom));
   }
   if (count <= 0) return;
-  if (a.is_wheel) count = merge_under_wheel(a.geom.id(), found, count);
-  if (b.is_wheel) count = merge_under_wheel(b.geom.id(), found, count);
+  const bool a_rolls = a.is_wheel && !a.belt, b_rolls = b.is_wheel && !b.belt;
+  if (a_rolls) count = merge_under_wheel(a.geom.id(), found, count);
+  if (b_rolls) count = merge_under_wheel(b.geom.id(), found, count);
   count = reduce(found, count);
   if (model_b != nullptr) {
     ++a.partners, ++b.partners;
@@ -359,7 +361,7 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
   }
   if (partners >= most_partners / 2) count = 1;
   dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
-  if (a.is_wheel || b.is_wheel) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);
+  if (a_rolls || b_rolls) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);
   const bool has_force = !a.surface->collide_without_contact && !b.surface->collide_without_contact;
   for (int i = 0; i < count; ++i) {
     if (std::isfinite(found[i].depth) && std::isfinite(found[i].normal[0]) && std::isfinite(found[i].pos[0])) {
@@ -403,10 +405,13 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
     joint_contact.geom.depth = std::min(joint_contact.geom.depth, (bounces ? bounce_correction : hard_correction) * physics_.step / erp_);
   // What meshes are pushed apart with stays in their motion.
   if (is_mesh(a) && is_mesh(b)) joint_contact.geom.depth = std::min(joint_contact.geom.depth, mesh_correction * physics_.step / erp_);
-  const ShapeInstance* wheel = a.is_wheel ? &a : b.is_wheel ? &b : nullptr;
-  if (wheel != nullptr ? wheel_friction_direction(*wheel->surface, wheel->geom.id(), surface, geometry.normal, joint_contact.fdir1)
-                       : friction_direction(*a.surface, a.geom.id(), *b.surface, b.geom.id(), geometry.normal, joint_contact.fdir1)) {
-    joint_contact.surface.mode |= dContactFDir1;
+  set_friction_direction(a, b, joint_contact);
+  if (a.slip || b.slip) let_slip(a.slip ? *a.slip : *b.slip, joint_contact);
+  if (a.belt || b.belt) {
+    run_belt(a.belt ? *a.belt : *b.belt, a.belt != nullptr, joint_contact);
+    if (b.belt && b.link.model != model_a.id()) model_a.lies_on_belt = true;
+    if (a.belt && model_b != nullptr && model_b != &model_a) model_b->lies_on_belt = true;
+    if ((joint_contact.surface.mode & dContactMotion1) != 0) groups_.note_driven(model_a);
   }
   const double weight_a = can_be_pushed(a.geom.id()) ? model_a.mass() * gravity_ : 0;
   const double weight_b = model_b != nullptr && can_be_pushed(b.geom.id()) ? model_b->mass() * gravity_ : 0;

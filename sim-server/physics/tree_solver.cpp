@@ -212,16 +212,17 @@ void TreeSolver::add_contact(const MadeContact& made) {
   add_contact_row(touch, normal, push);
   auto [first, second] = plane_of(normal);
   if (has(dContactFDir1)) first = ode::vector(made.contact.fdir1), second = normal.cross(first);
-  const auto rub = [&](const Eigen::Vector3d& line, double mu, bool has_slip, double slip, bool is_of_normal) {
+  const auto rub = [&](const Eigen::Vector3d& line, double mu, bool has_slip, double slip, bool is_of_normal, double motion = 0) {
     if (!(mu > 0)) return;
     ContactRow row;
+    row.target = motion;
     row.give = has_slip ? slip : dWorldGetCFM(world_);
     const bool is_bounded = mu != dInfinity;
     row.low = is_bounded ? -mu * physics_.step : -infinite, row.high = -row.low;
     if (is_bounded && is_of_normal) row.normal = normal_row, row.friction = mu;
     add_contact_row(touch, line, row);
   };
-  rub(first, surface.mu, has(dContactSlip1), surface.slip1, has(dContactApprox1_1));
+  rub(first, surface.mu, has(dContactSlip1), surface.slip1, has(dContactApprox1_1), has(dContactMotion1) ? surface.motion1 : 0);
   rub(second, has(dContactMu2) ? surface.mu2 : surface.mu, has(dContactSlip2), surface.slip2, has(dContactApprox1_2));
   mark_touched(touch.a);
   mark_touched(touch.b);

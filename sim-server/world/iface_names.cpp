@@ -47,6 +47,13 @@ int group_of(const SensorDef& sensor) {
   }
 }
 
+// Of plugins whose iface is not called after them.
+const char* own_name(PluginKind kind) {
+  if (kind == PluginKind::odometry_publisher) return "odometry";
+  if (kind == PluginKind::joint_state_publisher) return "joint_states";
+  return "position3d";
+}
+
 class Namer {
  public:
   Namer(const ModelDef& model, Complaints& complaints) : model_(model), complaints_(complaints) {}
@@ -61,12 +68,15 @@ class Namer {
 
   void name(PluginDef& plugin) {
     const PluginKind kind = kind_of(plugin);
-    if (is_wheel_drive(kind)) plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
+    if (has_own_drive(model_, plugin))
+      plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     if (kind == PluginKind::battery)
       plugin.iface = take(batteries_, "battery " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     // One way of moving for each model, so one name.
     if (kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower)
       plugin.iface = scoped_and_short(plugin.scope, "position3d");
+    if (kind == PluginKind::odometry_publisher || kind == PluginKind::joint_state_publisher)
+      plugin.iface = scoped_and_short(plugin.scope, own_name(kind));
   }
 
   // Rings have taken their names before the others come.
@@ -130,7 +140,7 @@ std::string iface_name(const ModelDef& model, const SensorDef& sensor) {
 std::string iface_name(const ModelDef& model, const PluginDef& plugin) {
   const PluginKind kind = kind_of(plugin);
   const bool has_own_name = is_wheel_drive(kind) || kind == PluginKind::battery;
-  return after(model, plugin.iface, plugin.scope, has_own_name ? iface_own_name(plugin) : "position3d");
+  return after(model, plugin.iface, plugin.scope, has_own_name ? iface_own_name(plugin) : own_name(kind));
 }
 
 }  // namespace sim

@@ -14,6 +14,7 @@
 #include "world/repairs.h"
 #include "world/shape_inertia.h"
 #include "world/visual_builder.h"
+#include "world/wheel_slip_builder.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
 
@@ -223,6 +224,7 @@ class ModelBuilder {
     for (pugi::xml_node plugin : node.children("plugin")) {
       model_.plugins.push_back(build_plugin(plugin, scope, context_));
       if (is_imu_without_sensor(model_.plugins.back())) add_imu(plugin, model_.plugins.back());
+      if (kind_of(model_.plugins.back()) == PluginKind::wheel_slip) add_wheel_slips(plugin, scope, model_, context_.complaints);
     }
     for (pugi::xml_node gripper : node.children("gripper")) add_gripper(gripper, scope, model_, context_.complaints);
     for (pugi::xml_node plugin : node.children("plugin")) add_grasp_fix(plugin, scope, model_, context_.complaints);
@@ -303,6 +305,7 @@ class ModelBuilder {
     for (pugi::xml_node child : node.children("collision")) {
       if (auto built = build_collision(child, context_)) {
         built->pose = pose_in_link(child, built->pose, pose->second, resolved);
+        find_friction_frame(child, built->surface, scope, resolved);
         link.collisions.push_back(std::move(*built));
       }
     }
@@ -347,6 +350,41 @@ class ModelBuilder {
     return std::any_of(plugins.begin(), plugins.end(), [](pugi::xml_node plugin) {
       return kind_of_plugin(plugin.attribute("filename").value(), plugin.attribute("name").value()) == PluginKind::battery;
     });
+  }
+
+  // The link that a frame moves with; empty: there is none of that name.
+  static std::string link_of_frame(pugi::xml_node model, std::string name, const ResolvedModel& resolved) {
+    constexpr int longest_chain = 100;
+    for (int i = 0; i < longest_chain; ++i) {
+      if (resolved.links.contains(name)) return name;
+      if (name == "__model__" || name.empty()) return resolved.canonical_link;
+      const pugi::xml_node frame = model.find_child_by_attribute("frame", "name", name.c_str());
+      if (!frame) return {};
+      name = frame.attribute("attached_to").value();
+    }
+    return {};
+  }
+
+  // <fdir1 gz:expressed_in="...">: the direction keeps to that frame, where it would turn with a wheel.
+  void find_friction_frame(pugi::xml_node collision, SurfaceDef& surface, const std::string& scope, const ResolvedModel& resolved) {
+    if (!surface.friction_direction) return;
+    const pugi::xml_node direction = child_at(collision, "surface/friction/ode/fdir1");
+    for (const char* key : {"gz:expressed_in", "ignition:expressed_in", "expressed_in"}) {
+      const std::string frame = direction.attribute(key).value();
+      if (frame.empty()) continue;
+      const std::string link = link_of_frame(collision.parent().parent(), frame, resolved);
+      const auto place = resolved.links.find(link);
+      if (place == resolved.links.end()) {
+        context_.complaints.warn(direction, "<fdir1> of " + describe_in_context(collision) + " is expressed in " + base::in_quotes(frame) +
+                                                ", which is no link or frame of the model; it is taken in the frame of the collision");
+        return;
+      }
+      const auto own = resolved.frames.find(frame);
+      if (own != resolved.frames.end())
+        surface.friction_direction = place->second.linear().transpose() * own->second.linear() * *surface.friction_direction;
+      surface.friction_link = scoped(scope, link);
+      return;
+    }
   }
 
   // The specification's 1 kg m^2 makes a wheel of 0.1 kg turn like one of 100 kg.

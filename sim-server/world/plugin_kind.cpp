@@ -1,6 +1,7 @@
 #include "world/plugin_kind.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 
@@ -44,12 +45,17 @@ const std::map<std::string_view, PluginKind>& table() {
       {"roscontrol", joint_controller},
       {"ignroscontrol", joint_controller},
       {"detachablejoint", detachable_joint},
-      {"mecanumdrive", unsupported_drive},
-      {"tricycledrive", unsupported_drive},
-      {"omniwheeldrive", unsupported_drive},
-      {"trackedvehicle", unsupported_drive},
-      {"trackcontroller", unsupported_drive},
-      {"simpletrackedvehicle", unsupported_drive},
+      {"mecanumdrive", mecanum_drive},
+      {"omnidrive", omni_drive},
+      {"omniwheeldrive", omni_drive},
+      {"omnidirectionaldrive", omni_drive},
+      {"tricycledrive", tricycle_drive},
+      {"trackedvehicle", tracked_vehicle},
+      {"simpletrackedvehicle", tracked_vehicle},
+      {"trackcontroller", track_controller},
+      {"wheelslip", wheel_slip},
+      {"odometrypublisher", odometry_publisher},
+      {"jointstatepublisher", joint_state_publisher},
       {"kinematicskidsteerdrive", unsupported_drive},
       {"vehicle", unsupported_drive},
       {"cartdemo", unsupported_drive},
@@ -81,12 +87,10 @@ const std::map<std::string_view, PluginKind>& table() {
       {"logicalcamera", implied},
       {"forcetorque", implied},
       {"posepublisher", implied},
-      {"jointstatepublisher", implied},
       {"graspfix", implied},
       {"mimicjoint", implied},
       {"roboticsgroupgazebomimicjoint", implied},
       {"roboticsgroupupatrasgazebomimicjoint", implied},
-      {"odometrypublisher", implied},
       {"laser", implied},
       {"laserscan", implied},
       {"gpulaser", implied},
@@ -160,7 +164,33 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name) {
 }
 
 bool is_wheel_drive(PluginKind kind) {
-  return kind == PluginKind::differential_drive || kind == PluginKind::skid_steer_drive || kind == PluginKind::car_drive;
+  using enum PluginKind;
+  constexpr std::array kinds{differential_drive, skid_steer_drive, car_drive,       mecanum_drive,
+                             omni_drive,         tricycle_drive,   tracked_vehicle, track_controller};
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+std::vector<std::string> tracks_of(const PluginDef& vehicle, std::string_view side) {
+  std::vector<std::string> links;
+  for (const ParameterNode& track : vehicle.parameters.children) {
+    if (track.name != side) continue;
+    const ParameterNode* link = track.child("link");
+    links.push_back(link != nullptr ? link->text : track.text);
+  }
+  return links;
+}
+
+bool has_own_drive(const ModelDef& model, const PluginDef& plugin) {
+  if (kind_of(plugin) != PluginKind::track_controller) return is_wheel_drive(kind_of(plugin));
+  const std::string link = plugin.parameters.text_of({"link"}).value_or("");
+  return std::none_of(model.plugins.begin(), model.plugins.end(), [&](const PluginDef& vehicle) {
+    if (kind_of(vehicle) != PluginKind::tracked_vehicle || vehicle.scope != plugin.scope) return false;
+    for (const char* side : {"left_track", "right_track"}) {
+      const auto tracks = tracks_of(vehicle, side);
+      if (std::find(tracks.begin(), tracks.end(), link) != tracks.end()) return true;
+    }
+    return false;
+  });
 }
 
 bool is_propeller(PluginKind kind) { return kind == PluginKind::thruster || kind == PluginKind::rotor; }

@@ -13,7 +13,7 @@ enum class PluginKind {
   trajectory_follower,  // the model follows way points
   joint_controller,     // joints keep the position or speed that it starts with until they are commanded
   detachable_joint,     // a link of the model holds one of another model
-  unsupported_drive,    // drives with other wheels or none: mecanum, tricycle, tracks, rotors, ...
+  unsupported_drive,    // drives with other wheels or none
   buoyancy,             // of the world
   battery,              // drives the motors of the model until it is empty
   label,                // of a model, visual or actor: what cameras that segment call it
@@ -27,7 +27,16 @@ enum class PluginKind {
   multicopter_control,  // turns rotors as a commanded velocity needs
   joint_force,          // a joint that clients command by its effort
   link_wrench,          // of the world: forces that stay
-  implied,              // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
+  // On land.
+  mecanum_drive,          // four wheels with rollers at 45 degrees
+  omni_drive,             // wheels with rollers that stand square to them, wherever they are
+  tricycle_drive,         // one wheel is driven and steered
+  tracked_vehicle,        // tracks on both sides
+  track_controller,       // of a track of a vehicle, or of a belt
+  wheel_slip,             // wheels slip the more the faster they turn
+  odometry_publisher,     // the true pose, with noise
+  joint_state_publisher,  // angles of joints that nobody commands
+  implied,                // what it does is done by the simulator anyway (sensors, physics, clock, user interface of Gazebo)
   unknown,
 };
 
@@ -41,6 +50,10 @@ bool is_wheel_drive(PluginKind kind);
 
 // Propellers: their joints take commands like others, and push.
 bool is_propeller(PluginKind kind);
+// Of a model: false for a controller of a track that a vehicle's own plugin drives, which only gives limits.
+bool has_own_drive(const ModelDef& model, const PluginDef& plugin);
+// The links that a vehicle's plugin calls so (left_track, right_track): of gz-sim in an element <link>, of Gazebo classic as the text.
+std::vector<std::string> tracks_of(const PluginDef& vehicle, std::string_view side);
 
 // What the iface of a drive plugin is called after model and scope: the plugin's name, or "position2d" when that is missing or the name of
 // a class. Of a battery: its <battery_name>, or "battery".

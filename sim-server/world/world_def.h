@@ -104,7 +104,8 @@ std::optional<SolidProperties> solid_properties(const GeometryDef& geometry);
 struct SurfaceDef {
   double mu = 1;                                      // along friction_direction (or the first tangent); infinite allowed
   double mu2 = 1;                                     // across it
-  std::optional<Eigen::Vector3d> friction_direction;  // in the collision's frame
+  std::optional<Eigen::Vector3d> friction_direction;  // in the collision's frame, or in that of friction_link
+  std::string friction_link;                          // of the model, whose frame the direction turns with; empty: the collision
   double slip1 = 0, slip2 = 0;
   double torsional_mu = 0;
   double restitution = 0;
@@ -277,6 +278,14 @@ struct NestedDef {
   std::uint32_t link = 0;                                  // index into ModelDef::links
 };
 
+// A wheel that slips by its speed, as the plugin WheelSlip says: in each direction by compliance * rim speed / force for each newton.
+struct WheelSlipDef {
+  std::string link;                      // of the model; a joint turns it
+  double lateral = 0, longitudinal = 0;  // compliances
+  double normal_force = 0;               // [N]; positive
+  double radius = 0;                     // [m]; positive
+};
+
 // A top-level model with all its nested ones folded in: their links, joints, sensors and plugins carry a scope.
 struct ModelDef {
   std::string name;                                        // unique in the world
@@ -291,6 +300,7 @@ struct ModelDef {
   std::vector<PluginDef> plugins;
   std::vector<GripperDef> grippers;
   std::vector<GainsDef> gains;
+  std::vector<WheelSlipDef> slips;
   std::vector<NestedDef> nested;  // those with links, from the outermost in the order of the file
   std::string source;             // "file:line" where the model comes from
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "devices/drives/traction.h"
+#include "support/land_robots.h"
 #include "support/simulation_fixture.h"
 #include "world/world_loader.h"
 
@@ -40,6 +41,7 @@ struct Robot {
   bool is_car = false;
   bool gives_inertias = true;
   bool has_bare_wheels = false;  // without <inertial>
+  std::string whole = {};        // the text of the model, of robots with other wheels
 };
 
 std::string inertial(double mass, double ixx, double iyy, double izz, const std::string& pose = "0 0 0 0 0 0") {
@@ -58,6 +60,7 @@ std::string surface(const std::string& friction, const std::string& contact = ""
 }
 
 std::string text_of(const Robot& r) {
+  if (!r.whole.empty()) return r.whole;
   const double z = r.clearance + r.height / 2;
   const std::string middle = fmt::format("{} 0 {} 0 0 0", r.body_x, z);
   std::string text = "<model name='robot'><link name='base'>" +
@@ -239,8 +242,27 @@ Robot car() {
   return r;
 }
 
+// Robots of tests/support, called as all of these.
+Robot other(const std::string& name, std::string text) {
+  Robot r{name, "", 1, 0, 0, 0, 0, 0, {}, {}, {}, {}};
+  const std::size_t begin = text.find("name='") + 6;
+  r.whole = text.replace(begin, text.find('\'', begin) - begin, "robot");
+  return r;
+}
+
 const std::vector<Robot>& robots() {
-  static const std::vector<Robot> all{burger(), waffle(), turtlebot4(), pioneer2dx(), pioneer3at(), husky(), create(), pr2_base(), car()};
+  static const std::vector<Robot> all{burger(),
+                                      waffle(),
+                                      turtlebot4(),
+                                      pioneer2dx(),
+                                      pioneer3at(),
+                                      husky(),
+                                      create(),
+                                      pr2_base(),
+                                      car(),
+                                      other("mecanum base", mecanum_text()),
+                                      other("omni base", omni_text()),
+                                      other("tracked robot", tracked_text())};
   return all;
 }
 
@@ -318,7 +340,7 @@ TEST_P(RealRobots, travel_and_turn_as_far_as_they_are_told_wherever_they_look) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, RealRobots, ::testing::Range<std::size_t>(0, 9), [](const auto& parameter) {
+INSTANTIATE_TEST_SUITE_P(Table, RealRobots, ::testing::Range<std::size_t>(0, 12), [](const auto& parameter) {
   std::string name = robots()[parameter.param].name;
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;

@@ -77,6 +77,7 @@ const std::vector<Layer> layers = {
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
     {"clients/box-stacker", {"rtm", "coil", "stubs"}},
     {"clients/warehouse", {"rtm", "coil", "stubs"}},
+    {"clients/way-points", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "dds", "ros", "base"}},
     {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
@@ -166,10 +167,10 @@ bool is_everybodys(const std::string& header) {
   static const Names folders = {"sys/", "linux/", "netinet/", "net/", "arpa/", "bits/"};
   if (std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) { return header.starts_with(folder); })) return true;
   static const Names names = {
-      "cxxabi.h", "dirent.h",    "dlfcn.h",   "elf.h",       "errno.h",  "execinfo.h", "fcntl.h",     "fnmatch.h", "getopt.h",
-      "glob.h",   "grp.h",       "ifaddrs.h", "immintrin.h", "limits.h", "link.h",     "locale.h",    "malloc.h",  "math.h",
-      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h", "regex.h", "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
-      "stddef.h", "stdint.h",    "stdio.h",   "stdlib.h",    "string.h", "termios.h",  "time.h",      "unistd.h",  "xmmintrin.h",
+      "cxxabi.h", "dirent.h",  "dlfcn.h",     "elf.h",     "errno.h", "execinfo.h",  "fcntl.h",     "fnmatch.h", "getopt.h", "glob.h",
+      "grp.h",    "ifaddrs.h", "immintrin.h", "limits.h",  "link.h",  "locale.h",    "malloc.h",    "math.h",    "netdb.h",  "pmmintrin.h",
+      "poll.h",   "pthread.h", "pwd.h",       "regex.h",   "sched.h", "semaphore.h", "signal.h",    "spawn.h",   "stddef.h", "stdint.h",
+      "stdio.h",  "stdlib.h",  "string.h",    "termios.h", "time.h",  "unistd.h",    "xmmintrin.h",
   };
   return std::find(names.begin(), names.end(), header) != names.end();
 }
@@ -200,7 +201,8 @@ std::string source_text(const fs::path& path) {
 Names offences(const fs::path& root) {
   static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   Names found;
-  for (const char* top : {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
+  for (const char* top :
+       {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

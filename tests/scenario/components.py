@@ -215,6 +215,8 @@ def goals():
     await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)
     inject("velocity", {"vx": 0, "vy": 0, "va": 0})  # ends it
     await_("a robot that stands", lambda: abs(rig.robot()["velocity"][2]) < 0.01)
+    inject("carlike_control", {"speed": 1, "steeringAngle": 0.3})
+    await_("a line that it is no car", lambda: "the drive is not steered" in rig.log(rig.running[-1]))
     rig.rtse("con", "DeviceProbe0:drive", "RTCPosition2d0:drive")
     inject("pose_control", {"position": {"x": -3, "y": -3}, "heading": 0})
     await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)

@@ -109,7 +109,7 @@ car = f"""<sdf version="1.9"><world name="car"><include><uri>{source}/worlds/mod
 <right_steering_joint>right_steering</right_steering_joint><max_steer>0.6458</max_steer><max_speed>20</max_speed></plugin></model></world></sdf>"""
 
 
-# A car has no poses, but headings.
+# A car has no poses, but headings, and takes car commands: a speed and a steering angle.
 def cars():
     with Rig() as rig:
         path = f"{rig.work}/car.sdf"
@@ -129,6 +129,8 @@ def cars():
         assert Position(client.read_until(POSITION2D)).velocity[0] > 0.4
         client.command(POSITION2D, 0, 4, struct.pack(">dd", 0.5, 1.2))
         client.read_until(POSITION2D, good=lambda p: abs(Position(p).pose[2] - 1.2) < 0.02 and abs(Position(p).velocity[2]) < 0.02)
+        client.command(POSITION2D, 0, 3, struct.pack(">dd", 1, 0.3))  # a wheel base of 1 m
+        client.read_until(POSITION2D, good=lambda p: abs(Position(p).velocity[2] - 0.309) < 0.01 and abs(Position(p).velocity[0] - 1) < 0.02)
         client.close()
         watcher = Client(rig.ports[0])
         watcher.subscribe(POSITION2D)

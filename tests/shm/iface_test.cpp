@@ -52,6 +52,33 @@ TEST(Iface, samples_are_read_one_after_the_other_as_long_as_the_memory_has_them)
   EXPECT_EQ(reader.sample<Stamp>().sequence, cells + 1);  // the oldest that is left
 }
 
+TEST(Iface, an_older_simulator_gives_a_drive_without_a_wheel_base) {
+  Fixture f;
+  Position2dInfo info{};
+  info.wheel_radius = 0.1;
+  info.wheel_base = 9;
+  IfaceSpec spec = iface_spec(IfaceType::position2d, "robot::base", info);
+  spec.info.resize(row_of(IfaceType::position2d).oldest_info_size);
+  spec.geometry.info_size = spec.info.size();
+  auto writer = f.make(spec);
+  auto reader = f.open(IfaceType::position2d, "robot::base");
+  EXPECT_EQ(reader.info<Position2dInfo>().wheel_radius, 0.1);
+  EXPECT_EQ(reader.info<Position2dInfo>().wheel_base, 0);
+}
+
+TEST(Iface, a_car_command_is_read_as_one_and_a_kind_of_later_clients_is_not_obeyed) {
+  Fixture f;
+  auto writer = f.make(iface_spec(IfaceType::position2d, "robot::base", Position2dInfo{}));
+  auto reader = f.open(IfaceType::position2d, "robot::base");
+  Command command;
+  ASSERT_TRUE(reader.command(CommandKind::car, std::array{1.0, 0.3}));
+  ASSERT_EQ(writer->poll_command(command), CommandChange::fresh);
+  EXPECT_EQ(command.kind, CommandKind::car);
+  EXPECT_EQ(command.values[1], 0.3);
+  ASSERT_TRUE(reader.command(static_cast<CommandKind>(99), std::array{1.0, 0.3}));
+  EXPECT_EQ(writer->poll_command(command), CommandChange::none);
+}
+
 TEST(Iface, a_command_with_a_duration_tells_it_to_the_simulator) {
   Fixture f;
   auto writer = f.make(iface_spec(IfaceType::position2d, "robot::base", Position2dInfo{}));

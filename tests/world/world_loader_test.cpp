@@ -256,8 +256,14 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
   }
   for (const char* name : {"gz-sim-ackermann-steering-system", "libgazebo_ros_ackermann_drive.so"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::car_drive) << name;
-  for (const char* name : {"libSimpleTrackedVehiclePlugin.so", "libgazebo_ros_tricycle_drive.so", "gz-sim-track-controller-system"})
-    EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::unsupported_drive) << name;
+  EXPECT_EQ(kind_of_plugin("libSimpleTrackedVehiclePlugin.so", "x"), PluginKind::tracked_vehicle);
+  EXPECT_EQ(kind_of_plugin("gz-sim-tracked-vehicle-system", "x"), PluginKind::tracked_vehicle);
+  EXPECT_EQ(kind_of_plugin("gz-sim-track-controller-system", "x"), PluginKind::track_controller);
+  EXPECT_EQ(kind_of_plugin("libgazebo_ros_tricycle_drive.so", "x"), PluginKind::tricycle_drive);
+  EXPECT_EQ(kind_of_plugin("ignition-gazebo-mecanum-drive-system", "x"), PluginKind::mecanum_drive);
+  EXPECT_EQ(kind_of_plugin("libWheelSlipPlugin.so", "x"), PluginKind::wheel_slip);
+  EXPECT_EQ(kind_of_plugin("gz-sim-odometry-publisher-system", "x"), PluginKind::odometry_publisher);
+  EXPECT_EQ(kind_of_plugin("libgazebo_ros_joint_state_publisher.so", "x"), PluginKind::joint_state_publisher);
   for (const char* name : {"libRayPlugin.so", "libgazebo_ros_velodyne_gpu_laser.so", "libgazebo_ros_block_laser.so"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::implied) << name;
   for (const char* name : {"gz-sim-multicopter-motor-model-system", "libignition-gazebo-multicopter-motor-model-system.so",

@@ -1,5 +1,6 @@
 // Cars: two wheels are steered so that all wheels roll about one centre, and every driven wheel turns as fast as its place on that circle
-// asks. The point that vx and va are of is the middle between the rear wheels.
+// asks. The point that vx and va are of is the middle between the rear wheels. A tricycle has one wheel in front that is driven and
+// steered.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "base/text.h"
 #include "devices/angle.h"
 #include "devices/drives/drive_train.h"
+#include "world/plugin_kind.h"
 
 namespace sim {
 namespace {
@@ -32,6 +34,8 @@ struct CarSettings {
   double max_speed = 0, min_speed = 0;    // forward; backward, negative; 0: unlimited [m/s]
   double max_acceleration = 0;            // 0: unlimited [m/s^2]
   double rate = 0;                        // of samples [Hz]; 0: every step
+  double tightest = 1;                    // curve that a velocity can ask for [1/m]
+  bool is_tricycle = false;               // one wheel in front is driven and steered
 };
 
 Wheel place_of(const ModelDef& model, std::uint32_t joint) {
@@ -75,11 +79,64 @@ base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, C
   return {};
 }
 
+// The front wheel of a tricycle, from the middle between the wheels in the rear, which its encoders name; without any, from the model's
+// origin, where robots of ROS have their base.
+base::Result<void> find_tricycle(const ModelDef& model, const PluginDef& plugin, CarSettings& s) {
+  std::vector<std::uint32_t> driven, steered, rear;
+  std::string missing;
+  add_joints(model, plugin, {"actuatedWheelJoint", "actuated_wheel_joint"}, driven, missing);
+  add_joints(model, plugin, {"steeringJoint", "steering_joint"}, steered, missing);
+  add_joints(model, plugin, {"encoderWheelLeftJoint", "encoder_wheel_left_joint"}, rear, missing);
+  add_joints(model, plugin, {"encoderWheelRightJoint", "encoder_wheel_right_joint"}, rear, missing);
+  const auto error = [&](const std::string& what) {
+    return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
+  };
+  if (!missing.empty()) return error(fmt::format("model {} has no joint {}", model.name, base::in_quotes(missing)));
+  if (driven.size() != 1 || steered.size() != 1)
+    return error("needs one driven wheel and its steering (actuated_wheel_joint, steering_joint)");
+  Eigen::Vector3d middle(0, 0, 0);
+  for (const auto joint : rear) middle += wheel_place(model, joint) / static_cast<double>(rear.size());
+  const ParameterNode& p = plugin.parameters;
+  s.driven = {place_of(model, driven[0])};
+  s.steered = {place_of(model, steered[0])};
+  for (auto* wheel : {&s.driven[0], &s.steered[0]}) wheel->x -= middle.x(), wheel->y -= middle.y();
+  s.driven[0].x = s.steered[0].x;  // it turns about the steering, wherever the file has put the joint
+  s.wheel_base = s.steered[0].x;
+  s.separation = rear.size() == 2 ? (wheel_place(model, rear[0]) - wheel_place(model, rear[1])).head<2>().norm()
+                                  : p.number_of({"encoderWheelSeparation", "encoder_wheel_separation"}).value_or(s.wheel_base);
+  s.is_tricycle = true;
+  return {};
+}
+
+// What steers the one wheel of a tricycle: its joint has limits, or none within what makes sense.
+double steering_range(const ModelDef& model, std::uint32_t joint) {
+  constexpr double most = 1.5;  // [rad]
+  const auto& axes = model.joints[joint].axes;
+  if (axes.empty() || model.joints[joint].kind == JointDef::Kind::continuous) return most;
+  const double range = std::min(-axes[0].lower, axes[0].upper);
+  return range > 0 ? std::min(range, most) : most;
+}
+
+// Of ROS: without a word its wheel takes 5 N m.
+void read_tricycle(const ModelDef& model, const ParameterNode& p, CarSettings& s) {
+  s.torque = p.number_of({"wheelTorque", "max_wheel_torque"}).value_or(5);
+  if (!(s.torque > 0)) s.torque = 5;
+  s.steering_limit = steering_range(model, s.steered[0].joint);
+  s.tightest = std::tan(s.steering_limit) / s.wheel_base;
+  s.max_speed = std::max(0.0, p.number_of({"max_wheel_speed"}).value_or(0));
+  s.min_speed = -s.max_speed;
+  s.max_acceleration = std::max(0.0, p.number_of({"wheelAcceleration", "max_wheel_acceleration"}).value_or(0));
+  s.rate = std::max(0.0, p.number_of({"updateRate", "update_rate"}).value_or(0));
+}
+
 base::Result<CarSettings> car_settings_of(const ModelDef& model, const PluginDef& plugin) {
   const ParameterNode& p = plugin.parameters;
   CarSettings s;
-  if (auto found = find_wheels(model, plugin, s); !found) return found.error();
-  s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(wheel_radius(model, s.driven[0].joint));
+  const auto find = kind_of(plugin) == PluginKind::tricycle_drive ? find_tricycle : find_wheels;
+  if (auto found = find(model, plugin, s); !found) return found.error();
+  const double diameter = p.number_of({"actuatedWheelDiameter", "actuated_wheel_diameter", "wheelDiameter", "wheel_diameter"})
+                              .value_or(2 * wheel_radius(model, s.driven[0].joint));
+  s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(diameter / 2);
   if (!(s.wheel_base > 0) || !(s.separation > 0) || !(s.radius > 0)) {
     return base::Error{fmt::format("{}: plugin {}: wheel base, separation and radius must be positive, got {}, {} and {}", plugin.source,
                                    plugin.name, s.wheel_base, s.separation, s.radius)};
@@ -92,6 +149,8 @@ base::Result<CarSettings> car_settings_of(const ModelDef& model, const PluginDef
   s.min_speed = std::min(0.0, p.number_of({"min_velocity"}).value_or(-s.max_speed));
   s.max_acceleration = std::max(0.0, p.number_of({"max_acceleration"}).value_or(0));
   s.rate = std::max(0.0, p.number_of({"odom_publish_frequency", "update_rate"}).value_or(0));
+  s.tightest = std::sin(s.steering_limit) / s.wheel_base;
+  if (s.is_tricycle) read_tricycle(model, p, s);
   return s;
 }
 
@@ -107,17 +166,23 @@ class Car final : public DriveTrain {
     info.max_acceleration = settings_.max_acceleration;
     info.wheel_separation = settings_.separation;
     info.wheel_radius = settings_.radius;
+    info.wheel_base = settings_.wheel_base;
+    info.max_steering_angle = settings_.steering_limit;
   }
 
-  void drive(double asked_vx, double asked_va, bool motors_on, double dt) override {
+  void drive(const DriveOrder& order, bool motors_on, double dt) override {
     const double fastest = settings_.max_speed > 0 ? settings_.max_speed : 1000;
-    const double vx = std::clamp(asked_vx, settings_.min_speed < 0 ? settings_.min_speed : -fastest, fastest);
-    const double tightest = std::sin(settings_.steering_limit) / settings_.wheel_base;
-    if (std::abs(asked_vx) > slowest) {
-      curvature_ = std::clamp(asked_va / asked_vx, -tightest, tightest);
+    double asked_vx = order.velocity[0];
+    const double asked_va = order.velocity[2];
+    if (order.steering) {
+      curvature_ = std::tan(std::clamp(*order.steering, -settings_.steering_limit, settings_.steering_limit)) / settings_.wheel_base;
+    } else if (std::abs(asked_vx) > slowest) {
+      curvature_ = std::clamp(asked_va / asked_vx, -settings_.tightest, settings_.tightest);
     } else if (asked_va != 0) {
-      curvature_ = std::copysign(tightest, asked_va);  // it cannot turn on the spot, but its wheels can
+      curvature_ = std::copysign(settings_.tightest, asked_va);  // it cannot turn on the spot, but its wheels can
+      if (settings_.is_tricycle) asked_vx = asked_va / curvature_;
     }
+    const double vx = std::clamp(asked_vx, settings_.min_speed < 0 ? settings_.min_speed : -fastest, fastest);
     const double most = settings_.max_acceleration > 0 ? settings_.max_acceleration * dt : 1e9;
     speed_ = motors_on ? speed_ + std::clamp(vx - speed_, -most, most) : 0;
     steer(motors_on);
@@ -141,7 +206,7 @@ class Car final : public DriveTrain {
     return {forward / count, forward / count * curve, speed / count, speed / count * curve};
   }
 
-  std::array<double, 2> followed() const override { return {speed_, speed_ * curvature_}; }
+  std::array<double, 3> followed() const override { return {speed_, 0, speed_ * curvature_}; }
   std::vector<std::uint32_t> joints() const override {
     std::vector<std::uint32_t> all;
     for (const auto* wheels : {&settings_.driven, &settings_.steered}) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "devices/device.h"
 
@@ -11,8 +12,15 @@ namespace sim {
 
 // What the encoders say of the last step, and the rates in its end.
 struct Travel {
-  double forward = 0, turn = 0;    // [m], [rad]
-  double speed = 0, yaw_rate = 0;  // [m/s], [rad/s]
+  double forward = 0, turn = 0;      // [m], [rad]
+  double speed = 0, yaw_rate = 0;    // [m/s], [rad/s]
+  double aside = 0, side_speed = 0;  // to the left [m], [m/s]; 0 of drives that cannot
+};
+
+// What a client asks for.
+struct DriveOrder {
+  std::array<double, 3> velocity{0, 0, 0};  // vx, vy [m/s], va [rad/s]; of a car command the speed alone
+  std::optional<double> steering;           // of a car command [rad]
 };
 
 class DriveTrain {
@@ -20,12 +28,14 @@ class DriveTrain {
   virtual ~DriveTrain() = default;
   // Name, sizes and limits of the drive in the iface's constants.
   virtual void describe(shm::Position2dInfo& info) const = 0;
-  // Sets the motors for the next step of `dt`: on the way to forward speed `vx` [m/s] and yaw rate `va` [rad/s], within the limits.
-  virtual void drive(double vx, double va, bool motors_on, double dt) = 0;
+  // Sets the motors for the next step of `dt`: on the way to what is asked for, within the limits.
+  virtual void drive(const DriveOrder& order, bool motors_on, double dt) = 0;
   // After each step, once.
   virtual Travel travel() = 0;
-  // vx [m/s] and va [rad/s] that the motors follow now.
-  virtual std::array<double, 2> followed() const = 0;
+  // vx, vy [m/s] and va [rad/s] that the motors follow now.
+  virtual std::array<double, 3> followed() const = 0;
+  // Its wheels carry the model; false: what stands still, as a conveyor.
+  virtual bool moves_the_model() const { return true; }
   // Those that its motors turn, by their place in the model.
   virtual std::vector<std::uint32_t> joints() const = 0;
   virtual double rate() const = 0;  // of samples [Hz]; 0: every step
@@ -39,8 +49,14 @@ using MadeTrain = base::Result<std::unique_ptr<DriveTrain>>;
 // From the plugin element, in the spellings in use; what is missing is taken from the model. Fail with a line.
 // Wheels on both sides that turn at speeds of their own: differential and skid drives.
 MadeTrain make_wheel_pairs(Physics& physics, ModelId model, const PluginDef& plugin);
-// Two steered wheels in front, as gz-sim's AckermannSteering and gazebo_ros' Ackermann drive have them.
+// Two steered wheels in front, as gz-sim's AckermannSteering and gazebo_ros' Ackermann drive have them; or one that is driven, of a
+// tricycle.
 MadeTrain make_car(Physics& physics, ModelId model, const PluginDef& plugin);
+// Wheels with rollers, which push along one line each: mecanum wheels as gz-sim's MecanumDrive has them, and omni wheels wherever they are.
+MadeTrain make_rollers(Physics& physics, ModelId model, const PluginDef& plugin);
+// Tracks as gz-sim's TrackedVehicle and Gazebo classic's SimpleTrackedVehicle have them, or the belt of a TrackController that no vehicle
+// has.
+MadeTrain make_tracks(Physics& physics, ModelId model, const PluginDef& plugin);
 
 // --- for the drives themselves
 

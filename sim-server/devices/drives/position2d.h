@@ -15,7 +15,7 @@ namespace sim {
 class Position2d final : public Sensor, public Drive {
  public:
   static MadeDevice make(DeviceWorld& world, ModelId model, const PluginDef& plugin, std::unique_ptr<DriveTrain> train);
-  Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train);
+  Position2d(Setup setup, const Traction& traction, std::unique_ptr<DriveTrain> train, std::uint32_t drive);
 
   bool follows_steps() const override { return true; }
   void before_step(const Moment& moment) override;
@@ -32,14 +32,15 @@ class Position2d final : public Sensor, public Drive {
   void restart() override;
   void add_state_to(StateHash& hash) const override;
   bool can_drive() const { return motors_enabled_ && has_power_; }
+  DriveOrder order_of(const shm::Command& command) const;
 
   std::unique_ptr<DriveTrain> train_;
-  std::array<double, 2> command_{0, 0};  // vx, va as asked for
-  std::array<double, 3> odometry_{0, 0, 0};
-  std::array<double, 2> velocity_{0, 0};
+  DriveOrder command_;
+  std::array<double, 3> odometry_{0, 0, 0}, velocity_{0, 0, 0};
+  std::uint32_t drive_;  // RTMSIM_DRIVE_*
   bool motors_enabled_ = true, has_power_ = true, is_commanded_ = false;
   double strength_ = 1;
-  std::optional<std::array<double, 2>> halted_at_;  // the command then
+  std::optional<DriveOrder> halted_at_;  // the command then
   Traction traction_;
 };
 

@@ -15,12 +15,14 @@ constexpr int slip_blocks = 12;       // before it is told
 
 }  // namespace
 
-double Traction::length(const Path& path) const { return std::abs(path.forward) + std::abs(path.turn) * separation_ / 2; }
+double Traction::length(const Path& path) const { return std::hypot(path.forward, path.aside) + std::abs(path.turn) * separation_ / 2; }
 
-bool Traction::follow(const std::array<double, 2>& wanted, const Travel& rolled, double dt) {
+bool Traction::follow(const std::array<double, 3>& wanted, const Travel& rolled, double dt) {
   wanted_.forward += wanted[0] * dt;
-  wanted_.turn += wanted[1] * dt;
+  wanted_.aside += wanted[1] * dt;
+  wanted_.turn += wanted[2] * dt;
   rolled_.forward += rolled.forward;
+  rolled_.aside += rolled.aside;
   rolled_.turn += rolled.turn;
   block_time_ += dt;
   return block_time_ >= block || !has_start_;
@@ -53,7 +55,7 @@ std::string Traction::close_block(const Path& moved) {
     slipped_rolled_ = slipped_moved_ = {};
     return {};
   }
-  slipped_rolled_ = {slipped_rolled_.forward + rolled_.forward, slipped_rolled_.turn + rolled_.turn};
+  slipped_rolled_ = {slipped_rolled_.forward + std::hypot(rolled_.forward, rolled_.aside), slipped_rolled_.turn + rolled_.turn};
   slipped_moved_ = {slipped_moved_.forward + moved.forward, slipped_moved_.turn + moved.turn};
   if (++slipped_blocks_ != slip_blocks) return {};
   return fmt::format(

@@ -15,8 +15,8 @@ class Traction {
   // `separation` of the wheels [m]. Skid-steered wheels must slip to turn: only what they roll forward is looked at.
   Traction(double separation, bool is_skid) : separation_(separation), is_skid_(is_skid) {}
 
-  // After each step: vx and va that the motors follow, and what the encoders saw. True when it wants to know where the robot is.
-  bool follow(const std::array<double, 2>& wanted, const Travel& rolled, double dt);
+  // After each step: vx, vy and va that the motors follow, and what the encoders saw. True when it wants to know where the robot is.
+  bool follow(const std::array<double, 3>& wanted, const Travel& rolled, double dt);
   // Then. Returns a line when the wheels have slipped for three seconds; once, until they grip again.
   std::string look(const Eigen::Isometry3d& pose);
   // For half a second it has moved less than a fifth of what the motors want.
@@ -25,7 +25,7 @@ class Traction {
 
  private:
   struct Path {
-    double forward = 0, turn = 0;  // [m], [rad]
+    double forward = 0, turn = 0, aside = 0;  // [m], [rad], [m]
   };
   double length(const Path& path) const;
   std::string close_block(const Path& moved);

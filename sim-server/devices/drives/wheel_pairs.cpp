@@ -111,11 +111,11 @@ class WheelPairs final : public DriveTrain {
     info.wheel_radius = settings_.radius;
   }
 
-  void drive(double asked_vx, double asked_va, bool motors_on, double dt) override {
+  void drive(const DriveOrder& order, bool motors_on, double dt) override {
     const auto limited = [](double value, double limit) {
       return limit > 0 ? std::clamp(value, -limit, limit) : std::clamp(value, -1000.0, 1000.0);
     };
-    const double vx = limited(asked_vx, settings_.max_speed), va = limited(asked_va, settings_.max_yaw_rate);
+    const double vx = limited(order.velocity[0], settings_.max_speed), va = limited(order.velocity[2], settings_.max_yaw_rate);
     const double half = settings_.separation / 2;
     std::array<double, 2> change{vx - va * half - wheels_[0], vx + va * half - wheels_[1]};
     double share = 1;
@@ -140,8 +140,8 @@ class WheelPairs final : public DriveTrain {
             settings_.radius * (right_rate - left_rate) / settings_.separation};
   }
 
-  std::array<double, 2> followed() const override {
-    return {(wheels_[0] + wheels_[1]) / 2, (wheels_[1] - wheels_[0]) / settings_.separation};
+  std::array<double, 3> followed() const override {
+    return {(wheels_[0] + wheels_[1]) / 2, 0, (wheels_[1] - wheels_[0]) / settings_.separation};
   }
   std::vector<std::uint32_t> joints() const override {
     std::vector<std::uint32_t> all = settings_.left;

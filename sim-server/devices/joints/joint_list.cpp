@@ -25,8 +25,9 @@ bool is_commandable(const JointDef& joint) {
 }
 
 bool is_drive(PluginKind kind) {
-  return is_wheel_drive(kind) || kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower ||
-         kind == PluginKind::unsupported_drive;
+  using enum PluginKind;
+  const bool has_belts = kind == tracked_vehicle || kind == track_controller;
+  return (is_wheel_drive(kind) && !has_belts) || kind == velocity_control || kind == trajectory_follower || kind == unsupported_drive;
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {

@@ -2,7 +2,7 @@
 import { button, h } from './dom';
 import { act, on, selected_model, store, wire } from './store';
 
-const fastest = { x: 0.4, turn: 1.2, up: 0.5 };
+const fastest = { x: 0.4, aside: 0.4, turn: 1.2, up: 0.5 };
 
 export class Drive {
   readonly element = h('div', { class: 'drive', hidden: true });
@@ -68,8 +68,9 @@ export class Drive {
   private velocity(): number[] {
     const is_3d = store.world?.ifaces.find((i) => i.name === this.iface && i.type.startsWith('position'))?.type === 'position3d';
     const forward = this.at.y * fastest.x, turn = -this.at.x * fastest.turn;
-    const up = (this.keys.has('e') ? fastest.up : 0) - (this.keys.has('q') ? fastest.up : 0);
-    return is_3d ? [forward, 0, up, 0, 0, turn] : [forward, 0, turn];
+    const lift = Number(this.keys.has('e')) - Number(this.keys.has('q'));
+    // On the ground Q goes to the left and E to the right; drives that cannot go sideways ignore it.
+    return is_3d ? [forward, 0, lift * fastest.up, 0, 0, turn] : [forward, -lift * fastest.aside, turn];
   }
 
   // One at a time: a server that is late gets the newest next, and not all that was wanted meanwhile.
