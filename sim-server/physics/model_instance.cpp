@@ -402,11 +402,7 @@ bool ModelInstance::lies_still(double dt, bool touches) {
   constexpr double slow = 0.004, slow_turn = 0.01, slow_time = 0.5;
   constexpr double still = 0.0005, still_turn = 0.001, still_time = 0.1;
   constexpr std::uint32_t least_steps = 10;
-<<<<<<< HEAD
-  if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches)) return false;
-=======
-  if (!blueprint_->model->allow_auto_disable || lies_on_belt) return false;
->>>>>>> k2
+  if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches) || lies_on_belt) return false;
   double speed = 0, turn = 0;
   for (const auto& handle : bodies_) {
     if (handle.id() == nullptr) continue;
