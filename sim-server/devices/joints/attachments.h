@@ -1,4 +1,4 @@
-// What models hold by welds: DetachableJoints, and grippers that fix to their palm what their fingers hold. Both can be switched on and
+// Welds that models hold others by: DetachableJoints, and grippers that fix an object to their palm. Both can be switched on and
 // off by name: MODEL::GRIPPER; MODEL::CHILD_MODEL of a DetachableJoint, which is on from the start. The stepping thread only, between the
 // steps and outside of the devices, since a weld is a matter of two models.
 //
