@@ -43,18 +43,18 @@ class Attachments {
     LinkId by, link;
   };
   struct Detachable {
-    std::string name;
+    std::string name{};
     ModelId model = 0;
     std::uint32_t parent = 0;
-    std::string child_model, child_link;
+    std::string child_model{}, child_link{};
     bool is_on = true;
     std::optional<Held> held{};
     bool is_told = false;  // that what it has to hold is not there
   };
   struct Grip {
-    std::string name;
+    std::string name{};
     ModelId model = 0;
-    GripperDef def;
+    GripperDef def{};
     std::uint32_t palm = 0;
     std::vector<std::uint32_t> fingers{};
     bool is_on = false;
