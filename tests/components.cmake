@@ -16,7 +16,7 @@ foreach(case moves without_module settings bad_values queue alarms emergency low
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/manipulator.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(manipulator.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
-foreach(case simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors)
+foreach(case simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors attach)
   add_test(NAME arms.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(arms.${case} PROPERTIES LABELS integration TIMEOUT 300)

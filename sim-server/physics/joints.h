@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 
+#include "physics/bounded_system.h"
 #include "physics/ode.h"
 #include "physics/physics.h"
 
@@ -98,6 +99,7 @@ class JointInstance {
   void apply(dJointGroupID step_joints, double dt);
 
   int parent_assembly = -1, child_assembly = -1;  // of the model, -1: the world
+  Bound motor_bound = Bound::free;                // in the last step of the tree solver, which begins the next one with it
 
  private:
   void make(dWorldID world, const Eigen::Isometry3d& frame);

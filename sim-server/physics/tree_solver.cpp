@@ -167,8 +167,13 @@ void TreeSolver::add_axis(Node& node, const Vector6& of_child, const Vector6& of
     }
   }
   const double effort = parameter(joint, dParamFMax);
-  if (effort > 0 && !is_locked)
-    add_row(node, on_child, on_parent, parameter(joint, dParamVel), parameter(joint, dParamCFM), -effort, effort);
+  if (!(effort > 0) || is_locked) return;
+  add_row(node, on_child, on_parent, parameter(joint, dParamVel), parameter(joint, dParamCFM), -effort, effort);
+  // Begins where it was in the last step: a motor at its limit is there for many steps.
+  node.motor_row = static_cast<int>(node.rows.size()) - 1;
+  Row& motor = node.rows.back();
+  motor.bound = node.joint->motor_bound;
+  if (!motor.is_free()) motor.impulse = motor.bound == Bound::low ? motor.low : motor.high;
 }
 
 void TreeSolver::add_contact_row(Touch& touch, const Eigen::Vector3d& line, const ContactRow& row) {
@@ -332,52 +337,95 @@ void TreeSolver::factor() {
   }
 }
 
-// Velocities of the impulses on the nodes and the targets of the rows; homogeneous: without targets, for what leads to contacts alone.
-void TreeSolver::sweep(bool is_homogeneous) {
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-    if ((is_homogeneous && !node->touches) || node->own.rows() == 0) continue;
-    Few open = -(node->answer * node->impulse);
-    if (!is_homogeneous) open += node->target;
-    node->share.noalias() = node->inverse_give * open;
-    if (node->parent >= 0) nodes_[static_cast<std::size_t>(node->parent)].impulse.noalias() += node->parent_side.transpose() * node->share;
+void TreeSolver::pull_up(Node& node, bool is_homogeneous) {
+  if (node.own.rows() == 0) return;
+  Few open = -(node.answer * node.impulse);
+  if (!is_homogeneous) open += node.target;
+  node.share.noalias() = node.inverse_give * open;
+  if (node.parent >= 0) nodes_[static_cast<std::size_t>(node.parent)].impulse.noalias() += node.parent_side.transpose() * node.share;
+}
+
+void TreeSolver::push_down(Node& node) {
+  node.velocity.noalias() = node.inverse * node.impulse;
+  if (node.own.rows() == 0) return;
+  if (node.parent >= 0) node.share.noalias() -= node.pull * nodes_[static_cast<std::size_t>(node.parent)].velocity;
+  node.velocity.noalias() += node.answer.transpose() * node.share;
+}
+
+// Velocities of the impulses on the nodes and the targets of the rows.
+void TreeSolver::sweep() {
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) pull_up(*node, false);
+  for (Node& node : nodes_) push_down(node);
+}
+
+// The same without targets, for what leads to contacts alone, and of some trees.
+void TreeSolver::sweep_trees(const std::vector<int>& trees) {
+  for (const int tree : trees) {
+    const auto& places = trees_[static_cast<std::size_t>(tree)];
+    for (auto place = places.rbegin(); place != places.rend(); ++place) pull_up(nodes_[static_cast<std::size_t>(*place)], true);
+    for (const int place : places) push_down(nodes_[static_cast<std::size_t>(place)]);
   }
-  for (Node& node : nodes_) {
-    if (is_homogeneous && !node.touches) continue;
-    node.velocity.noalias() = node.inverse * node.impulse;
-    if (node.own.rows() == 0) continue;
-    if (node.parent >= 0) node.share.noalias() -= node.pull * nodes_[static_cast<std::size_t>(node.parent)].velocity;
-    node.velocity.noalias() += node.answer.transpose() * node.share;
+}
+
+void TreeSolver::gather_trees() {
+  int count = 0;
+  for (auto& places : trees_) places.clear();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& node = nodes_[i];
+    node.tree = node.parent < 0 ? count++ : nodes_[static_cast<std::size_t>(node.parent)].tree;
+    if (trees_.size() < static_cast<std::size_t>(count)) trees_.emplace_back();
+    if (node.touches) trees_[static_cast<std::size_t>(node.tree)].push_back(static_cast<int>(i));
   }
 }
 
 // --- contacts on what the tree answers
 
-void TreeSolver::solve_contacts() {
+// `is_first`: of the step; then the rows begin free, else as they were found.
+void TreeSolver::solve_contacts(bool is_first) {
   const auto at = [&](int node) -> Node& { return nodes_[static_cast<std::size_t>(node)]; };
   const auto motion = [&](const ContactRow& row) {
     return (row.a >= 0 ? row.on_a.dot(at(row.a).velocity) : 0) + (row.b >= 0 ? row.on_b.dot(at(row.b).velocity) : 0) +
            (row.c >= 0 ? row.on_c.dot(at(row.c).velocity) : 0) + (row.d >= 0 ? row.on_d.dot(at(row.d).velocity) : 0);
   };
   const auto count = static_cast<Eigen::Index>(rows_.size());
+  const auto bounds = is_first ? std::vector<Bound>() : system_.bounds;
   system_.resize(count);
+  if (!is_first) system_.bounds = bounds;
   if (count == 0) return;
   for (Eigen::Index i = 0; i < count; ++i) {
     const ContactRow& row = rows_[static_cast<std::size_t>(i)];
     system_.b[i] = row.target - motion(row);
     system_.low[i] = row.low, system_.high[i] = row.high;
   }
+  const auto clear = [&](const std::vector<int>& trees) {
+    for (const int tree : trees) {
+      for (const int place : trees_[static_cast<std::size_t>(tree)]) at(place).impulse.setZero(), at(place).velocity.setZero();
+    }
+  };
+  for (Node& node : nodes_) {
+    if (node.touches) node.impulse.setZero(), node.velocity.setZero();
+  }
   for (Eigen::Index i = 0; i < count; ++i) {
     const ContactRow& row = rows_[static_cast<std::size_t>(i)];
-    for (Node& node : nodes_) {
-      if (node.touches) node.impulse.setZero();
+    swept_.clear();
+    const auto push = [&](int node, const Vector6& on) {
+      if (node < 0) return;
+      at(node).impulse += on;
+      if (std::find(swept_.begin(), swept_.end(), at(node).tree) == swept_.end()) swept_.push_back(at(node).tree);
+    };
+    push(row.a, row.on_a);
+    push(row.b, row.on_b);
+    push(row.c, row.on_c);
+    push(row.d, row.on_d);
+    sweep_trees(swept_);
+    const auto is_moved = [&](int node) { return node >= 0 && std::find(swept_.begin(), swept_.end(), at(node).tree) != swept_.end(); };
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const ContactRow& other = rows_[static_cast<std::size_t>(k)];
+      const bool is_answered = is_moved(other.a) || is_moved(other.b) || is_moved(other.c) || is_moved(other.d);
+      system_.a(k, i) = is_answered ? motion(other) : 0;
     }
-    if (row.a >= 0) at(row.a).impulse += row.on_a;
-    if (row.b >= 0) at(row.b).impulse += row.on_b;
-    if (row.c >= 0) at(row.c).impulse += row.on_c;
-    if (row.d >= 0) at(row.d).impulse += row.on_d;
-    sweep(true);
-    for (Eigen::Index k = 0; k < count; ++k) system_.a(k, i) = motion(rows_[static_cast<std::size_t>(k)]);
     system_.a(i, i) += row.give;
+    clear(swept_);
   }
 }
 
@@ -472,14 +520,15 @@ bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vec
   }
   tie_rows_ = rows_.size();
   for (const auto* contact : contacts) add_contact(*contact);
+  gather_trees();
   for (int round = 0; round < most_rounds; ++round) {
     factor();
     load(false);
-    sweep(false);
-    solve_contacts();
+    sweep();
+    solve_contacts(round == 0);
     if (!rub_and_press()) return false;
     load(true);
-    sweep(false);
+    sweep();
     if (!is_finite()) return false;
     if (bind_joints(round >= at_once)) continue;
     put_forces();
@@ -501,6 +550,7 @@ void TreeSolver::put_forces() {
   for (Node& node : nodes_) node.impulse.setZero();
   for (Node& node : nodes_) {
     if (node.joint == nullptr) continue;
+    if (node.motor_row >= 0) node.joint->motor_bound = node.rows[static_cast<std::size_t>(node.motor_row)].bound;
     Vector6 own = Vector6::Zero(), parent = Vector6::Zero();
     for (const Row& row : node.rows) own += row.own * row.impulse, parent += row.parent * row.impulse;
     node.impulse += own;

@@ -58,8 +58,9 @@ class TreeSolver {
   };
   struct Node {
     dBodyID body = nullptr;
-    int parent = -1;
-    const JointInstance* joint = nullptr;
+    int parent = -1, tree = -1;
+    JointInstance* joint = nullptr;
+    int motor_row = -1;
     bool is_child = false, touches = false;  // touches: it or what hangs on it has a contact, or follows another joint
     Vector6 axis_own, axis_parent;           // of a joint with one axis: its rate, from the velocities of the two bodies
     Matrix6 mass;
@@ -105,8 +106,12 @@ class TreeSolver {
 
   void factor();
   void gather(Node& node);
-  void sweep(bool is_homogeneous);
-  void solve_contacts();
+  void gather_trees();
+  void sweep();
+  void sweep_trees(const std::vector<int>& trees);
+  void pull_up(Node& node, bool is_homogeneous);
+  void push_down(Node& node);
+  void solve_contacts(bool is_first);
   bool rub_and_press();
   void load(bool has_contacts);
   void press(const ContactRow& row, double impulse);
@@ -122,6 +127,8 @@ class TreeSolver {
   std::vector<ContactRow> rows_;                 // first those of joints that follow others, and of welds
   std::size_t tie_rows_ = 0;                     // of these
   std::vector<std::pair<dBodyID, int>> places_;  // sorted
+  std::vector<std::vector<int>> trees_;          // nodes that touch, by tree, in their order
+  std::vector<int> swept_;                       // trees that one row moves
   BoundedSystem system_;
   std::vector<dJointID> switched_off_;
 };

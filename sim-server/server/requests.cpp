@@ -41,6 +41,16 @@ shm::Reply no_iface(const Simulation& simulation, const std::string& name) {
   return refused(shm::RequestStatus::not_found, "no iface " + name + base::suggestion(name, known));
 }
 
+// Neither a drive, nor anything that holds something.
+shm::Reply no_motors(const Simulation& simulation, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& one : simulation.attachments().states(simulation.physics())) known.push_back(one.name);
+  const std::string held = known.empty() ? "" : "; grippers and detachable joints: " + base::join(known, ", ");
+  shm::Reply reply = no_iface(simulation, name);
+  if (name.find("::") == std::string::npos || base::suggestion(name, known).empty()) return reply.message += held, reply;
+  return refused(shm::RequestStatus::not_found, "no iface, gripper or detachable joint " + name + base::suggestion(name, known));
+}
+
 void put(double* values, const shm::Pose& p) {
   const double all[7] = {p.x, p.y, p.z, p.qw, p.qx, p.qy, p.qz};
   std::copy(all, all + 7, values);
@@ -262,7 +272,7 @@ struct ServerLoop::Handler {
     if (const auto turned = simulation.turn_attachment(request.iface, request.are_enabled))
       return *turned ? shm::Reply{} : failed(turned->error());
     Device* device = simulation.device(request.iface);
-    if (device == nullptr) return no_iface(simulation, request.iface);
+    if (device == nullptr) return no_motors(simulation, request.iface);
     if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");
     return {};
   }

@@ -1,4 +1,4 @@
-// What elements of ROS say of the joints of a model, put into the attributes of repairs.h: initial positions in <ros2_control>, and joints
+// Elements of ROS about the joints of a model, put into the attributes of repairs.h: initial positions in <ros2_control>, and joints
 // that a mimic plugin of Gazebo binds to a leader. `model`: an SDFormat model. One thread at a time.
 #pragma once
 

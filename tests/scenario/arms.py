@@ -257,7 +257,45 @@ def robot_sensors():
     assert len(force) == 6 and 3 < sum(value ** 2 for value in force[:3]) ** 0.5 < 8, force  # palm and fingers weigh 0.5 kg
 
 
-cases = {f.__name__: f for f in (simctl, gains, act_array, dead_commander, gripper, limb, ptz, robot_hardware, robot_sensors)}
+# Grippers attach when they are asked to; a spawned arm has gains and a start of its own; the bad ones are one line.
+def attach():
+    def refused(line, *words):
+        done = subprocess.run([f"{rig.bin_dir}/simctl", "-s", str(rig.server_id), *words], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 1 and line in done.stderr and done.stderr.count("\n") == 1, (words, done.stderr)
+
+    server()
+    shown = lambda: json.loads(rig.simctl("--json", "attach"))
+    assert shown() == [{"name": "arm::gripper", "on": False, "holds": ""}], shown()
+    rig.simctl("attach", "arm::gripper")
+    # Over the green box, down, and closed around it.
+    rig.simctl("joints", "arm", "shoulder=0.8384", "elbow=1.73", "pitch=0.5732")
+    rig.simctl("joints", "arm", "left_finger=-0.05", "right_finger=-0.05", "--mode", "velocity", "--for", "2")
+    await_("a box", lambda: shown()[0]["holds"].startswith("green_box::"))
+    assert "arm::gripper" in rig.simctl("attach") and "green_box" in rig.simctl("attach")
+    rig.simctl("joints", "arm", "shoulder=0")
+    assert float(rig.simctl("pose", "green_box").split()[2]) > 0.85
+    rig.simctl("detach", "arm::gripper")
+    assert shown() == [{"name": "arm::gripper", "on": False, "holds": ""}], shown()
+    refused("arm::gripper", "attach", "arm::griper")
+    refused("no iface nobody", "detach", "nobody")
+
+    with open(f"{rig.work}/gains.yaml", "w") as out:
+        out.write("pid_gains:\n  elbow: {p: 700, d: 20}\n")
+    model = "<sdf version='1.9'><model name='two'><pose>3 0 0 0 0 0</pose><link name='base'/><link name='rod'><pose>0 0 1 0 0 0</pose></link>" \
+            "<joint name='held' type='fixed'><parent>world</parent><child>base</child></joint><joint name='elbow' type='revolute'><parent>base</parent><child>rod</child>" \
+            "<axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper><effort>10</effort></limit></axis></joint></model></sdf>"
+    rig.simctl("spawn", model, "--joint", "elbow=0.5", "--gains", f"{rig.work}/gains.yaml")
+    elbow = joints("two")["elbow"]
+    assert abs(elbow["position"] - 0.5) < 1e-6 and elbow["rest"] == 0.5 and (elbow["gains"]["p"], elbow["gains"]["from"]) == (700, "--gains:2"), elbow
+    refused('has no joint "nose" that moves; it has elbow', "spawn", model, "--name", "more", "--joint", "nose=1")
+    refused("joint elbow: a position must be within -1 and 1, got 2", "spawn", model, "--name", "more", "--joint", "elbow=2")
+    refused("no such file", "spawn", model, "--name", "more", "--gains", f"{rig.work}/none.yaml")
+    with open(f"{rig.work}/gains.yaml", "w") as out:
+        out.write("pid_gains:\n  nose: {p: 700, d: 20}\n")
+    refused("gains: they are of no joint of model more", "spawn", model, "--name", "more", "--gains", f"{rig.work}/gains.yaml")
+
+
+cases = {f.__name__: f for f in (simctl, gains, act_array, dead_commander, gripper, limb, ptz, robot_hardware, robot_sensors, attach)}
 with rig:
     cases[case]()
 print("ok")

@@ -1,4 +1,4 @@
-// What models hold by welds: DetachableJoints, and grippers that fix to their palm what their fingers hold. Both can be switched on and
+// Welds that models hold others by: DetachableJoints, and grippers that fix an object to their palm. Both can be switched on and
 // off by name: MODEL::GRIPPER; MODEL::CHILD_MODEL of a DetachableJoint, which is on from the start. The stepping thread only, between the
 // steps and outside of the devices, since a weld is a matter of two models.
 //
@@ -43,18 +43,18 @@ class Attachments {
     LinkId by, link;
   };
   struct Detachable {
-    std::string name;
+    std::string name{};
     ModelId model = 0;
     std::uint32_t parent = 0;
-    std::string child_model, child_link;
+    std::string child_model{}, child_link{};
     bool is_on = true;
     std::optional<Held> held{};
     bool is_told = false;  // that what it has to hold is not there
   };
   struct Grip {
-    std::string name;
+    std::string name{};
     ModelId model = 0;
-    GripperDef def;
+    GripperDef def{};
     std::uint32_t palm = 0;
     std::vector<std::uint32_t> fingers{};
     bool is_on = false;
