@@ -170,6 +170,7 @@ write("hokuyo_urg04lx", "Hokuyo URG-04LX", "Laser range finder: 682 beams over 2
             ray(682, (44 - 384) * step, (725 - 384) * step, 0.02, 5.6, 0.001, 10, 0.01, "0 0 0.055 0 0 0")))
 
 
+# Their feet are lower than the lowest beams at the edges.
 def rings(columns, layers, tilt, smallest, largest, resolution, rate, sigma, pose):
     """Columns all around, counter-clockwise from the back; layers from `-tilt` to `tilt` degrees. An instant for the whole scan, unless <rolling> says otherwise."""
     step = 2 * math.pi / columns
@@ -188,9 +189,9 @@ def rings(columns, layers, tilt, smallest, largest, resolution, rate, sigma, pos
 
 
 write("velodyne_vlp16", "Velodyne VLP-16", "3D laser scanner: 16 layers over 30 degrees, 1800 columns, 0.9 to 130 m, 10 Hz, 8 mm of noise.",
-      laser("velodyne_vlp16", (0.1, 0.1, 0.07), 0.83, 0.03, (0.12, 0.12, 0.14), (0.05, 0.04), rings(1800, 16, 15, 0.9, 130, 0.002, 10, 0.008, "0 0 0.0377 0 0 0")))
+      laser("velodyne_vlp16", (0.1, 0.1, 0.072), 0.83, 0.012, (0.12, 0.12, 0.14), (0.05, 0.06), rings(1800, 16, 15, 0.9, 130, 0.002, 10, 0.008, "0 0 0.0377 0 0 0")))
 write("ouster_os1_64", "Ouster OS1-64", "3D laser scanner: 64 layers over 45 degrees, 1024 columns, 0.5 to 120 m, 10 Hz, 10 mm of noise.",
-      laser("ouster_os1_64", (0.085, 0.085, 0.07), 0.45, 0.03, (0.2, 0.2, 0.22), (0.042, 0.04), rings(1024, 64, 22.5, 0.5, 120, 0.001, 10, 0.01, "0 0 0.038 0 0 0")))
+      laser("ouster_os1_64", (0.085, 0.085, 0.072), 0.45, 0.012, (0.2, 0.2, 0.22), (0.042, 0.06), rings(1024, 64, 22.5, 0.5, 120, 0.001, 10, 0.01, "0 0 0.038 0 0 0")))
 write("sick_lms200", "SICK LMS200", "Laser range finder: 181 beams over 180 degrees, up to 8.192 m at 1 mm, 10 Hz.",
       laser("sick_lms200", (0.156, 0.155, 0.21), 4.5, 0.1, (0.1, 0.2, 0.55), (0.07, 0.11),
             ray(181, -math.pi / 2, math.pi / 2, 0.08, 8.192, 0.001, 10, 0.005, "0 0 0.13 0 0 0")))
