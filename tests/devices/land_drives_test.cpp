@@ -249,6 +249,11 @@ TEST(TrackedVehicle, climbs_a_step_of_two_thirds_of_its_rolls_and_raises_a_flipp
   ride.after(2);
   ASSERT_TRUE(joints.read());
   EXPECT_NEAR(joint_of(joints, 0).position, -1.0, 0.02);
+  // The solver along the tree of joints knows belts as well.
+  const double x = ride.after(0.001).true_pose.x;
+  ASSERT_EQ(ride.f.simulation->physics().last_solver(ride.f.simulation->physics().find("tank").value()), StepSolver::tree);
+  ride.command(0.2, 0, 0);
+  EXPECT_NEAR(ride.after(3).true_pose.x - x, 0.6, 0.02);
 }
 
 TEST(TrackedVehicle, of_gazebo_classic_names_its_links_without_an_element) {
@@ -372,6 +377,27 @@ TEST(LandDrives, stand_on_a_slope_and_roll_down_it_without_motors) {
     }
     EXPECT_GT(ride.after(2).true_velocity[0], 0.5) << kind.iface;
   }
+}
+
+TEST(LandDrives, that_are_weak_go_a_part_of_the_way_and_halted_ones_go_on_as_they_were_told) {
+  LandRide ride(mecanum_text(), "base::position2d");
+  ride.command(0, 0.4, 0);
+  ride.after(0.5);
+  FaultOrder fault;
+  fault.iface = "base::position2d";
+  fault.kind = shm::FaultKind::weak;
+  fault.amount = 0.5;
+  fault.until = std::chrono::seconds(2);
+  ASSERT_TRUE(ride.f.simulation->add_fault(fault));
+  EXPECT_NEAR(ride.after(1).true_velocity[1], 0.2, 0.004);
+  ride.after(1);
+  fault.kind = shm::FaultKind::halted;
+  fault.until = std::chrono::seconds(5);
+  ASSERT_TRUE(ride.f.simulation->add_fault(fault));
+  ride.after(0.1);
+  ride.command(0, 0, 0);
+  EXPECT_NEAR(ride.after(1).true_velocity[1], 0.4, 0.004);
+  EXPECT_NEAR(ride.after(2).true_velocity[1], 0, 1e-3) << "then it hears";
 }
 
 TEST(LandDrives, run_the_same_with_one_and_two_threads_and_after_a_reset) {
