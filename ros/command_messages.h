@@ -11,15 +11,6 @@
 
 namespace ros {
 
-struct TwistStamped {
-  static constexpr std::string_view name = "geometry_msgs/msg/TwistStamped";
-  Header header{};
-  Twist twist{};
-  static void fields(auto& m, auto& visit) {
-    visit("header", m.header);
-    visit("twist", m.twist);
-  }
-};
 struct PoseStamped {
   static constexpr std::string_view name = "geometry_msgs/msg/PoseStamped";
   Header header{};

@@ -139,7 +139,7 @@ struct TwistStamped {
   static constexpr std::string_view name = "geometry_msgs/msg/TwistStamped";
   Header header{};
   Twist twist{};
-  static void fields(const TwistStamped& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("twist", m.twist);
   }
@@ -148,7 +148,7 @@ struct TwistWithCovarianceStamped {
   static constexpr std::string_view name = "geometry_msgs/msg/TwistWithCovarianceStamped";
   Header header{};
   TwistWithCovariance twist{};
-  static void fields(const TwistWithCovarianceStamped& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("twist", m.twist);
   }
@@ -157,7 +157,7 @@ struct PoseWithCovarianceStamped {
   static constexpr std::string_view name = "geometry_msgs/msg/PoseWithCovarianceStamped";
   Header header{};
   PoseWithCovariance pose{};
-  static void fields(const PoseWithCovarianceStamped& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("pose", m.pose);
   }
@@ -424,7 +424,7 @@ struct BatteryState {
   bool present = true;
   std::vector<float> cell_voltage{}, cell_temperature{};
   std::string location{}, serial_number{};
-  static void fields(const BatteryState& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("voltage", m.voltage);
     visit("temperature", m.temperature);
@@ -556,7 +556,7 @@ struct MarkerArray {
 struct Point2D {
   static constexpr std::string_view name = "vision_msgs/msg/Point2D";
   double x = 0, y = 0;
-  static void fields(const Point2D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("x", m.x);
     visit("y", m.y);
   }
@@ -565,7 +565,7 @@ struct Pose2D {
   static constexpr std::string_view name = "vision_msgs/msg/Pose2D";
   Point2D position{};
   double theta = 0;
-  static void fields(const Pose2D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("position", m.position);
     visit("theta", m.theta);
   }
@@ -574,7 +574,7 @@ struct BoundingBox2D {
   static constexpr std::string_view name = "vision_msgs/msg/BoundingBox2D";
   Pose2D center{};
   double size_x = 0, size_y = 0;
-  static void fields(const BoundingBox2D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("center", m.center);
     visit("size_x", m.size_x);
     visit("size_y", m.size_y);
@@ -584,7 +584,7 @@ struct BoundingBox3D {
   static constexpr std::string_view name = "vision_msgs/msg/BoundingBox3D";
   Pose center{};
   Vector3 size{};
-  static void fields(const BoundingBox3D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("center", m.center);
     visit("size", m.size);
   }
@@ -593,7 +593,7 @@ struct ObjectHypothesis {
   static constexpr std::string_view name = "vision_msgs/msg/ObjectHypothesis";
   std::string class_id{};
   double score = 0;
-  static void fields(const ObjectHypothesis& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("class_id", m.class_id);
     visit("score", m.score);
   }
@@ -602,7 +602,7 @@ struct ObjectHypothesisWithPose {
   static constexpr std::string_view name = "vision_msgs/msg/ObjectHypothesisWithPose";
   ObjectHypothesis hypothesis{};
   PoseWithCovariance pose{};
-  static void fields(const ObjectHypothesisWithPose& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("hypothesis", m.hypothesis);
     visit("pose", m.pose);
   }
@@ -613,7 +613,7 @@ struct Detection2D {
   std::vector<ObjectHypothesisWithPose> results{};
   BoundingBox2D bbox{};
   std::string id{};
-  static void fields(const Detection2D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("results", m.results);
     visit("bbox", m.bbox);
@@ -624,7 +624,7 @@ struct Detection2DArray {
   static constexpr std::string_view name = "vision_msgs/msg/Detection2DArray";
   Header header{};
   std::vector<Detection2D> detections{};
-  static void fields(const Detection2DArray& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("detections", m.detections);
   }
@@ -635,7 +635,7 @@ struct Detection3D {
   std::vector<ObjectHypothesisWithPose> results{};
   BoundingBox3D bbox{};
   std::string id{};
-  static void fields(const Detection3D& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("results", m.results);
     visit("bbox", m.bbox);
@@ -646,7 +646,7 @@ struct Detection3DArray {
   static constexpr std::string_view name = "vision_msgs/msg/Detection3DArray";
   Header header{};
   std::vector<Detection3D> detections{};
-  static void fields(const Detection3DArray& m, auto& visit) {
+  static void fields(auto& m, auto& visit) {
     visit("header", m.header);
     visit("detections", m.detections);
   }

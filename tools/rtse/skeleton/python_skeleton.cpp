@@ -16,7 +16,7 @@ using base::Result;
 
 std::string python_name(std::string cpp_name) { return base::join(base::split_list(base::join(base::split_list(cpp_name, ':'), "."), ' '), ""); }
 std::string module_in(const std::string& cpp_name) { return cpp_name.substr(0, cpp_name.find("::")); }
-std::string last_name(const std::string& cpp_name) {
+std::string python_last_name(const std::string& cpp_name) {
   const auto colons = cpp_name.rfind("::");
   return colons == std::string::npos ? cpp_name : cpp_name.substr(colons + 2);
 }
@@ -43,7 +43,7 @@ std::string initial(const NewParameter& parameter) {
   return "[" + base::join(parts, ", ") + "]";
 }
 
-std::string specification(const NewComponent& component) {
+std::string python_specification(const NewComponent& component) {
   std::string text = fmt::format("{}_spec = [", base::to_lower(component.name));
   bool is_first = true;
   const auto add = [&](const std::string& key, const std::string& value) {
@@ -77,7 +77,7 @@ std::string imports(const NewComponent& component) {
   for (const auto& service : component.services) {
     modules.insert(module_in(service.interface));
     if (service.is_provided)
-      examples += fmt::format("from {}_idl_example import {}_i\n", idl_stem(service.idl_file), last_name(service.interface));
+      examples += fmt::format("from {}_idl_example import {}_i\n", idl_stem(service.idl_file), python_last_name(service.interface));
   }
   std::string text = "import sys\n\nimport OpenRTM_aist\n";
   for (const auto& module : modules) text += "import " + module + "\n";
@@ -103,7 +103,7 @@ std::string initialization(const NewComponent& component) {
     if (service.is_provided)
       text += fmt::format(
           "        self._{0} = {1}_i()\n        self._{2}Port.registerProvider(\"{0}\", \"{3}\", self._{0})\n", service.instance,
-          last_name(service.interface), service.port, service.interface);
+          python_last_name(service.interface), service.port, service.interface);
     else
       text += fmt::format(
           "        self._{0} = OpenRTM_aist.CorbaConsumer(interfaceType={1})\n        self._{2}Port.registerConsumer(\"{0}\", \"{3}\", "
@@ -169,7 +169,7 @@ if __name__ == "__main__":
     main()
 )",
                      fmt::arg("description", component.description), fmt::arg("imports", imports(component)),
-                     fmt::arg("specification", specification(component)), fmt::arg("name", component.name),
+                     fmt::arg("specification", python_specification(component)), fmt::arg("name", component.name),
                      fmt::arg("lower", base::to_lower(component.name)), fmt::arg("initialization", initialization(component)),
                      fmt::arg("callbacks", callbacks));
 }
