@@ -134,7 +134,7 @@ void TickGroup::Impl::gather(Data& data, bool looks_at_all) {
 void TickGroup::Impl::call_helpers(Data& data, std::size_t ticks, bool was_long) {
   const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1U);
   const std::size_t helpers = was_long ? std::min({ticks, std::max(processors, data.taken_over + 1), most_group_threads}) - 1 : 0;
-  while (data.threads.size() < std::max<std::size_t>(helpers, 1) + 1 && data.threads.size() < most_group_threads) start_thread(data);
+  for (auto i = data.threads.size(); i < std::max<std::size_t>(helpers, 1) + 1; ++i) start_thread(data);
   data.wanted = helpers;
   const bool is_watched = helpers > 0 || data.resting > 0 || data.asleep == 0;
   data.is_watched = is_watched;
@@ -224,6 +224,10 @@ void TickGroup::Impl::await(const std::shared_ptr<Node>& node) {
   auto data = shared.lock();
   data->awaited.reset();
   data->is_woken = false;
+  if (state == State::dropped || state == State::closed) {
+    node->end = state;
+    node->changed.notify_all();
+  }
   // Nothing came, and nobody woke it: requests are not lost, whatever happens.
   gather(*data, state == State::timed_out && std::chrono::steady_clock::now() - began >= longest_wait_of_group);
   if (node->is_removed) node->changed.notify_all();

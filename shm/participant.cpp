@@ -227,7 +227,7 @@ Participant::State Participant::look() const {
   const Impl& impl = *impl_;
   if (load(impl.simulation.segment().header().state) != RTMSIM_STATE_LIVE) return State::closed;
   const std::uint32_t state = load(impl.slot().state);
-  if (!impl.is_ours() || state == RTMSIM_PARTICIPANT_DROPPED) return State::dropped;
+  if (impl.owner == 0 || !impl.is_ours() || state == RTMSIM_PARTICIPANT_DROPPED) return State::dropped;
   const bool is_called = load(impl.slot().go, std::memory_order_seq_cst) != impl.last_go && state == RTMSIM_PARTICIPANT_ACTIVE;
   return is_called ? State::tick : State::timed_out;
 }

@@ -150,6 +150,10 @@ TEST(TickGroup, wait_reports_that_the_context_leaves_was_dropped_or_that_the_sim
   EXPECT_EQ(leaves.place().wait(), State::timed_out);
   ASSERT_TRUE(f.barrier->drop("dropped"));
   EXPECT_EQ(dropped.place().wait(), State::dropped);
+  TickedContext alone(f, "alone", 30ms);
+  f.barrier->refresh();
+  ASSERT_TRUE(f.barrier->drop("alone"));
+  EXPECT_EQ(alone.place().wait(), State::dropped);
   f.barrier.reset();
   EXPECT_EQ(closed.place().wait(), State::closed);
 }
