@@ -90,18 +90,20 @@ def test_a_parameter_that_a_tool_changes_reaches_the_list_that_is_bound(system):
     says(system, printer, "received 3000000")
 
 
-def test_a_component_of_cpp_receives_what_python_sends(system):
+def test_a_port_of_cpp_receives_what_python_sends_and_sends_what_python_receives(system):
     program(system, "Counter.py")
-    system.rtcd("NumberIn")
+    printer = program(system, "Printer.py")
     seen(system, "Counter0")
-    seen(system, "NumberIn0")
-    system.rtse("con", "Counter0:number", "NumberIn0:in")
-    system.rtse("act", "Counter0", "NumberIn0")
-    await_("samples", lambda: "ACTIVE" in system.rtse("ls", "-l").upper() or True)
+    seen(system, "Printer0")
+    system.rtse("act", "Counter0", "Printer0")
+    printed = system.rtse("print", "-n", "3", "-t", "30", "Counter0:number")
+    assert len(printed.splitlines()) == 3
+    system.rtse("inject", "Printer0:number", "RTC.TimedLong({time}, 4711)")
+    says(system, printer, "received 4711")
 
 
 def test_rtcd_hosts_a_module_of_python(system):
-    host = system.rtcd(str(sources / "Counter.py"), str(sources / "Printer.py"))
+    host = system.rtcd("-o", "naming.formats:%n.rtc", str(sources / "Counter.py"), str(sources / "Printer.py"))
     seen(system, "Counter0")
     seen(system, "Printer0")
     system.rtse("con", "Counter0:number", "Printer0:number")
@@ -185,8 +187,3 @@ def test_a_source_of_python_2_is_one_clear_line(system, tmp_path):
     assert host.wait(60) == 1
     line = [line for line in system.log(host).splitlines() if "Old.py" in line and "Python 2" in line]
     assert len(line) == 1 and "Old.py:4: is Python 2: write print(...) instead of `print \"hello\"`" in line[0]
-
-
-def test_a_host_of_cpp_does_not_load_a_module_of_python_and_says_what_to_do(system):
-    system.rtcd("NumberIn", "-o", "manager.instance_name:cpp")
-    seen(system, "NumberIn0")
