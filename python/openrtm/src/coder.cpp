@@ -774,6 +774,7 @@ void encode(const Type& type, PyObject* value, bool is_little, Octets& to) {
     return;
   }
   cdrMemoryStream stream(0, true);  // zeroes between the members
+  if (!stream.TCS_W()) throw CORBA::BAD_INV_ORDER();  // there is no ORB yet
   stream.setByteSwapFlag(is_little);
   encode(type, value, stream);
   const auto* first = static_cast<const std::byte*>(stream.bufPtr());
@@ -788,6 +789,7 @@ PyObject* decode(const Type& type, std::span<const std::byte> octets, bool is_li
   std::vector<std::uint64_t> aligned(octets.size() / 8 + 1);
   std::memcpy(aligned.data(), octets.data(), octets.size());
   cdrMemoryStream stream(aligned.data(), octets.size());
+  if (!stream.TCS_W()) throw CORBA::BAD_INV_ORDER();
   stream.setByteSwapFlag(is_little);
   try {
     return decode(type, stream);
