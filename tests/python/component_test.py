@@ -187,3 +187,20 @@ def test_a_source_of_python_2_is_one_clear_line(system, tmp_path):
     assert host.wait(60) == 1
     line = [line for line in system.log(host).splitlines() if "Old.py" in line and "Python 2" in line]
     assert len(line) == 1 and "Old.py:4: is Python 2: write print(...) instead of `print \"hello\"`" in line[0]
+
+
+def test_a_run_in_lock_step_with_a_component_of_python_is_repeatable(tmp_path):
+    import rtmsim
+    world = here.parents[1] / "worlds" / "obstacle_course.sdf"
+    system_file = here.parents[1] / "worlds" / "systems" / "obstacle_avoidance.xml"
+    text = system_file.read_text()
+    start = text.index("<rts:ConfigurationSets", text.index(":LaserObstacleAvoid:"))
+    end = text.index("</rts:ConfigurationSets>", start) + len("</rts:ConfigurationSets>")
+    text = text[:start] + text[end:]
+    profile = tmp_path / "python.xml"
+    profile.write_text(text.replace("LaserObstacleAvoid", "Avoider"))
+    results = [rtmsim.run(str(profile), str(world), duration=3, expect=[{"path_length": {"model": "pioneer2dx", "min": 0.3}}],
+                          options=["--module-path", str(sources), "--module-path", lib_dir]) for _ in range(2)]
+    for result in results:
+        assert result.passed, result.why
+    assert results[0].state_hash and results[0].state_hash == results[1].state_hash

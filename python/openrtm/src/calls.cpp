@@ -369,7 +369,12 @@ PyObject* reference_out(CORBA::Object_ptr object, const char* id) {
   if (!cls) cls = asked_for ? asked_for : PyDict_GetItemString(mapping, "");
   try {
     const py::object made = py::cast(new ObjRef{CORBA::Object::_duplicate(object)}, py::return_value_policy::take_ownership);
-    return PyObject_CallOneArg(cls, made.ptr());
+    // Not by a call: the stubs of omniidl 3 take no argument.
+    auto* const type = reinterpret_cast<PyTypeObject*>(cls);
+    static PyObject* const nothing = PyTuple_New(0);
+    Ref stub(type->tp_new(type, nothing, nullptr));
+    if (!stub || PyObject_SetAttrString(stub.get(), "_obj", made.ptr()) != 0) return nullptr;
+    return stub.release();
   } catch (py::error_already_set& error) {
     error.restore();
     return nullptr;

@@ -273,7 +273,9 @@ class CorbaConsumer:
     def setObject(self, obj):
         if obj is None:
             return False
-        return self._take(type(obj)(obj._obj.with_timeout()))
+        own = obj._as(type(obj))
+        own._obj = obj._obj.with_timeout()
+        return self._take(own)
 
     def _take(self, obj):
         if obj is None:
