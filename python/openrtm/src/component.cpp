@@ -66,7 +66,10 @@ void Component::keep_self() {
 }
 
 void Component::let_self_go() {
-  if (std::exchange(is_kept_, false)) Py_XDECREF(self_);
+  if (!std::exchange(is_kept_, false) || !self_) return;
+  const Ref self(self_);
+  const Ref result(PyObject_CallMethod(self.get(), "_let_go", nullptr));
+  if (!result) PyErr_Clear();
 }
 
 RTC::ReturnCode_t Component::callback(PyObject* name, const RTC::UniqueId* id) {

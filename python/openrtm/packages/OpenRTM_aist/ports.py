@@ -137,6 +137,7 @@ class _DataPort(PortBase):
         """Call the listener at events of samples. Returns what removeConnectorDataListener takes."""
         registered = _Registered(listener)
         self._add_data_listener(type_, _data_function(registered, self._descriptor()))
+        self._registered.append(registered)
         return registered
 
     def addConnectorListener(self, type_, listener, autoclean=True):

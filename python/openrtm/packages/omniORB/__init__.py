@@ -221,6 +221,8 @@ def _add_ours(name, module):
         for line in text:
             if line.startswith("import ") and line.strip().endswith("_idl"):
                 importlib.import_module(line.split()[1])
+            elif line.startswith("omniORB.importLater("):
+                importLater(name, line.split('"')[1])
 
 
 def promotePartialModule(name):
