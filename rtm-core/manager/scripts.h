@@ -1,4 +1,4 @@
-// What a host of components in another language adds to the manager of its process (python/openrtm). Any thread, between Manager::init and
+// Adds factories and loaders of another language to the manager of a process (python/openrtm). Any thread, between Manager::init and
 // activateManager. Not installed.
 #pragma once
 

@@ -150,7 +150,8 @@ int host(int argc, char** argv) {
   if (!parsed) return fail(2, parsed.error().message);
 
   if (const auto named = read_named(arguments, parsed->rest); named && is_for_python(named->modules, named->load_path)) {
-    if (with_naming) return fail(2, "--with-naming does not go with modules of Python: start the name server by another rtcd --with-naming");
+    if (with_naming)
+      return fail(2, "--with-naming does not go with modules of Python: start the name server by another rtcd --with-naming");
     return fail(1, become_python(without(arguments, parsed->rest), parsed->rest));
   }
 

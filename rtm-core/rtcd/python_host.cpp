@@ -39,7 +39,7 @@ void add_packages() {
   std::error_code error;
   const auto prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
   for (const auto& folder : {prefix / "python", prefix / "lib/python3/dist-packages"}) {
-    if (prefix == "/usr" || !is_file(folder / "OpenRTM_aist/host.py")) continue;
+    if (prefix == "/usr" || !is_file(folder / "OpenRTM_aist/rtcd.py")) continue;
     const char* known = std::getenv("PYTHONPATH");
     setenv("PYTHONPATH", (folder.string() + (known && *known ? std::string(":") + known : "")).c_str(), 1);
     return;
@@ -64,7 +64,7 @@ bool is_for_python(const std::vector<std::string>& modules, const std::vector<st
 
 std::string become_python(const std::vector<std::string>& options, const std::vector<std::string>& modules) {
   add_packages();
-  std::vector<std::string> words = {"python3", "-m", "OpenRTM_aist.host"};
+  std::vector<std::string> words = {"python3", "-m", "OpenRTM_aist.rtcd"};
   words.insert(words.end(), options.begin(), options.end());
   words.emplace_back("--");
   words.insert(words.end(), modules.begin(), modules.end());

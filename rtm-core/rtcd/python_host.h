@@ -10,5 +10,5 @@
 // *.py. A module is a name, a path, `name(function)` or `Type?key=value`.
 bool is_for_python(const std::vector<std::string>& modules, const std::vector<std::string>& load_path);
 
-// Becomes `python3 -m OpenRTM_aist.host OPTIONS -- MODULES`. Returns only when that fails, with the reason.
+// Becomes `python3 -m OpenRTM_aist.rtcd OPTIONS -- MODULES`. Returns only when that fails, with the reason.
 std::string become_python(const std::vector<std::string>& options, const std::vector<std::string>& modules);

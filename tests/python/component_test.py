@@ -90,18 +90,20 @@ def test_a_parameter_that_a_tool_changes_reaches_the_list_that_is_bound(system):
     says(system, printer, "received 3000000")
 
 
-def test_a_component_of_cpp_receives_what_python_sends(system):
+def test_a_port_of_cpp_receives_what_python_sends_and_sends_what_python_receives(system):
     program(system, "Counter.py")
-    system.rtcd("NumberIn")
+    printer = program(system, "Printer.py")
     seen(system, "Counter0")
-    seen(system, "NumberIn0")
-    system.rtse("con", "Counter0:number", "NumberIn0:in")
-    system.rtse("act", "Counter0", "NumberIn0")
-    await_("samples", lambda: "ACTIVE" in system.rtse("ls", "-l").upper() or True)
+    seen(system, "Printer0")
+    system.rtse("act", "Counter0", "Printer0")
+    printed = system.rtse("print", "-n", "3", "-t", "30", "Counter0:number")
+    assert len(printed.splitlines()) == 3
+    system.rtse("inject", "Printer0:number", "RTC.TimedLong({time}, 4711)")
+    says(system, printer, "received 4711")
 
 
 def test_rtcd_hosts_a_module_of_python(system):
-    host = system.rtcd(str(sources / "Counter.py"), str(sources / "Printer.py"))
+    host = system.rtcd("-o", "naming.formats:%n.rtc", str(sources / "Counter.py"), str(sources / "Printer.py"))
     seen(system, "Counter0")
     seen(system, "Printer0")
     system.rtse("con", "Counter0:number", "Printer0:number")
@@ -187,6 +189,89 @@ def test_a_source_of_python_2_is_one_clear_line(system, tmp_path):
     assert len(line) == 1 and "Old.py:4: is Python 2: write print(...) instead of `print \"hello\"`" in line[0]
 
 
-def test_a_host_of_cpp_does_not_load_a_module_of_python_and_says_what_to_do(system):
-    system.rtcd("NumberIn", "-o", "manager.instance_name:cpp")
-    seen(system, "NumberIn0")
+def test_a_run_in_lock_step_with_a_component_of_python_is_repeatable(tmp_path):
+    import rtmsim
+    world = here.parents[1] / "worlds" / "obstacle_course.sdf"
+    system_file = here.parents[1] / "worlds" / "systems" / "obstacle_avoidance.xml"
+    text = system_file.read_text()
+    start = text.index("<rts:ConfigurationSets", text.index(":LaserObstacleAvoid:"))
+    end = text.index("</rts:ConfigurationSets>", start) + len("</rts:ConfigurationSets>")
+    text = text[:start] + text[end:]
+    profile = tmp_path / "python.xml"
+    profile.write_text(text.replace("LaserObstacleAvoid", "Avoider"))
+    results = [rtmsim.run(str(profile), str(world), duration=3, expect=[{"path_length": {"model": "pioneer2dx", "min": 0.3}}],
+                          options=["--module-path", str(sources), "--module-path", lib_dir]) for _ in range(2)]
+    for result in results:
+        assert result.passed, result.why
+    assert results[0].state_hash and results[0].state_hash == results[1].state_hash
+
+
+@pytest.mark.parametrize("statement", ["while True: pass", "import time; time.sleep(1000)", "import re; re.match('(a*)*$', 'a' * 40 + 'b')",
+                                       "sys.stdin.readline()", "import threading; threading.Event().wait()"])
+def test_a_callback_that_never_returns_does_not_keep_the_process_from_its_end(system, tmp_path, statement):
+    file = written(tmp_path, "Stuck", f"""
+    def onExecute(self, ec_id):
+        print("stuck", flush=True)
+        {statement}
+        return RTC.RTC_OK
+""")
+    process = program(system, file, "-o", "exec_cxt.callback_timeout:0.5", folder=tmp_path, input=subprocess.PIPE)
+    seen(system, "Stuck0")
+    system.try_rtse("act", "Stuck0")
+    says(system, process, "stuck")
+    process.terminate()
+    process.wait(50)
+
+
+def test_a_program_that_ends_in_a_callback_is_gone_at_once(system, tmp_path):
+    file = written(tmp_path, "Gone", """
+    def onExecute(self, ec_id):
+        os._exit(7)
+""", extra="import os")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Gone0")
+    system.try_rtse("act", "Gone0")
+    assert process.wait(60) == 7
+
+
+@pytest.mark.parametrize("body", ["    def __init__(self, manager):\n        raise ValueError('not today')\n",
+                                  "    def __init__(self, manager):\n        OpenRTM_aist.DataFlowComponentBase.__init__(self, manager)\n"
+                                  "        raise ValueError('not today')\n",
+                                  "    def onInitialize(self):\n        raise ValueError('not today')\n"])
+def test_a_component_that_cannot_be_made_is_none_and_the_log_says_why(system, tmp_path, body):
+    file = written(tmp_path, "Never", body)
+    text = (tmp_path / file).read_text().replace('    manager.createComponent("Never")', '    print("made", manager.createComponent("Never"), flush=True)')
+    (tmp_path / file).write_text(text)
+    process = program(system, file, folder=tmp_path)
+    log = says(system, process, "made None")
+    assert "ValueError: not today" in log
+    process.terminate()
+    assert process.wait(60) == 0
+
+
+def test_a_component_leaves_and_another_one_comes_in_one_process(system, tmp_path):
+    file = written(tmp_path, "Again", """
+    def onInitialize(self):
+        self._out = OpenRTM_aist.OutPort("out", RTC.TimedLong(RTC.Time(0, 0), 0))
+        self.addOutPort("out", self._out)
+        return RTC.RTC_OK
+    def onFinalize(self):
+        print("finalized", self.getInstanceName(), flush=True)
+        return RTC.RTC_OK
+    def __del__(self):
+        print("deleted", flush=True)
+""")
+    text = (tmp_path / file).read_text().replace("mgr.runManager()", """mgr.runManager(True)
+    import gc, time
+    for i in range(20):
+        mgr.deleteComponent(mgr.getComponents()[0].getInstanceName())
+        while mgr.getComponents(): time.sleep(0.01)
+        mgr.createComponent("Again")
+    gc.collect()
+    print("twenty times", flush=True)
+    mgr.shutdown()""")
+    (tmp_path / file).write_text(text)
+    process = program(system, file, folder=tmp_path)
+    assert process.wait(60) == 0
+    log = system.log(process)
+    assert "twenty times" in log and log.count("finalized") >= 20 and log.count("deleted") >= 19

@@ -80,6 +80,7 @@ const std::vector<Layer> layers = {
     {"clients/way-points", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},
     {"clients/follow", {"protocol", "dds", "ros", "base"}},
+    {"python/openrtm", {"python", "manager", "managed", "rtm", "coil", "corba", "base", "stubs"}, {"pybind11", "omniORB"}},
     {"python", {"python", "recording", "shm", "base"}, {"pybind11"}},
 };
 
@@ -123,6 +124,7 @@ std::string owner(const std::string& header) {
       {"studio/", "studio"},
       {"page/", "page"},
       {"python/", "python"},
+      {"Python.h", "pybind11"},
       {"omniORB4/", "omniORB"},
       {"omnithread", "omniORB"},
       {"COS/", "omniORB"},

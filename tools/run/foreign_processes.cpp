@@ -25,9 +25,7 @@ std::string type_of(const SavedComponent& component) {
   return parts.size() >= 4 ? parts[3] : component.instance;
 }
 
-bool has_module(const std::string& type, const std::vector<std::string>& paths) {
-  return module_kind(type, paths) != ModuleKind::none;
-}
+bool has_module(const std::string& type, const std::vector<std::string>& paths) { return module_kind(type, paths) != ModuleKind::none; }
 
 std::string shortened(const std::string& command) {
   constexpr std::size_t most = 60;

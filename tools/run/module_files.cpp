@@ -21,10 +21,9 @@ std::string module_names(const std::string& type) { return type + ".so or " + ty
 
 std::map<std::string, std::string> same_python() {
   std::map<std::string, std::string> variables;
-  for (const auto& [name, value] : {std::pair{"PYTHONHASHSEED", "0"}, std::pair{"OPENBLAS_NUM_THREADS", "1"},
-                                    std::pair{"OMP_NUM_THREADS", "1"},
-                                    std::pair{"NPY_DISABLE_CPU_FEATURES",
-                                              "FMA3 AVX2 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL"}}) {
+  for (const auto& [name, value] :
+       {std::pair{"PYTHONHASHSEED", "0"}, std::pair{"OPENBLAS_NUM_THREADS", "1"}, std::pair{"OMP_NUM_THREADS", "1"},
+        std::pair{"NPY_DISABLE_CPU_FEATURES", "FMA3 AVX2 AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL"}}) {
     if (std::getenv(name) == nullptr) variables[name] = value;
   }
   return variables;

@@ -78,8 +78,7 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .empty_file = configuration,
                               .options = more,
                               .creations = creations};
-  std::map<std::string, std::string> environment = {
-      {"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()};
+  std::map<std::string, std::string> environment = {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()};
   environment.merge(same_python());
   auto started = start_program(hooks_.warm, {host_words(settings), environment, log});
   if (!started) return started.error();

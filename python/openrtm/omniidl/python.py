@@ -19,7 +19,8 @@ usage_string = """\
   -Wbmodules=NAME Put the packages of modules into this package
   -Wbstubs=NAME   Put the stub files into this package
   -Wbextern=NAME  Do not import the stubs of this included file, or of NAME:PACKAGE from that package
-  -Wbno_package   Write no packages for modules"""
+  -Wbno_package   Write no packages for modules
+  -Wblater        Packages that have other stubs load these when a name is missing"""
 
 _BASIC = {
     idltype.tk_null: "null", idltype.tk_void: "void", idltype.tk_short: "short", idltype.tk_long: "long",
@@ -32,13 +33,13 @@ _BASIC = {
 
 class Options:
     def __init__(self, args):
-        self.stdout = self.inline = self.example = self.no_package = False
+        self.stdout = self.inline = self.example = self.no_package = self.later = False
         self.global_module = "_GlobalIDL"
         self.modules = self.stubs = ""
         self.extern = {}
         for arg in args:
             name, _, value = arg.partition("=")
-            if arg in ("stdout", "inline", "example", "no_package"):
+            if arg in ("stdout", "inline", "example", "no_package", "later"):
                 setattr(self, arg, True)
             elif name == "global" and value:
                 self.global_module = value
@@ -122,13 +123,14 @@ def _write_package(options, name, stub, is_poa):
                 line = line.strip()
                 if line.startswith("# ** "):
                     section = int(line[5])
-                elif section == 1 and line.startswith("import "):
+                elif section == 1 and line.startswith(("import ", "omniORB.importLater(")):
                     stubs.append(line)
                 elif section == 2 and line.startswith("from . import "):
                     subs.append(line)
-    for line in ["import " + options.stubs + stub.module]:
-        if line not in stubs:
-            stubs.append(line)
+    name_of_stub = options.stubs + stub.module
+    line = 'omniORB.importLater(__name__, "%s")' % name_of_stub if options.later and any(one.startswith("import ") for one in stubs) else "import " + name_of_stub
+    if line not in stubs:
+        stubs.append(line)
     for other in stub.modules_seen:
         if other.rpartition(".")[0] == name:
             line = "from . import " + other.rpartition(".")[2]

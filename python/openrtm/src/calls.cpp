@@ -1,10 +1,10 @@
 #include "calls.h"
 
-#include <pybind11/stl.h>
+#include <omniORB4/IOP_C.h>
 #include <omniORB4/callDescriptor.h>
 #include <omniORB4/callHandle.h>
-#include <omniORB4/IOP_C.h>
 #include <omniORB4/minorCode.h>
+#include <pybind11/stl.h>
 #include <rtm/SystemLogger.h>
 
 #include <cstring>
@@ -163,7 +163,8 @@ py::object invoke(const ObjRef& self, const std::string& name, const py::object&
   const Operation* operation = operation_of(descriptor.ptr());
   if (!operation) throw py::error_already_set();
   if (arguments.size() != operation->ins.size()) {
-    throw py::type_error(name + "() takes " + std::to_string(operation->ins.size()) + " arguments, got " + std::to_string(arguments.size()));
+    throw py::type_error(name + "() takes " + std::to_string(operation->ins.size()) + " arguments, got " +
+                         std::to_string(arguments.size()));
   }
   ClientCall call(name, *operation, arguments.ptr());
   try {
@@ -369,7 +370,12 @@ PyObject* reference_out(CORBA::Object_ptr object, const char* id) {
   if (!cls) cls = asked_for ? asked_for : PyDict_GetItemString(mapping, "");
   try {
     const py::object made = py::cast(new ObjRef{CORBA::Object::_duplicate(object)}, py::return_value_policy::take_ownership);
-    return PyObject_CallOneArg(cls, made.ptr());
+    // Not by a call: the stubs of omniidl 3 take no argument.
+    auto* const type = reinterpret_cast<PyTypeObject*>(cls);
+    static PyObject* const nothing = PyTuple_New(0);
+    Ref stub(type->tp_new(type, nothing, nullptr));
+    if (!stub || PyObject_SetAttrString(stub.get(), "_obj", made.ptr()) != 0) return nullptr;
+    return stub.release();
   } catch (py::error_already_set& error) {
     error.restore();
     return nullptr;
@@ -378,7 +384,8 @@ PyObject* reference_out(CORBA::Object_ptr object, const char* id) {
 
 // --- servants
 
-Servant::Servant(const py::object& self, const py::dict& operations, std::vector<std::string> ids) : self_(self.ptr()), ids_(std::move(ids)) {
+Servant::Servant(const py::object& self, const py::dict& operations, std::vector<std::string> ids)
+    : self_(self.ptr()), ids_(std::move(ids)) {
   for (const auto& [name, descriptor] : operations) {
     const Operation* operation = operation_of(descriptor.ptr());
     if (!operation) throw py::error_already_set();
@@ -499,7 +506,8 @@ void add_references(py::module_& module) {
       .def("invoke", &invoke)
       .def("is_a", [](const ObjRef& self, const std::string& id) { return asked([&] { return bool(self.object->_is_a(id.c_str())); }); })
       .def("non_existent", [](const ObjRef& self) { return asked([&] { return bool(self.object->_non_existent()); }); })
-      .def("is_equivalent", [](const ObjRef& self, const ObjRef& other) { return asked([&] { return bool(self.object->_is_equivalent(other.object)); }); })
+      .def("is_equivalent",
+           [](const ObjRef& self, const ObjRef& other) { return asked([&] { return bool(self.object->_is_equivalent(other.object)); }); })
       .def("hash", [](const ObjRef& self, CORBA::ULong most) { return asked([&] { return self.object->_hash(most); }); })
       .def("repository_id", [](const ObjRef& self) { return std::string(self.object->_PR_getobj()->_mostDerivedRepoId()); })
       .def("local_servant", &local_servant)
@@ -514,7 +522,8 @@ void add_references(py::module_& module) {
                return own;
              });
            })
-      .def("set_timeout", [](const ObjRef& self, long milliseconds) { corba::limit_calls(self.object, std::chrono::milliseconds(milliseconds)); });
+      .def("set_timeout",
+           [](const ObjRef& self, long milliseconds) { corba::limit_calls(self.object, std::chrono::milliseconds(milliseconds)); });
   py::class_<Servant, std::shared_ptr<Servant>>(module, "Servant")
       .def(py::init([](const py::object& self, const py::dict& operations, std::vector<std::string> ids) {
         return owned(new Servant(self, operations, std::move(ids)));
@@ -532,9 +541,7 @@ void add_references(py::module_& module) {
 
 void add_orb(py::module_& module) {
   module.def("orb_init", &orb_init);
-  module.def("orb_run", [] {
-    unlocked([] { current_orb()->run(); });
-  });
+  module.def("orb_run", [] { unlocked([] { current_orb()->run(); }); });
   module.def("orb_shutdown", [] { unlocked([] { current_orb()->shutdown(false); }); });
   module.def("set_call_timeout", [](unsigned long milliseconds) { omniORB::setClientCallTimeout(milliseconds); });
   module.def("string_to_object", [](const std::string& text) {
@@ -611,8 +618,7 @@ py::bytes cdr_marshal(const py::object& descriptor, const py::object& value, con
 py::object cdr_unmarshal(const py::object& descriptor, const std::string& octets, const py::object& endian) {
   const Type& type = checked(descriptor);
   try {
-    if (!endian.is_none())
-      return py::reinterpret_steal<py::object>(decode(type, std::as_bytes(std::span(octets)), py::cast<bool>(endian)));
+    if (!endian.is_none()) return py::reinterpret_steal<py::object>(decode(type, std::as_bytes(std::span(octets)), py::cast<bool>(endian)));
     cdrEncapsulationStream stream(reinterpret_cast<const CORBA::Octet*>(octets.data()), static_cast<CORBA::ULong>(octets.size()), true);
     return py::reinterpret_steal<py::object>(decode(type, stream));
   } catch (const PythonFailed&) {

@@ -5,8 +5,8 @@
 // caller, and its traceback is logged here.
 #pragma once
 
-#include <pybind11/pybind11.h>
 #include <omniORB4/CORBA.h>
+#include <pybind11/pybind11.h>
 
 #include <map>
 #include <string>

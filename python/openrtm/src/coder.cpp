@@ -237,7 +237,7 @@ Ref coded_text(const Type& type, PyObject* value) {
   if (std::memchr(PyBytes_AS_STRING(octets.get()), 0, size)) {
     throw BadValue{{}, name_of(type) + " without the character 0", described(value)};
   }
-  if (type.bound && size > type.bound) throw BadValue{{}, name_of(type), std::to_string(size) + " octets"};
+  if (type.bound && size > type.bound) throw BadValue{{}, name_of(type), std::to_string(size) + " bytes"};
   return octets;
 }
 
@@ -597,8 +597,7 @@ PyObject* read_sequence(Reader& from, const Type& type) {
       return checked(PyBytes_FromStringAndSize(reinterpret_cast<const char*>(from.octets(count)), static_cast<Py_ssize_t>(count)));
     case CORBA::tk_char:
       from.expect(count, 1);
-      return checked(
-          PyUnicode_DecodeLatin1(reinterpret_cast<const char*>(from.octets(count)), static_cast<Py_ssize_t>(count), nullptr));
+      return checked(PyUnicode_DecodeLatin1(reinterpret_cast<const char*>(from.octets(count)), static_cast<Py_ssize_t>(count), nullptr));
     case CORBA::tk_double:
       return read_numbers<Reader, double>(from, count, PyFloat_FromDouble);
     case CORBA::tk_float:
@@ -666,7 +665,7 @@ PyObject* read_with_stream(Reader& from, const Type& type) {
       return checked(PyUnicode_FromOrdinal(static_cast<int>(stream.unmarshalWChar())));
     case CORBA::tk_wstring: {
       const std::unique_ptr<CORBA::WChar, void (*)(CORBA::WChar*)> letters(stream.unmarshalWString(static_cast<int>(type.bound)),
-                                                                        [](CORBA::WChar* text) { CORBA::wstring_free(text); });
+                                                                           [](CORBA::WChar* text) { CORBA::wstring_free(text); });
       std::vector<Py_UCS4> text;
       for (const CORBA::WChar* at = letters.get(); *at; ++at) {
         const auto unit = static_cast<Py_UCS4>(*at);
@@ -773,7 +772,8 @@ void encode(const Type& type, PyObject* value, bool is_little, Octets& to) {
     write(writer, type, value);
     return;
   }
-  cdrMemoryStream stream(0, true);  // zeroes between the members
+  cdrMemoryStream stream(0, true);                    // zeroes between the members
+  if (!stream.TCS_W()) throw CORBA::BAD_INV_ORDER();  // there is no ORB yet
   stream.setByteSwapFlag(is_little);
   encode(type, value, stream);
   const auto* first = static_cast<const std::byte*>(stream.bufPtr());
@@ -788,6 +788,7 @@ PyObject* decode(const Type& type, std::span<const std::byte> octets, bool is_li
   std::vector<std::uint64_t> aligned(octets.size() / 8 + 1);
   std::memcpy(aligned.data(), octets.data(), octets.size());
   cdrMemoryStream stream(aligned.data(), octets.size());
+  if (!stream.TCS_W()) throw CORBA::BAD_INV_ORDER();
   stream.setByteSwapFlag(is_little);
   try {
     return decode(type, stream);

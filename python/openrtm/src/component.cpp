@@ -66,7 +66,10 @@ void Component::keep_self() {
 }
 
 void Component::let_self_go() {
-  if (std::exchange(is_kept_, false)) Py_XDECREF(self_);
+  if (!std::exchange(is_kept_, false) || !self_) return;
+  const Ref self(self_);
+  const Ref result(PyObject_CallMethod(self.get(), "_let_go", nullptr));
+  if (!result) PyErr_Clear();
 }
 
 RTC::ReturnCode_t Component::callback(PyObject* name, const RTC::UniqueId* id) {
@@ -267,15 +270,21 @@ void add_configuration(py::class_<Component, Holder>& cls) {
       .def("_config_have", [](Component& self, const std::string& id) { return self.m_configsets.haveConfig(id.c_str()); })
       .def("_config_is_active", [](Component& self) { return self.m_configsets.isActive(); })
       .def("_config_sets", &sets_of)
-      .def("_config_set", [](Component& self, const std::string& id) { return Properties::copy_of(self.m_configsets.getConfigurationSet(id.c_str())); })
+      .def("_config_set",
+           [](Component& self, const std::string& id) { return Properties::copy_of(self.m_configsets.getConfigurationSet(id.c_str())); })
       .def("_config_set_values",
-           [](Component& self, const Properties& set) { return unlocked([&] { return self.m_configsets.setConfigurationSetValues(*set.node); }); })
-      .def("_config_add",
-           [](Component& self, const Properties& set) { return unlocked([&] { return self.m_configsets.addConfigurationSet(*set.node); }); })
+           [](Component& self, const Properties& set) {
+             return unlocked([&] { return self.m_configsets.setConfigurationSetValues(*set.node); });
+           })
+      .def("_config_add", [](Component& self,
+                             const Properties& set) { return unlocked([&] { return self.m_configsets.addConfigurationSet(*set.node); }); })
       .def("_config_remove",
-           [](Component& self, const std::string& id) { return unlocked([&] { return self.m_configsets.removeConfigurationSet(id.c_str()); }); })
-      .def("_config_activate",
-           [](Component& self, const std::string& id) { return unlocked([&] { return self.m_configsets.activateConfigurationSet(id.c_str()); }); });
+           [](Component& self, const std::string& id) {
+             return unlocked([&] { return self.m_configsets.removeConfigurationSet(id.c_str()); });
+           })
+      .def("_config_activate", [](Component& self, const std::string& id) {
+        return unlocked([&] { return self.m_configsets.activateConfigurationSet(id.c_str()); });
+      });
 }
 
 void add_names(py::class_<Component, Holder>& cls) {
@@ -287,7 +296,12 @@ void add_names(py::class_<Component, Holder>& cls) {
       .def("getVendor", [](Component& self) { return std::string(self.getVendor()); })
       .def("getCategory", [](Component& self) { return std::string(self.getCategory()); })
       .def("getNamingNames", [](Component& self) { return self.getNamingNames(); })
-      .def("_properties_of", [](Component& self) { return Properties{nullptr, &self.m_properties}; }, py::keep_alive<0, 1>())
+      .def(
+          "_properties_of",
+          [](Component& self) {
+            return Properties{nullptr, &self.m_properties};
+          },
+          py::keep_alive<0, 1>())
       .def("setProperties", [](Component& self, const Properties& other) { unlocked([&] { self.setProperties(*other.node); }); })
       .def("_reference", [](Component& self) {
         CORBA::Object_var object;
@@ -297,39 +311,44 @@ void add_names(py::class_<Component, Holder>& cls) {
 }
 
 void add_ports_of_components(py::class_<Component, Holder>& cls) {
-  cls.def("_add_in_port", [](Component& self, const std::string& name, InPort& port) {
-       return unlocked([&] { return self.addInPort(name.c_str(), port); });
-     })
-      .def("_add_out_port", [](Component& self, const std::string& name, OutPort& port) {
-        return unlocked([&] { return self.addOutPort(name.c_str(), port); });
-      })
+  cls.def("_add_in_port", [](Component& self, const std::string& name,
+                             InPort& port) { return unlocked([&] { return self.addInPort(name.c_str(), port); }); })
+      .def("_add_out_port", [](Component& self, const std::string& name,
+                               OutPort& port) { return unlocked([&] { return self.addOutPort(name.c_str(), port); }); })
       .def("_add_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.addPort(port); }); })
       .def("_remove_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.removePort(port); }); })
       .def("readAll", [](Component& self) { return unlocked([&] { return self.readAll(); }); })
       .def("writeAll", [](Component& self) { return unlocked([&] { return self.writeAll(); }); })
-      .def("setReadAll", [](Component& self, bool read, bool completion) { self.setReadAll(read, completion); }, py::arg("read") = true,
-           py::arg("completion") = false)
-      .def("setWriteAll", [](Component& self, bool write, bool completion) { self.setWriteAll(write, completion); }, py::arg("write") = true,
-           py::arg("completion") = false);
+      .def(
+          "setReadAll", [](Component& self, bool read, bool completion) { self.setReadAll(read, completion); }, py::arg("read") = true,
+          py::arg("completion") = false)
+      .def(
+          "setWriteAll", [](Component& self, bool write, bool completion) { self.setWriteAll(write, completion); }, py::arg("write") = true,
+          py::arg("completion") = false);
 }
 
 void add_contexts(py::class_<Component, Holder>& cls) {
   const auto coded = [](auto function) {
-    return [function](Component& self, long id) { return code_item(unlocked([&] { return (self.*function)(static_cast<RTC::UniqueId>(id)); })); };
+    return [function](Component& self, long id) {
+      return code_item(unlocked([&] { return (self.*function)(static_cast<RTC::UniqueId>(id)); }));
+    };
   };
   cls.def("activate", coded(&Component::activate))
       .def("deactivate", coded(&Component::deactivate))
       .def("reset", coded(&Component::reset))
       .def("isOwnExecutionContext", [](Component& self, long id) { return self.isOwnExecutionContext(static_cast<RTC::UniqueId>(id)); })
-      .def("getExecutionRate", [](Component& self, long id) { return unlocked([&] { return self.getExecutionRate(static_cast<RTC::UniqueId>(id)); }); })
-      .def("setExecutionRate", [](Component& self, long id, double rate) {
-        return code_item(unlocked([&] { return self.setExecutionRate(static_cast<RTC::UniqueId>(id), rate); }));
-      })
-      .def("getExecutionContext", [](Component& self, long id) {
-        CORBA::Object_var object;
-        unlocked([&] { object = self.getExecutionContext(static_cast<RTC::UniqueId>(id)); });
-        return py::reinterpret_steal<py::object>(reference_out(object, "IDL:omg.org/RTC/ExecutionContext:1.0"));
-      })
+      .def("getExecutionRate",
+           [](Component& self, long id) { return unlocked([&] { return self.getExecutionRate(static_cast<RTC::UniqueId>(id)); }); })
+      .def("setExecutionRate",
+           [](Component& self, long id, double rate) {
+             return code_item(unlocked([&] { return self.setExecutionRate(static_cast<RTC::UniqueId>(id), rate); }));
+           })
+      .def("getExecutionContext",
+           [](Component& self, long id) {
+             CORBA::Object_var object;
+             unlocked([&] { object = self.getExecutionContext(static_cast<RTC::UniqueId>(id)); });
+             return py::reinterpret_steal<py::object>(reference_out(object, "IDL:omg.org/RTC/ExecutionContext:1.0"));
+           })
       .def("exit", [](Component& self) { return code_item(unlocked([&] { return self.exit(); })); })
       .def("finalize", [](Component& self) { return code_item(unlocked([&] { return self.finalize(); })); })
       .def("initialize", [](Component& self) { return code_item(unlocked([&] { return self.initialize(); })); });

@@ -1,7 +1,7 @@
 // A component written in Python: its callbacks are methods of the Python object.
 //
-// States: made (the Python object owns it), created (the factory keeps the Python object alive, too), destroyed by the factory (again only the
-// Python object owns it; the runtime has let it go). Rights: self_ is read and written with the interpreter's lock. Failure cases: a
+// States: made (the Python object owns it), created (the factory keeps the Python object alive, too), destroyed by the factory (again only
+// the Python object owns it; the runtime has let it go). Rights: self_ is read and written with the interpreter's lock. Failure cases: a
 // callback that raises, or returns anything but RTC.RTC_OK, throws Raised: the runtime logs it and goes to the error state; after the
 // Python object has died callbacks return RTC_ERROR.
 #pragma once

@@ -1,4 +1,4 @@
-// Values of the generated C++ types as Python objects of the stubs, and back, by way of their octets. With the interpreter's lock.
+// Values of the generated C++ types as Python objects of the stubs, and back, by way of their bytes. With the interpreter's lock.
 #pragma once
 
 #include <pybind11/pybind11.h>

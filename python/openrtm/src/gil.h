@@ -1,12 +1,11 @@
 // Entering and leaving Python from threads of the runtime.
 //
 // States of a thread: without the interpreter's lock (all threads of the runtime, between callbacks), with it (inside a callback, in
-// Python code). Rights: Python objects are touched with the lock only; whoever calls the runtime gives the lock back first (Released), and
-// nobody takes it while he holds a lock of the runtime. A thread of the runtime gets one thread state, kept until it ends, because making one
-// costs 7 us.
-// Failure cases: a thread that keeps the lock for ever stops all others that want it; the end of the process does not want it
-// (manager/end.cpp ends the process within its time limit). After the interpreter has begun to finalize, entering blocks for ever: the
-// process ends in that moment.
+// Python code). Rights: Python objects are touched with the lock only; a caller of the runtime gives the lock back first (Released), and
+// no thread takes it while it holds a lock of the runtime. A thread of the runtime gets one thread state, kept until it ends, because
+// making one costs 7 us. Failure cases: a thread that keeps the lock for ever stops all others that want it; the end of the process does
+// not want it (manager/end.cpp ends the process within its time limit). After the interpreter has begun to finalize, entering blocks for
+// ever: the process ends in that moment.
 #pragma once
 
 #include <Python.h>

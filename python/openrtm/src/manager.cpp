@@ -1,10 +1,10 @@
 #include "manager.h"
 
 #include <pybind11/stl.h>
+#include <rtm/DataType.h>
 #include <rtm/Manager.h>
 #include <rtm/NamingManager.h>
 #include <rtm/Timestamp.h>
-#include <rtm/DataType.h>
 
 #include <atomic>
 #include <chrono>
@@ -94,8 +94,7 @@ void init(const std::vector<std::string>& words, bool is_host, const std::vector
   for (auto& word : *kept) arguments->push_back(word.data());
   arguments->push_back(nullptr);
   const RTC::ManagerOptions options{.strict_arguments = is_host, .bind_manager = is_host, .modules = modules};
-  RTC::Manager* const manager =
-      unlocked([&] { return RTC::Manager::init(static_cast<int>(words.size()), arguments->data(), options); });
+  RTC::Manager* const manager = unlocked([&] { return RTC::Manager::init(static_cast<int>(words.size()), arguments->data(), options); });
   const Function load(loader);
   RTC::set_script_loader(*manager, [load](const std::string& file, const std::string& function) -> std::string {
     const Locked locked;
@@ -195,16 +194,16 @@ void add_modules_and_components(py::module_& module) {
   module.def("manager_load", [](const std::string& file, const std::string& function) {
     return static_cast<int>(unlocked([&] { return the_manager().load(file, function); }));
   });
-  module.def("manager_unload", [](const std::string& file) { return static_cast<int>(unlocked([&] { return the_manager().unload(file.c_str()); })); });
+  module.def("manager_unload",
+             [](const std::string& file) { return static_cast<int>(unlocked([&] { return the_manager().unload(file.c_str()); })); });
   module.def("manager_loaded_modules", [] { return copies(unlocked([] { return the_manager().getLoadedModules(); })); });
   module.def("manager_loadable_modules", [] { return copies(unlocked([] { return the_manager().getLoadableModules(); })); });
   module.def("manager_factory_profiles", [] { return copies(unlocked([] { return the_manager().getFactoryProfiles(); })); });
   module.def("manager_register_factory", &register_factory);
   module.def("manager_create_component", &create_component);
   module.def("manager_components", &components);
-  module.def("manager_component", [](const std::string& name) {
-    return python_component(unlocked([&] { return the_manager().getComponent(name); }));
-  });
+  module.def("manager_component",
+             [](const std::string& name) { return python_component(unlocked([&] { return the_manager().getComponent(name); })); });
   module.def("manager_delete_component", [](const std::string& name) {
     return static_cast<int>(unlocked([&] { return the_manager().deleteComponent(name.c_str()); }));
   });

@@ -227,24 +227,28 @@ void add_ports(py::module_& module) {
   py::class_<PortBase, std::shared_ptr<PortBase>>(module, "PortBase")
       .def("getName", &PortBase::getName)
       .def("setName", [](PortBase& port, const std::string& name) { port.setName(name.c_str()); })
-      .def("addProperty", [](PortBase& port, const std::string& key, py::object value) {
-        const std::string text = py::str(value);
-        const Released released;
-        port.addProperty(key.c_str(), text.c_str());
-      })
-      .def("appendProperty", [](PortBase& port, const std::string& key, py::object value) {
-        const std::string text = py::str(value);
-        const Released released;
-        return port.appendProperty(key.c_str(), text.c_str());
-      })
-      .def("_reference", [](PortBase& port) {
-        CORBA::Object_var object;
-        unlocked([&] { object = CORBA::Object::_duplicate(port.getPortRef()); });
-        return py::reinterpret_steal<py::object>(reference_out(object, "IDL:omg.org/RTC/PortService:1.0"));
-      })
+      .def("addProperty",
+           [](PortBase& port, const std::string& key, py::object value) {
+             const std::string text = py::str(value);
+             const Released released;
+             port.addProperty(key.c_str(), text.c_str());
+           })
+      .def("appendProperty",
+           [](PortBase& port, const std::string& key, py::object value) {
+             const std::string text = py::str(value);
+             const Released released;
+             return port.appendProperty(key.c_str(), text.c_str());
+           })
+      .def("_reference",
+           [](PortBase& port) {
+             CORBA::Object_var object;
+             unlocked([&] { object = CORBA::Object::_duplicate(port.getPortRef()); });
+             return py::reinterpret_steal<py::object>(reference_out(object, "IDL:omg.org/RTC/PortService:1.0"));
+           })
       .def("_deactivate", [](PortBase& port) { unlocked([&] { port.deactivate(); }); })
       .def("_on_connection", &set_connection_callback)
-      .def("disconnect", [](PortBase& port, const std::string& id) { return static_cast<int>(unlocked([&] { return port.disconnect(id.c_str()); })); })
+      .def("disconnect",
+           [](PortBase& port, const std::string& id) { return static_cast<int>(unlocked([&] { return port.disconnect(id.c_str()); })); })
       .def("_disconnect_all", [](PortBase& port) { return static_cast<int>(unlocked([&] { return port.disconnect_all(); })); });
 
   py::class_<InPort, PortBase, std::shared_ptr<InPort>>(module, "InPort")
@@ -262,11 +266,13 @@ void add_ports(py::module_& module) {
   py::class_<OutPort, PortBase, std::shared_ptr<OutPort>>(module, "OutPort")
       .def(py::init(&made<OutPort>), py::arg("name"), py::arg("value"))
       .def("_write", &OutPort::write_value)
-      .def("_statuses", [](OutPort& port) {
-        std::vector<int> all;
-        for (const auto& status : port.getStatusList()) all.push_back(static_cast<int>(static_cast<RTC::DataPortStatus::Enum>(status)));
-        return py::cast(all);
-      })
+      .def("_statuses",
+           [](OutPort& port) {
+             std::vector<int> all;
+             for (const auto& status : port.getStatusList())
+               all.push_back(static_cast<int>(static_cast<RTC::DataPortStatus::Enum>(status)));
+             return py::cast(all);
+           })
       .def("_type_id", [](OutPort& port) { return port.type().id; })
       .def("_descriptor", [](OutPort& port) { return py::reinterpret_borrow<py::object>(port.type().descriptor); })
       .def("_add_data_listener", &add_data_listener<OutPort>)

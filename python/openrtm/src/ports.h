@@ -1,4 +1,4 @@
-// Data ports whose values are Python objects. A value travels as its octets, which the writer encodes and the reader decodes with the
+// Data ports whose values are Python objects. A value travels as its bytes, which the writer encodes and the reader decodes with the
 // interpreter's lock; inside a process they are handed over without a copy. Any thread.
 #pragma once
 

@@ -48,16 +48,21 @@ void add_properties(py::module_& module) {
             return self.node->getProperty(key, text_of(otherwise));
           },
           py::arg("key"), py::arg("default") = py::none())
-      .def("setProperty", [](Properties& self, const std::string& key, py::object value) { return self.node->setProperty(key, text_of(value)); })
+      .def("setProperty",
+           [](Properties& self, const std::string& key, py::object value) { return self.node->setProperty(key, text_of(value)); })
       .def("getDefault", [](const Properties& self, const std::string& key) { return self.node->getDefault(key); })
-      .def("setDefault", [](Properties& self, const std::string& key, py::object value) { return self.node->setDefault(key, text_of(value)); })
+      .def("setDefault",
+           [](Properties& self, const std::string& key, py::object value) { return self.node->setDefault(key, text_of(value)); })
       .def(
           "setDefaults",
           [](Properties& self, py::sequence words, py::object) {
             for (std::size_t i = 0; i + 1 < words.size(); i += 2) self.node->setDefault(text_of(words[i]), text_of(words[i + 1]));
           },
           py::arg("defaults"), py::arg("num") = py::none())
-      .def("getNode", [](Properties& self, const std::string& key) { return Properties{self.owner, &self.node->getNode(key)}; })
+      .def("getNode",
+           [](Properties& self, const std::string& key) {
+             return Properties{self.owner, &self.node->getNode(key)};
+           })
       .def("findNode", [](Properties& self, const std::string& key) { return wrapped(self, self.node->findNode(key)); })
       .def("hasKey", [](Properties& self, const std::string& key) { return wrapped(self, self.node->hasKey(key)); })
       .def("createNode", [](Properties& self, const std::string& key) { return self.node->createNode(key); })

@@ -192,10 +192,10 @@ const Type* type_of_value(PyObject* value) {
 }
 
 std::string name_of(const Type& type) {
-  static constexpr const char* names[] = {"null",   "void",     "short",  "long",  "unsigned short", "unsigned long", "float", "double",
-                                          "boolean", "char",     "octet",  "any",   "TypeCode",       "Principal",     "reference", "struct",
-                                          "union",  "enum",     "string", "sequence", "array",       "alias",         "exception", "long long",
-                                          "unsigned long long", "long double", "wchar", "wstring"};
+  static constexpr const char* names[] = {
+      "null",  "void",  "short",     "long",      "unsigned short",     "unsigned long", "float", "double", "boolean", "char",
+      "octet", "any",   "TypeCode",  "Principal", "reference",          "struct",        "union", "enum",   "string",  "sequence",
+      "array", "alias", "exception", "long long", "unsigned long long", "long double",   "wchar", "wstring"};
   switch (type.kind) {
     case CORBA::tk_sequence:
       return "sequence<" + name_of(*type.element) + ">";

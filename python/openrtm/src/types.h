@@ -28,7 +28,7 @@ struct Type {
   std::uint32_t bound = 0;          // of texts and sequences; the length of arrays
   std::vector<PyObject*> labels{};  // of the cases of a union
   int default_case = -1;
-  bool is_flat = false;  // consists of numbers, texts and records of them: encoded without the ORB
+  bool is_flat = false;   // consists of numbers, texts and records of them: encoded without the ORB
   bool is_plain = false;  // decoded by tp_new and attributes
 };
 

@@ -14,7 +14,9 @@ namespace {
 
 using base::Result;
 
-std::string python_name(std::string cpp_name) { return base::join(base::split_list(base::join(base::split_list(cpp_name, ':'), "."), ' '), ""); }
+std::string python_name(std::string cpp_name) {
+  return base::join(base::split_list(base::join(base::split_list(cpp_name, ':'), "."), ' '), "");
+}
 std::string module_in(const std::string& cpp_name) { return cpp_name.substr(0, cpp_name.find("::")); }
 std::string python_last_name(const std::string& cpp_name) {
   const auto colons = cpp_name.rfind("::");
@@ -101,9 +103,8 @@ std::string initialization(const NewComponent& component) {
     if (service_ports.insert(service.port).second)
       text += fmt::format("        self._{0}Port = OpenRTM_aist.CorbaPort(\"{0}\")\n", service.port);
     if (service.is_provided)
-      text += fmt::format(
-          "        self._{0} = {1}_i()\n        self._{2}Port.registerProvider(\"{0}\", \"{3}\", self._{0})\n", service.instance,
-          python_last_name(service.interface), service.port, service.interface);
+      text += fmt::format("        self._{0} = {1}_i()\n        self._{2}Port.registerProvider(\"{0}\", \"{3}\", self._{0})\n",
+                          service.instance, python_last_name(service.interface), service.port, service.interface);
     else
       text += fmt::format(
           "        self._{0} = OpenRTM_aist.CorbaConsumer(interfaceType={1})\n        self._{2}Port.registerConsumer(\"{0}\", \"{3}\", "
@@ -112,8 +113,8 @@ std::string initialization(const NewComponent& component) {
   }
   for (const auto& port : service_ports) text += fmt::format("        self.addPort(self._{}Port)\n", port);
   for (const auto& parameter : component.parameters)
-    text += fmt::format("        self._{0} = [{1}]\n        self.bindParameter(\"{0}\", self._{0}, {2})\n", parameter.name, initial(parameter),
-                        quoted(parameter.default_value));
+    text += fmt::format("        self._{0} = [{1}]\n        self.bindParameter(\"{0}\", self._{0}, {2})\n", parameter.name,
+                        initial(parameter), quoted(parameter.default_value));
   return text;
 }
 

@@ -101,8 +101,6 @@ class DataFlowComponentBase(_core.Component):
         self._ports = []
         self._inports = []
         self._outports = []
-        self._configsets = ConfigAdmin(self)
-        self._properties = self._properties_of()
         self._rtcout = Logger("rtobject")
         self._registered = []
         for name in ("onDeactivate", "onActivate", "onExcute"):
@@ -208,12 +206,21 @@ class DataFlowComponentBase(_core.Component):
         self._config_update(config_set, "")
 
     def getConfigService(self):
-        return self._configsets
+        return ConfigAdmin(self)
 
     # --- identity
 
     def getProperties(self):
-        return self._properties
+        return self._properties_of()
+
+    # Made anew each time: what refers to the component and is kept by it would keep it in memory.
+    @property
+    def _properties(self):
+        return self._properties_of()
+
+    @property
+    def _configsets(self):
+        return ConfigAdmin(self)
 
     def getObjRef(self):
         return self._reference()
@@ -236,6 +243,12 @@ class DataFlowComponentBase(_core.Component):
     def _poa(self):
         from omniORB import PortableServer
         return PortableServer.root_poa()
+
+    # The runtime calls it when it has let the component go. Listeners may refer to it.
+    def _let_go(self):
+        for owner in [self] + self._ports:
+            for one in getattr(owner, "_registered", ()):
+                one.listener = None
 
     # --- listeners: (type, function) -> what remove... takes
 

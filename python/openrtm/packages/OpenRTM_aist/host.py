@@ -105,6 +105,3 @@ def _split(words):
     at = words.index("--")
     return words[:at] + words[at + 1:], words[at + 1:]
 
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv))

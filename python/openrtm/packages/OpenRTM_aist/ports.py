@@ -137,6 +137,7 @@ class _DataPort(PortBase):
         """Call the listener at events of samples. Returns what removeConnectorDataListener takes."""
         registered = _Registered(listener)
         self._add_data_listener(type_, _data_function(registered, self._descriptor()))
+        self._registered.append(registered)
         return registered
 
     def addConnectorListener(self, type_, listener, autoclean=True):
@@ -273,7 +274,9 @@ class CorbaConsumer:
     def setObject(self, obj):
         if obj is None:
             return False
-        return self._take(type(obj)(obj._obj.with_timeout()))
+        own = obj._as(type(obj))
+        own._obj = obj._obj.with_timeout()
+        return self._take(own)
 
     def _take(self, obj):
         if obj is None:

@@ -82,8 +82,9 @@ class Object:
     _nil = None
     __methods__ = []  # of the stubs of omniidl 3
 
-    def __init__(self, obj):
-        self._obj = obj
+    def __init__(self, obj=None):
+        if obj is not None:
+            self._obj = obj
 
     def _is_a(self, repoId):
         return self._obj.is_a(repoId)
@@ -113,10 +114,16 @@ class Object:
             raise TypeError("%r is no interface" % dest)
         if isinstance(self, stub):
             return self
-        return stub(self._obj) if self._obj.is_a(dest._NP_RepositoryId) else None
+        return self._as(stub) if self._obj.is_a(dest._NP_RepositoryId) else None
 
     def _unchecked_narrow(self, dest):
-        return omniORB.objrefMapping[dest._NP_RepositoryId](self._obj)
+        return self._as(omniORB.objrefMapping[dest._NP_RepositoryId])
+
+    # The stubs of omniidl 3 take no argument.
+    def _as(self, stub):
+        made = stub.__new__(stub)
+        made._obj = self._obj
+        return made
 
     def __eq__(self, other):
         return isinstance(other, Object) and self._obj.is_equivalent(other._obj)

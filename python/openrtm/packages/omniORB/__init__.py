@@ -192,6 +192,25 @@ def updateModule(name):
     _add_ours(name, module)
 
 
+_later = {}
+
+
+def importLater(name, stub):
+    """Load a stub file of the module when a name is missing in it: most programs use few of the interfaces."""
+    module = sys.modules[name]
+    _later.setdefault(name, []).append(stub)
+
+    def missing(attribute):
+        if not attribute.startswith("__"):
+            for one in _later.pop(name, ()):
+                importlib.import_module(one)
+            if attribute in vars(module):
+                return vars(module)[attribute]
+        raise AttributeError("module %r has no attribute %r" % (name, attribute))
+
+    module.__getattr__ = missing
+
+
 # A user's stubs of an IDL module that we have as well (RTC, OpenRTM) come first in sys.path and hold a part of it only.
 def _add_ours(name, module):
     file = _os.path.abspath(getattr(module, "__file__", None) or "")
@@ -202,6 +221,8 @@ def _add_ours(name, module):
         for line in text:
             if line.startswith("import ") and line.strip().endswith("_idl"):
                 importlib.import_module(line.split()[1])
+            elif line.startswith("omniORB.importLater("):
+                importLater(name, line.split('"')[1])
 
 
 def promotePartialModule(name):

@@ -30,8 +30,8 @@ class ModuleManager {
 
   // `module`: name or path, also `name(initfunc)`. RTC_OK also if it is loaded already.
   ReturnCode_t load(const std::string& module, const std::string& init_function, std::string& error);
-  // For modules that are no libraries (*.py): called with file and init function, without a lock; says in one line why it failed. Set before
-  // any module is loaded.
+  // For modules that are no libraries (*.py): called with file and init function, without a lock; says in one line why it failed. Set
+  // before any module is loaded.
   void setScriptLoader(std::function<std::string(const std::string& file, const std::string& init_function)> loader);
   ReturnCode_t unload(const std::string& name);
   void unloadAll();
