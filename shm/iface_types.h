@@ -276,7 +276,7 @@ inline constexpr std::array joint_state_fields{field<&JointState::position>("pos
                                                field<&JointState::status>("status")};
 
 inline constexpr std::array battery_info{field<&BatteryInfo::model>("model"),
-                                         field<&BatteryInfo::name>("name"),
+                                         field<&BatteryInfo::name>("battery"),
                                          field<&BatteryInfo::rate>("rate", "Hz"),
                                          field<&BatteryInfo::capacity>("capacity", "A h"),
                                          field<&BatteryInfo::initial_charge>("initial_charge", "A h"),
