@@ -326,7 +326,7 @@ inline constexpr std::array fiducial_sample{field<&FiducialSample::stamp>("stamp
 inline constexpr std::array mark_fields{field<&Mark::id>("id"), field<&Mark::pose>("pose"), field<&Mark::size>("size", "m"),
                                         field<&Mark::model>("model")};
 inline constexpr std::array battery_info{field<&BatteryInfo::model>("model"),
-                                         field<&BatteryInfo::name>("name"),
+                                         field<&BatteryInfo::name>("battery"),
                                          field<&BatteryInfo::rate>("rate", "Hz"),
                                          field<&BatteryInfo::capacity>("capacity", "A h"),
                                          field<&BatteryInfo::initial_charge>("initial_charge", "A h"),

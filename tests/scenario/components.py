@@ -555,7 +555,7 @@ def restarted_server():
     assert [rig.state(name) for name in names] == ["Active"] * 3
 
 
-cases = {f.__name__: f for f in (sonar, imu, gps, bumper, ranger, places, point_cloud, odometry, goals, meters, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_service, camera_jpeg, depth_camera, drone, wrong_camera_device,
+cases = {f.__name__: f for f in (sonar, imu, gps, bumper, ranger, places, point_cloud, odometry, goals, meters, others, names, simulation, motors, wrong_device, camera_formats, camera_parameters, camera_service, camera_jpeg, depth_camera, drone, wrong_camera_device,
                                  restarted_server)}
 with rig:
     cases[case]()

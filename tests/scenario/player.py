@@ -280,7 +280,7 @@ def simulation():
         assert 0 < paused <= real + 0.1 and struct.unpack("d", property("world", "real_time", 8))[0] > real, (paused, real)
         client.command(SIMULATION, 0, 3)  # SAVE
         client.command(SIMULATION, 0, 3)
-        await_("a line", lambda: rig.log(rig.process).count("command 3 of simulation:0 is not served") == 1)
+        await_("a line", lambda: rig.log(rig.process).count("SAVE of simulation is ignored") == 1)
         assert property("world", "state", 1) == b"\0"
         assert property("world", "state", 7) == bytes(7)
         client.refused(SIMULATION, 0, 5, text("world") + text("sim_time") + struct.pack(">IIII", 0, 4, 4, 0))
