@@ -240,7 +240,7 @@ base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<con
   move_to_initial_positions(model, *blueprint);
   move_to_saved_places(model, *blueprint);
   blueprint->canonical = index_of_link(model, model.canonical_link).value_or(0);
-  blueprint->hydrodynamics = hydrodynamics_of(model, blueprint->left_out);
+  blueprint->hydrodynamics = hydrodynamics_of(model, blueprint->left_out, blueprint->notes);
   blueprint->wings = wings_of(model, blueprint->left_out);
   return std::shared_ptr<const Blueprint>(std::move(blueprint));
 }

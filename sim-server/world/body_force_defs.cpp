@@ -79,6 +79,20 @@ std::optional<HydrodynamicsDef> hydrodynamics_of_plugin(const ModelDef& model, c
   return def;
 }
 
+// True: there were positive ones on the diagonals.
+bool turn_signs(HydrodynamicsDef& def) {
+  bool has_turned = false;
+  const auto turn = [&](double& number) {
+    has_turned = has_turned || number > 0;
+    number = -std::abs(number);
+  };
+  for (int i = 0; i < 6; ++i) turn(def.linear(i, i)), turn(def.added(i, i));
+  for (auto& product : def.quadratic) {
+    if (product.to == product.by && product.by == product.with) turn(product.value);
+  }
+  return has_turned;
+}
+
 std::optional<WingDef> wing_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
   const auto link = link_of_plugin(model, plugin, left_out);
   if (!link) return std::nullopt;
@@ -149,8 +163,14 @@ std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world) {
   return wrenches;
 }
 
-std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out) {
+std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out, std::vector<std::string>& notes) {
   auto all = all_of<HydrodynamicsDef>(model, PluginKind::hydrodynamics, left_out, hydrodynamics_of_plugin);
+  for (HydrodynamicsDef& def : all) {
+    if (turn_signs(def)) {
+      notes.push_back("model " + base::in_quotes(model.name) + ": Hydrodynamics of link " + base::in_quotes(model.links[def.link].name) +
+                      ": positive damping or added mass would drive the link; the numbers are taken as negative");
+    }
+  }
   for (std::uint32_t link = 0; link < model.links.size(); ++link) {
     const LinkDef& def = model.links[link];
     if (!def.added_mass) continue;

@@ -45,8 +45,8 @@ struct WingDef {
 };
 
 // Of all such plugins of a model. One that names no link or joint of the model, or has a number that is not finite, adds a line to
-// `left_out`.
-std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out);
+// `left_out`. Positive numbers, of files from before Fossen's signs, are turned, with a line in `notes`: they would drive the body.
+std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out, std::vector<std::string>& notes);
 std::vector<WingDef> wings_of(const ModelDef& model, std::vector<std::string>& left_out);
 
 // A force on a model ("box") or link ("box::lid") in every step, in the world, at the origin of the link.

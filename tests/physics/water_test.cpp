@@ -170,6 +170,18 @@ TEST(Hydrodynamics, a_plugin_that_means_no_link_is_left_out_with_a_line) {
   EXPECT_THAT(bad.dropped[0], testing::HasSubstr("<xU> must be a number within 1e9, got \"much\""));
 }
 
+TEST(Hydrodynamics, positive_numbers_of_older_files_slow_down_too) {
+  PhysicsFixture f(
+      world_of_text(weightless + body("sub", 0, 50, {1, 1, 1}, hydrodynamics("<xU>20</xU><xUabsU>30</xUabsU><xDotU>10</xDotU>"))));
+  ASSERT_EQ(f.notes.size(), 1U);
+  EXPECT_THAT(f.notes[0], testing::HasSubstr("positive damping or added mass would drive the link"));
+  for (int i = 0; i < 20000; ++i) {
+    ASSERT_TRUE(f.physics.add_wrench(f.link("sub"), {50, 0, 0}, {0, 0, 0}));
+    f.physics.step();
+  }
+  EXPECT_NEAR(f.physics.link_twist(f.link("sub")).linear.x(), 1, 1e-6);
+}
+
 TEST(Hydrodynamics, is_the_same_after_a_reset) {
   const std::string sub = body("sub", -2, 100, {2, 0.5, 0.5}, hydrodynamics("<xDotU>-20</xDotU><yDotV>-120</yDotV><zW>-50</zW>"));
   PhysicsFixture f(world_of_text(pond + sub));

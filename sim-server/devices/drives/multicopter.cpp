@@ -106,8 +106,8 @@ Rotor rotor_of(const ModelDef& model, const PluginDef& plugin, const Propeller& 
 
 }  // namespace
 
-Weight weight_of(const ModelDef& model, std::uint32_t link) {
-  const Eigen::Isometry3d into = model.links[link].pose.inverse();
+Weight weight_of(const ModelDef& model, const Eigen::Isometry3d& frame) {
+  const Eigen::Isometry3d into = frame.inverse();
   Weight weight;
   for (const LinkDef& one : model.links) {
     weight.mass += one.mass;
@@ -129,7 +129,7 @@ std::unique_ptr<VehicleControl> make_multicopter(const DeviceWorld& world, Model
   const ModelDef& def = physics.def(model);
   const auto link = link_named(def, plugin.scope, plugin.parameters.text_of({"comLinkName"}).value_or(""));
   const LinkId body{model, link.value_or(physics.canonical_link(model).link)};
-  const Weight weight = weight_of(def, body.link);
+  const Weight weight = weight_of(def, def.links[body.link].pose);
   const auto count = static_cast<Eigen::Index>(propellers.all().size());
   Eigen::MatrixXd efforts = Eigen::MatrixXd::Zero(4, count);
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -16,8 +16,8 @@ constexpr double loss = 1e-6;       // of the allocation: what no thruster can g
 // learns the drag; it stands still while a thruster is at its end.
 class ThrusterControl final : public VehicleControl {
  public:
-  ThrusterControl(LinkId body, const Weight& weight, std::size_t thrusters, double length)
-      : body_(body), weight_(weight), length_(length), efforts_(Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(thrusters))) {}
+  ThrusterControl(ModelId model, const Weight& weight, std::size_t thrusters, double length)
+      : model_(model), weight_(weight), length_(length), efforts_(Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(thrusters))) {}
   void place(std::size_t i, const Eigen::Vector3d& place, const Eigen::Vector3d& axis, double most) {
     const auto column = static_cast<Eigen::Index>(i);
     efforts_.col(column).head<3>() = axis;
@@ -34,10 +34,12 @@ class ThrusterControl final : public VehicleControl {
   }
 
   void control(const Physics& physics, const Vector6& command, double dt, std::vector<Propellers::Wish>& wishes) override {
-    const Eigen::Matrix3d into = physics.link_pose(body_).linear().transpose();
-    const Eigen::Vector3d middle = physics.link_pose(body_) * weight_.center;
+    const Eigen::Isometry3d pose = physics.model_pose(model_);
+    const LinkId body = physics.canonical_link(model_);
+    const Eigen::Matrix3d into = pose.linear().transpose();
     Vector6 error;
-    error << command.head<3>() - into * physics.point_velocity(body_, middle), command.tail<3>() - into * physics.link_twist(body_).angular;
+    error << command.head<3>() - into * physics.point_velocity(body, pose * weight_.center),
+        command.tail<3>() - into * physics.link_twist(body).angular;
     error = error.cwiseProduct(can_);
     Vector6 efforts = efforts_of(response * error) + learned_;
     const Eigen::VectorXd thrusts = thrusts_ * efforts;
@@ -63,7 +65,7 @@ class ThrusterControl final : public VehicleControl {
     return efforts;
   }
 
-  LinkId body_;
+  ModelId model_;
   Weight weight_;
   double length_;
   Eigen::MatrixXd efforts_, thrusts_;  // of thrusts, for efforts
@@ -75,14 +77,12 @@ class ThrusterControl final : public VehicleControl {
 
 std::unique_ptr<VehicleControl> make_thruster_control(const Physics& physics, ModelId model, const Propellers& propellers) {
   const ModelDef& def = physics.def(model);
-  const LinkId body = physics.canonical_link(model);
-  const Weight weight = weight_of(def, body.link);
+  const Weight weight = weight_of(def, Eigen::Isometry3d::Identity());
   const double length = std::max(std::sqrt(weight.inertia.trace() / 3 / weight.mass), 1e-3);
-  auto made = std::make_unique<ThrusterControl>(body, weight, propellers.all().size(), length);
-  const Eigen::Isometry3d into = def.links[body.link].pose.inverse();
+  auto made = std::make_unique<ThrusterControl>(model, weight, propellers.all().size(), length);
   for (std::size_t i = 0; i < propellers.all().size(); ++i) {
     const Propeller& one = propellers.all()[i];
-    const Eigen::Isometry3d link = into * def.links[one.setup().link.link].pose;
+    const Eigen::Isometry3d& link = def.links[one.setup().link.link].pose;
     made->place(i, link.translation() - weight.center, link.linear() * one.axis(), one.most_thrust());
   }
   made->finish();

@@ -21,13 +21,13 @@ class VehicleControl {
   virtual double most_yaw_rate() const = 0;  // [rad/s]
 };
 
-// Mass, centre of mass and inertia of all links of a model at its start, in the frame of one of its links.
+// Mass, centre of mass and inertia of all links of a model at its start, in a frame of the model.
 struct Weight {
   double mass = 0;
   Eigen::Vector3d center{0, 0, 0};
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about the centre
 };
-Weight weight_of(const ModelDef& model, std::uint32_t link);
+Weight weight_of(const ModelDef& model, const Eigen::Isometry3d& frame);
 
 // By the numbers of a plugin MulticopterVelocityControl, or without one by gains from the mass. Null, with a line, when the rotors cannot
 // carry a body: fewer than four of them, or all in one line.
