@@ -414,4 +414,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, waits, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, fleet, waits, rate, paused_is_idle)
