@@ -42,7 +42,7 @@ void SimTimeContext::init(coil::Properties& properties) {
   phase_ = static_cast<std::uint32_t>(number("sim_time.phase", highest_phase, phase_));
   turn_ = static_cast<std::uint32_t>(number("sim_time.turn", highest_turn, turn_));
   participant_as_ = properties.getProperty("sim_time.participant");
-  has_own_thread_ = base::parse_bool(properties.getProperty("sim_time.own_thread")).value_or(false) || turn_ != 0 ||
+  has_own_thread_ = base::parse_bool(properties.getProperty("sim_time.own_thread")).value_or(true) || turn_ != 0 ||
                     !participant_as_.empty() || !properties.getProperty("stack_size").empty();
 }
 

@@ -8,8 +8,8 @@
 //                                 components, which see input immediately (shm/lockstep.h)
 //   exec_cxt.sim_time.participant name of the lock-step participant; default: that of its owner
 //   exec_cxt.sim_time.hash_log    folder: a hash log of what the components read and write (base/hash_log.h) goes into a new file there
-//   exec_cxt.sim_time.own_thread  YES: a thread of its own. Default NO: the contexts of a process with equal phase and rate share one that
-//                                 calls them one after another (tick_group.h). Those with `turn`, `participant` or `stack_size` have one
+//   exec_cxt.sim_time.own_thread  NO: the contexts of a process with equal phase and rate share a thread that calls them one after another
+//                                 (tick_group.h), as in a fleet. Default YES; those with `turn`, `participant` or `stack_size` have one
 //   exec_cxt.member_timeout       how long a member of another process may take for a callback [s of real time]; default: 1, in lock step
 //                                 without end, since its error would be part of the run
 //
@@ -69,7 +69,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext, private iface::Tick
   std::uint32_t phase_ = 1, turn_ = 0;
   std::string participant_as_;     // empty: the owner's name
   bool waits_for_members_ = true;  // in lock step, for ever; false: the option member_timeout says how long
-  bool has_own_thread_ = false;    // else it is ticked by a group
+  bool has_own_thread_ = true;     // else it is ticked by a group
   SimTick tick_;                   // of the thread that ticks
   std::string hash_log_;           // where it is still to be made
   std::string said_;               // the last line, not to be said again

@@ -104,7 +104,7 @@ def with_components(world, prints):
         names = [f"{kind}_pioneer_{i}" for i in range(robots) for kind in kinds]
 
         def create():
-            hosts.extend(s.host(*creations(host)) for host in range(options.hosts))
+            hosts.extend(s.host("-o", "exec_cxt.sim_time.own_thread:NO", *creations(host)) for host in range(options.hosts))
             s.rtse("wait", *names, "--state", "any", "--timeout", "120")
 
         times = [timed(create), timed(lambda: s.rtse("load", template, *fleet)), timed(lambda: s.rtse("start", template, *fleet))]

@@ -354,6 +354,16 @@ def names():
     assert server("--check", world=world).wait(watchdog) == 1, "a sensor was left out: its name does not fit after the model's"
 
 
+# A model for each value of a list, in a square grid whose first is at --pose.
+def fleet():
+    process = started("-u", world=f"{source}/worlds/empty.sdf")
+    assert ok("spawn", "model://pioneer2dx", "--for", "robot=r0..r4", "--pose", "1 2 0", "--spacing", "1.5").split() == [f"r{i}" for i in range(5)]
+    for name, place in (("r0", (1, 2)), ("r2", (4, 2)), ("r4", (2.5, 3.5))):
+        near(position(name)[:2], place)
+    assert read("spawn", "model://pioneer2dx", "--for", "robot=2", "--name", "x_{robot#}", "--pose", "-5 -5 0")["names"] == ["x_0", "x_1"]
+    stop(process)
+
+
 def waits():
     waiting = [subprocess.Popen([f"{bin_dir}/simctl", "-s", server_id, "wait", *ifaces], stderr=subprocess.PIPE, text=True)
                for ifaces in ([], [f"{robot}::laser", f"position2d:{robot}::position2d"])]
@@ -412,4 +422,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, waits, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, fleet, waits, rate, paused_is_idle)

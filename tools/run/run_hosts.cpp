@@ -71,6 +71,7 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
   std::ofstream(configuration) << "# empty\n";
   const auto log = place_.new_file("rtcd-" + std::to_string(started_) + ".log");
   std::vector<std::string> more = {"manager.shutdown_auto:NO", "manager.shutdown_on_nortcs:NO"};
+  if (!options_.lists.empty()) more.emplace_back("exec_cxt.sim_time.own_thread:NO");  // a fleet: many small components
   if (hashes_.is_wanted()) more.push_back("exec_cxt.sim_time.hash_log:" + hashes_.folder());
   const HostSettings settings{.naming = naming_,
                               .name = "host" + std::to_string(started_++),
