@@ -85,7 +85,7 @@ def compiles(root, name):
 def write_page(root):
     subprocess.run([sys.executable, root / "docs/make_shared_memory.py"], check=True)
     made = (root / "docs/shared-memory.md").read_text()
-    assert "| 18 | `RTMSIM_THERMOMETER` | `thermometer` | temperature of the air |" in made and "`temperature` [K]" in made
+    assert "| 35 | `RTMSIM_THERMOMETER` | `thermometer` | temperature of the air |" in made and "`temperature` [K]" in made
 
 
 def follow_the_list():
