@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
       ->check(is_key)
       ->envname("RTMSIM_PLAYER_AUTH");
   app.add_flag("--open", options.door.is_open)->description("Accept every client that reaches the ports, without a key");
-  app.add_option("--config", config, "Mapping file, or a configuration file of Player: devices of each port (docs/player.md)")->excludes(port);
+  app.add_option("--config", config, "Mapping file, or a configuration file of Player: devices of each port (docs/player.md)")
+      ->excludes(port);
   app.add_flag("-q,--quiet", is_quiet)->description("Do not log clients that send bytes of another protocol");
   bool is_table_asked = false;
   app.add_flag("--interfaces", is_table_asked)->description("Print the table of supported Player interfaces (Markdown), and exit");
