@@ -45,7 +45,7 @@ std::string initial(const NewParameter& parameter) {
   return "[" + base::join(parts, ", ") + "]";
 }
 
-std::string specification(const NewComponent& component) {
+std::string python_specification(const NewComponent& component) {
   std::string text = fmt::format("{}_spec = [", base::to_lower(component.name));
   bool is_first = true;
   const auto add = [&](const std::string& key, const std::string& value) {
@@ -170,7 +170,7 @@ if __name__ == "__main__":
     main()
 )",
                      fmt::arg("description", component.description), fmt::arg("imports", imports(component)),
-                     fmt::arg("specification", specification(component)), fmt::arg("name", component.name),
+                     fmt::arg("specification", python_specification(component)), fmt::arg("name", component.name),
                      fmt::arg("lower", base::to_lower(component.name)), fmt::arg("initialization", initialization(component)),
                      fmt::arg("callbacks", callbacks));
 }
