@@ -13,7 +13,7 @@ _loaded = {}  # real path: module
 
 def prepare():
     """What depends on the configuration, once it is read."""
-    coding = _core.manager_config().getProperty("corba.python.text")
+    coding = _core.manager_config().getProperty("manager.modules.Python.text")
     if coding:
         _core.set_text_coding(coding.lower())
 
