@@ -28,7 +28,8 @@ struct Description {
   Description() {
     base::add_standard_options(app, "rtcd", RTMSIM_VERSION);
     app.add_option("MODULE")->description(
-        "Module, or its name in manager.modules.load_path: load it and create one component of each of its types. "
+        "Module (a library, or a source of Python), or its name in manager.modules.load_path: load it and create one component of each of "
+        "its types. "
         "Type?key=value&...: create a component, loading Type.so if necessary");
     app.add_option("-f")->description("Read this file instead of $RTC_MANAGER_CONFIG, ./rtc.conf, /etc/rtc.conf, ...")->type_name("FILE");
     app.add_flag("-i")->description("Ignore a missing -f file");
@@ -63,7 +64,8 @@ std::optional<std::vector<base::Offer>> modules_offered(const std::string& value
   std::set<std::string> names;
   for (const auto& folder : folders) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      if (const auto& file = entry.path(); file.extension() == ".so" && !file.filename().string().starts_with("lib"))
+      if (const auto& file = entry.path();
+          (file.extension() == ".so" || file.extension() == ".py") && !file.filename().string().starts_with("lib"))
         names.insert(file.stem().string());
     }
   }

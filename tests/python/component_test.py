@@ -275,3 +275,18 @@ def test_a_component_leaves_and_another_one_comes_in_one_process(system, tmp_pat
     assert process.wait(60) == 0
     log = system.log(process)
     assert "twenty times" in log and log.count("finalized") >= 20 and log.count("deleted") >= 19
+
+
+def test_a_script_finds_connects_and_activates_components_by_their_references(system):
+    program(system, "Counter.py")
+    printer = program(system, "Printer.py")
+    seen(system, "Counter0")
+    seen(system, "Printer0")
+    said = system.call(python, "-B", str(sources / "connector.py"), system.names)
+    assert "not found missing_node Nothing0" in said
+    assert "connect RTC_OK True connector0" in said
+    assert "profile Counter IDL:RTC/TimedLong:1.0" in said
+    assert "activate RTC_OK 100.0" in said
+    assert "parameter 1" in said and "set True" in said
+    says(system, printer, "connected connector0 push")
+    await_("the new step", lambda: any(int(line.split()[1]) > 2000 for line in system.log(printer).splitlines() if line.startswith("received")))

@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <map>
-#include <mutex>
 
 #include "listeners.h"
 #include "references.h"

@@ -1,6 +1,5 @@
 // Type codes of the ORB from compiled types, and back.
 #include <map>
-#include <mutex>
 
 #include "gil.h"
 #include "types.h"

@@ -22,7 +22,7 @@ from .utility import uuid1  # noqa: F401
 # Loaded when they are first used.
 _LATER = {
     "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "StaticFSM": ("StaticFSM", None), "Macho": ("StaticFSM", None),
-    "EventPort": ("EventPort", None), "EventInPort": ("EventPort", "EventInPort"), "CorbaNaming": ("naming", "CorbaNaming"),
+    "CorbaNaming": ("naming", "CorbaNaming"),
     "uuid": ("utility", None),
 }
 for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):

@@ -3,10 +3,8 @@
 A module is imported under a name of its own, so that two files X.py of different folders stand beside each other; while it loads it is
 also known under its bare name. Its folder comes first in sys.path.
 """
-import importlib.util
 import os
 import sys
-import traceback
 
 import _openrtm_core as _core
 
@@ -15,13 +13,14 @@ _loaded = {}  # real path: module
 
 def prepare():
     """What depends on the configuration, once it is read."""
-    coding = _core.manager_config().getProperty("corba.python.text")
+    coding = _core.manager_config().getProperty("manager.modules.Python.text")
     if coding:
         _core.set_text_coding(coding.lower())
 
 
 def load(file, init_function):
     """Import a module and call its init function. Empty, or the line that says why it failed."""
+    import traceback
     try:
         module = _import(file)
     except SyntaxError as problem:
@@ -42,6 +41,7 @@ def load(file, init_function):
 
 
 def _import(file):
+    import importlib.util
     path = os.path.realpath(file)
     if path in _loaded:
         return _loaded[path]

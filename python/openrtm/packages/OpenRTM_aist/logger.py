@@ -1,6 +1,5 @@
 """The logger of components: lines of the runtime's log."""
 import sys
-import traceback
 
 import _openrtm_core as _core
 
@@ -72,6 +71,7 @@ class Logger:
     @staticmethod
     def print_exception():
         """The exception that is being handled, as text with its traceback."""
+        import traceback
         return "".join(traceback.format_exception(*sys.exc_info()))
 
 

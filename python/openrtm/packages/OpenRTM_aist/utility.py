@@ -1,7 +1,6 @@
 """Small helpers of the classic API."""
 import threading
 import time
-import uuid as _uuid
 
 import _openrtm_core as _core
 
@@ -11,7 +10,8 @@ __all__ = ["Async_tInvoker", "Async_t", "Async_ref_t", "ScopedLock", "Task", "Ti
 
 class uuid1:
     def __str__(self):
-        return str(_uuid.uuid1())
+        import uuid
+        return str(uuid.uuid1())
 
 
 class Async_tInvoker:

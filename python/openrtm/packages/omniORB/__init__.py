@@ -5,7 +5,6 @@ decodes by them. A name that is missing raises AttributeError.
 """
 import importlib
 import os as _os
-import subprocess as _subprocess
 import sys
 import types as _types
 
@@ -244,13 +243,14 @@ def static_is_a(skeleton, repoId):
 # --- IDL at run time
 
 def _run_omniidl(words, text=None):
+    import subprocess
     environment = dict(_os.environ)
     backend = _os.path.join(_home, "omniidl_backend")
     if _os.path.isdir(backend):
         environment["PYTHONPATH"] = _os.pathsep.join([backend] + environment.get("PYTHONPATH", "").split(_os.pathsep)).strip(_os.pathsep)
     command = ["omniidl", "-bpython", "-Wbstdout", "-Wbinline"] + words
     try:
-        done = _subprocess.run(command, input=text, capture_output=True, text=True, timeout=60, env=environment)
+        done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=60, env=environment)
     except FileNotFoundError:
         raise ImportError("IDL cannot be compiled: the program omniidl is missing; install the package omniidl") from None
     if done.returncode:

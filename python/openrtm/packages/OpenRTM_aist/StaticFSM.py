@@ -1,0 +1,182 @@
+"""State machines of components: states are classes, events are calls of their methods.
+
+A machine is of one thread: run_event() handles the events that wait. State methods: onInit, onEntry, onExit, and events with at most one
+argument, which are dispatched to the current state.
+"""
+import collections
+import threading
+
+__all__ = ["FSM_TOPSTATE", "FSM_SUBSTATE", "deephistory", "history", "Link", "State", "Event", "Machine"]
+
+
+class State:
+    """A state to change to."""
+
+    def __init__(self, state_class, data=None):
+        self.state_class = state_class
+        self.data = data
+
+
+class Event:
+    """An event that waits: a method of the top state and its arguments."""
+
+    def __init__(self, method, *args):
+        self.name = method if isinstance(method, str) else method.__name__
+        self.args = args
+
+
+class Link:
+    """Base of all states. An instance is made once for each machine."""
+
+    _history = None
+
+    def __init__(self, machine):
+        self._machine = machine
+
+    def onInit(self):
+        pass
+
+    def onEntry(self):
+        pass
+
+    def onExit(self):
+        pass
+
+    on_init, on_entry, on_exit = onInit, onEntry, onExit
+
+    def set_state(self, state):
+        self._machine.change(state)
+
+    setState = set_state
+
+    def setStateHistory(self, state):
+        self._machine.change(state, with_history=True)
+
+    def setStateDirect(self, state):
+        self._machine.change(state)
+
+    def dispatch(self, event):
+        self._machine.enqueue(event)
+
+    def data(self, state_class=None):
+        return self._machine.data_of(state_class or type(self))
+
+    @property
+    def rtComponent(self):
+        return self._machine.component
+
+
+def FSM_TOPSTATE(cls):
+    cls._super = None
+    return cls
+
+
+def FSM_SUBSTATE(super_state):
+    def decorate(cls):
+        cls._super = super_state
+        return cls
+    return decorate
+
+
+def deephistory(cls):
+    cls._history = "deep"
+    return cls
+
+
+def history(cls):
+    cls._history = "shallow"
+    return cls
+
+
+class Machine:
+    """A machine in its top state; the component may be None."""
+
+    def __init__(self, top, component=None):
+        self.component = component
+        self._top = top
+        self._states, self._data, self._last = {}, {}, {}
+        self._waiting = collections.deque()
+        self._lock = threading.Lock()
+        self._next = None
+        self._current = top
+        self._enter_from(None, top)
+        self._settle()
+
+    # --- for states
+
+    def change(self, state, with_history=False):
+        target = state.state_class if isinstance(state, State) else state
+        if with_history and target in self._last:
+            target = self._last[target]
+        self._next = target
+
+    def enqueue(self, event):
+        with self._lock:
+            self._waiting.append(event)
+
+    def data_of(self, cls):
+        if cls not in self._data:
+            made = getattr(cls, "Data", None)
+            self._data[cls] = made() if made else None
+        return self._data[cls]
+
+    # --- for components
+
+    def run_event(self):
+        """Handle the events that wait. States may add others."""
+        while True:
+            with self._lock:
+                if not self._waiting:
+                    return
+                event = self._waiting.popleft()
+            self.handle(event)
+
+    def handle(self, event):
+        method = getattr(self._state(self._current), event.name)
+        method(*event.args)
+        self._settle()
+
+    dispatch = enqueue
+
+    def current(self):
+        return self._current
+
+    # --- the inside
+
+    def _state(self, cls):
+        if cls not in self._states:
+            self._states[cls] = cls(self)
+        return self._states[cls]
+
+    @staticmethod
+    def _path(cls):
+        path = []
+        while cls is not None:
+            path.insert(0, cls)
+            cls = getattr(cls, "_super", None)
+        return path
+
+    def _enter_from(self, old, new):
+        for cls in self._path(new)[len(self._common(old, new)):]:
+            self._state(cls).onEntry()
+        self._current = new
+        self._next = None
+        self._state(new).onInit()
+
+    def _common(self, old, new):
+        common = []
+        for one, two in zip(self._path(old), self._path(new)):
+            if one is not two or one is new:
+                break
+            common.append(one)
+        return common
+
+    # Changes until no state asks for a further change.
+    def _settle(self):
+        while self._next is not None:
+            old, new = self._current, self._next
+            for cls in reversed(self._path(old)[len(self._common(old, new)):]):
+                self._state(cls).onExit()
+                if getattr(cls, "_history", None):
+                    self._last[cls] = old
+            self._enter_from(old, new)
