@@ -196,10 +196,10 @@ void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildCon
     context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is corrected");
   link.center_of_mass = pose.translation();
   link.inertia = pose.linear() * inertia * pose.linear().transpose();
-  if (const pugi::xml_node added = node.child("fluid_added_mass")) {
+  if (const pugi::xml_attribute added = node.attribute(added_mass_mark)) {
     Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.linear();
-    link.added_mass = turn * symmetric_matrix(added) * turn.transpose();
+    link.added_mass = turn * symmetric_matrix(added.value()) * turn.transpose();
   }
 }
 

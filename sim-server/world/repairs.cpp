@@ -82,6 +82,20 @@ void take_urdf_origin(pugi::xml_node node, Complaints& complaints) {
   node.remove_child(origin);
 }
 
+// The upper half of <fluid_added_mass>, which is newer than the version that is checked against.
+void mark_added_mass(pugi::xml_node node) {
+  const pugi::xml_node written = node.child("fluid_added_mass");
+  if (!written || std::string_view(node.name()) != "inertial") return;
+  constexpr std::string_view axes = "xyzpqr";
+  std::string numbers;
+  for (std::size_t row = 0; row < axes.size(); ++row) {
+    for (std::size_t column = row; column < axes.size(); ++column)
+      numbers += base::format_number(number_at(written, std::string{axes[row], axes[column]}, 0)) + " ";
+  }
+  node.append_attribute(added_mass_mark) = numbers.c_str();
+  node.remove_child(written);
+}
+
 // <inertial auto="true"> and <density> are newer than the version that is checked against.
 void mark_automatic_inertia(pugi::xml_node node) {
   const std::string_view name = node.name();
@@ -162,6 +176,7 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     remove_empty_references(child);
     take_urdf_attributes(child, complaints);
     take_urdf_origin(child, complaints);
+    mark_added_mass(child);
     mark_automatic_inertia(child);
     mark_initial_position(child, complaints);
     take_mimic(child);

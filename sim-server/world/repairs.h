@@ -27,6 +27,7 @@ pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent);
 // Attributes that carry <inertial auto="true"> and its densities past the checks of version 1.9.
 inline constexpr const char* automatic_mark = "_auto";
 inline constexpr const char* density_mark = "_density";
+inline constexpr const char* added_mass_mark = "_added_mass";
 
 // The same for <initial_position> of an axis, which version 1.9 does not have any more.
 inline constexpr const char* initial_mark = "_initial";

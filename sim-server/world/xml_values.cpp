@@ -120,16 +120,15 @@ Eigen::Isometry3d pose_at(pugi::xml_node node, std::string_view path) {
   return parse_pose(child_at(node, path)).value_or(Eigen::Isometry3d::Identity());
 }
 
-Eigen::Matrix<double, 6, 6> symmetric_matrix(pugi::xml_node node) {
-  constexpr std::string_view axes = "xyzpqr";
+Eigen::Matrix<double, 6, 6> symmetric_matrix(std::string_view upper_half) {
   constexpr double largest = 1e9;
-  Eigen::Matrix<double, 6, 6> matrix;
-  for (std::size_t row = 0; row < axes.size(); ++row) {
-    for (std::size_t column = row; column < axes.size(); ++column) {
-      const double entry = number_at(node, std::string{axes[row], axes[column]}, 0);
-      const auto i = static_cast<Eigen::Index>(row), k = static_cast<Eigen::Index>(column);
-      matrix(i, k) = matrix(k, i) = std::isfinite(entry) ? std::clamp(entry, -largest, largest) : 0;
-    }
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  const auto numbers = parse_numbers(upper_half);
+  if (!numbers || numbers->size() != 21) return matrix;
+  auto entry = numbers->begin();
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column, ++entry)
+      matrix(row, column) = matrix(column, row) = std::isfinite(*entry) ? std::clamp(*entry, -largest, largest) : 0;
   }
   return matrix;
 }

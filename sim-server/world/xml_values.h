@@ -30,8 +30,8 @@ Eigen::Vector3d vector3_at(pugi::xml_node node, std::string_view path, const Eig
 Color color_at(pugi::xml_node node, std::string_view path, const Color& fallback);
 Eigen::Isometry3d pose_at(pugi::xml_node node, std::string_view path);
 
-// Of six rows, by its children xx, xy, ... rr of the upper half; those that are missing or not finite are 0, all are within 1e9.
-Eigen::Matrix<double, 6, 6> symmetric_matrix(pugi::xml_node node);
+// Of six rows, by the 21 numbers of its upper half; zero when there are not as many. Those that are not finite are 0, all are within 1e9.
+Eigen::Matrix<double, 6, 6> symmetric_matrix(std::string_view upper_half);
 
 // The element with all in it as free-form parameters.
 ParameterNode parameters_of(pugi::xml_node node);
