@@ -12,6 +12,7 @@ constexpr double stop_time = 0.2;                         // [s] from full pace 
 constexpr double min_finger_time = 0.1;                   // [s] before fingers that do not move have arrived
 constexpr double standing_error = 0.005;                  // [rad] or [m]
 constexpr double overspeed = 1.5, least_overspeed = 0.2;  // times the highest speed of a joint, and [rad/s] or [m/s] beside it
+constexpr double time_of_speed = 0.05;                    // [s] in which a speed is measured
 constexpr std::uint32_t emergency_alarm = 1, overload_alarm = 2, overspeed_alarm = 3, joint_limit_alarm = 4, cartesian_limit_alarm = 5;
 
 Reply refuse(Answer answer, std::string comment) { return {answer, std::move(comment)}; }
@@ -60,6 +61,7 @@ void Manipulator::begin(std::span<const shm::Joint> joints, bool has_fingers, do
 void Manipulator::restart() {
   is_servo_on_ = false;
   std::erase_if(alarms_, [](const Alarm& alarm) { return !alarm.is_fault; });
+  measured_from_.clear();
   hold_here();
   check_limits(false);
 }
@@ -77,7 +79,6 @@ void Manipulator::feed(Feedback feedback) {
   feedback_ = std::move(feedback);
   if (!is_servo_on_) planned_ = hold_ = feedback_.positions;
   check_limits(true);
-  check_speeds();
   if (is_servo_on_ && alarms_.empty() && feedback_.overloaded)
     raise(overload_alarm, "joint " + std::to_string(*feedback_.overloaded + 1) + " is at its highest effort and does not move");
 }
@@ -102,16 +103,24 @@ void Manipulator::check_limits(bool is_alarm) {
   is_outside_.back() = is_outside;
 }
 
-// Faster than its motor can turn it: something drives the arm. Raised once for each time.
-void Manipulator::check_speeds() {
+// Faster than its motor can turn it: something drives the arm. Over a time in which the rattling of a contact moves nothing. Raised once
+// for each time.
+void Manipulator::check_speeds(double dt) {
+  measured_for_ += dt;
+  if (measured_from_.size() == feedback_.positions.size() && measured_for_ < time_of_speed) return;
   std::optional<std::size_t> fastest;
-  for (std::size_t i = 0; i < std::min(feedback_.velocities.size(), hard_speeds_.size()); ++i) {
-    if (std::abs(feedback_.velocities[i]) > overspeed * hard_speeds_[i] + least_overspeed) fastest = i;
+  double speed = 0;
+  for (std::size_t i = 0; i < measured_from_.size() && i < hard_speeds_.size() && measured_for_ > 0; ++i) {
+    double way = feedback_.positions[i] - measured_from_[i];
+    if (std::isinf(hard_limits_[i].low) && std::isinf(hard_limits_[i].high)) way = std::remainder(way, 2 * M_PI);  // may not count turns
+    if (std::abs(way) / measured_for_ <= overspeed * hard_speeds_[i] + least_overspeed) continue;
+    fastest = i, speed = way / measured_for_;
   }
   if (fastest && !is_too_fast_)
-    raise(overspeed_alarm, "joint " + std::to_string(*fastest + 1) + " moves at " + number_text(feedback_.velocities[*fastest]) +
+    raise(overspeed_alarm, "joint " + std::to_string(*fastest + 1) + " moves at " + number_text(speed) +
                                " [rad/s or m/s], its highest speed is " + number_text(hard_speeds_[*fastest]));
   is_too_fast_ = fastest.has_value();
+  measured_from_ = feedback_.positions, measured_for_ = 0;
 }
 
 void Manipulator::set_emergency(bool is_on) {
@@ -144,6 +153,7 @@ void Manipulator::drop() {
 }
 
 std::optional<Manipulator::Target> Manipulator::advance(double dt) {
+  check_speeds(dt);
   if (!is_servo_on_) return std::nullopt;
   Target target{hold_, std::vector<double>(hold_.size(), 0.0)};
   const double wanted = is_paused_ ? 0 : 1, change = dt / stop_time;

@@ -36,7 +36,6 @@ class Manipulator {
     double finger_ratio = 0;  // 0 closed .. 1 open
     bool are_fingers_still = true;
     std::optional<std::size_t> overloaded;  // a joint at its highest effort that does not move
-    std::vector<double> velocities{};       // empty: not known
   };
   struct Target {
     std::vector<double> positions, velocities;
@@ -111,7 +110,7 @@ class Manipulator {
   Reply may_configure(const char* what) const;
   void raise(std::uint32_t code, std::string description);
   void check_limits(bool is_alarm);
-  void check_speeds();
+  void check_speeds(double dt);
   void hold_here();
   void drop();
   bool advance_fingers(double dt);
@@ -128,6 +127,8 @@ class Manipulator {
   std::vector<bool> is_outside_;  // joints, then the control point
   std::vector<Alarm> alarms_;
   bool is_servo_on_ = false, is_paused_ = false, is_emergency_ = false, is_too_fast_ = false;
+  std::vector<double> measured_from_;  // positions from which speeds are measured
+  double measured_for_ = 0;            // [s]
   std::optional<Stopping> stopping_;
   std::deque<Step> queue_;
   std::uint64_t drops_ = 0;

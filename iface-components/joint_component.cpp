@@ -35,10 +35,10 @@ void JointComponent::choose(bool has_sample) {
   if (!done) part_.clear();
   note(done);
   // Services can command before the next sample comes. A simulator that waits for participants publishes the first one soon; whether it is
-  // there already must not matter, so it is waited for and gives places alone, no time. In a tick none can come: the simulator waits for it.
+  // there already must not matter, so it is waited for and gives places alone, no time. In a tick none can come: the simulator waits for
+  // it.
   constexpr auto first_limit = std::chrono::milliseconds(500);
-  if (!has_sample && done && iface->sequence() == 0 && base::tick_in_lock_step() == nullptr)
-    static_cast<void>(iface->wait(0, first_limit));
+  if (!has_sample && done && iface->sequence() == 0 && base::tick_in_lock_step() == nullptr) static_cast<void>(iface->wait(0, first_limit));
   if (done && (has_sample || iface->read()) && iface->sample<shm::Stamp>().valid != 0) part_.read(*iface);
   if (!has_sample) part_.start_anew();
   std::vector<shm::Joint> joints;

@@ -132,7 +132,6 @@ Manipulator::Feedback RTCManipulator::feedback() const {
   now.finger_ratio = finger_ratio();
   for (std::size_t i = 0; i < axes_; ++i) {
     now.positions.push_back(part().state(i).position);
-    now.velocities.push_back(part().state(i).velocity);
     if (part().state(i).status == RTMSIM_JOINT_STALLED) now.overloaded = i;
   }
   constexpr double at_stop = 1e-3;  // [m or rad]; [m/s or rad/s]

@@ -186,7 +186,7 @@ struct ServerLoop::Handler {
     const ModelPath& path = loop.model_path_;
     if (!loop.spawn_desk_) loop.spawn_desk_ = std::make_unique<SpawnDesk>([board = &loop.board_] { board->wake(); });
     loop.spawn_desk_->take({ticket, request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path,
-                            simulation.world().model_path, simulation.pictures().contents()});
+                            simulation.world().model_path, simulation.pictures().contents(), request.gains, request.joints});
     return {};
   }
   // As models that have been read: between two steps, under its old name.

@@ -344,14 +344,22 @@ TEST(Manipulator, stops_with_an_alarm_when_a_joint_is_faster_than_its_motor) {
   f.on();
   ASSERT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
   f.steps(500);
-  f.arm.feed({f.at, 0, true, {}, {0, 0, -5, 0, 0, 0}});
-  f.arm.feed({f.at, 0, true, {}, {0, 0, -5.1, 0, 0, 0}});
+  const auto drive = [&](double speed, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      f.at[2] += speed * 0.001;
+      f.arm.feed({f.at, 0, true, {}});
+      (void)f.arm.advance(0.001);
+    }
+  };
+  for (int i = 0; i < 200; ++i) drive(i % 2 == 0 ? 20 : -20, 1);
+  EXPECT_TRUE(f.arm.alarms().empty()) << "it rattles, and goes nowhere";
+  drive(-5.5, 200);
   ASSERT_EQ(f.arm.alarms().size(), 1u) << "once";
   EXPECT_EQ(f.arm.alarms()[0].code, 3u);
-  EXPECT_EQ(f.arm.alarms()[0].description, "joint 3 moves at -5 [rad/s or m/s], its highest speed is 3.14159");
-  EXPECT_EQ(f.arm.state(), Manipulator::has_servo | Manipulator::has_alarm);
+  EXPECT_EQ(f.arm.alarms()[0].description.substr(0, 16), "joint 3 moves at");
+  EXPECT_EQ(f.arm.state() & ~Manipulator::is_moving, Manipulator::has_servo | Manipulator::has_alarm);
   EXPECT_TRUE(f.arm.clear_alarms().is_ok());
-  f.arm.feed({f.at, 0, true, {}, {0, 0, 1, 0, 0, 0}});
+  drive(0, 100);
   EXPECT_TRUE(f.joints({2, 0, 1, 0, 1, 0}).is_ok());
 }
 

@@ -114,8 +114,8 @@ TEST(Joints, the_spring_of_a_position_gives_way_as_a_spring_whatever_the_step) {
     EXPECT_NEAR(rig.state(0).position, 0.01, 2e-5) << step;
     EXPECT_EQ(rig.state(0).mode, RTMSIM_JOINT_POSITION);
     rig.command(0, with_gain(0), 0);
-    rig.f.run(0.1);
-    EXPECT_GT(rig.state(0).position, 1) << step;
+    rig.f.run(0.03);
+    EXPECT_GT(rig.state(0).position, 0.3) << step;
     rig.command(0, RTMSIM_JOINT_POSITION, 0);
     rig.f.run(20);
     EXPECT_NEAR(rig.state(0).position, 0.005, 1e-4) << step;

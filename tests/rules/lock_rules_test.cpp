@@ -58,7 +58,8 @@ const std::map<std::string, std::string> detaching = {
 // "file:line", one per line of code with this, sorted.
 Names lines_with(const std::regex& wanted, const fs::path& root) {
   Names found;
-  for (const char* top : {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python", "idl"}) {
+  for (const char* top :
+       {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python", "idl"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension().string();

@@ -303,7 +303,7 @@ def limb():
         lines = ("limb:0: the arm cannot reach the pose; the command is ignored", "limb:0: a pose must be finite, its axes orthonormal; the command is ignored",
                  "limb:0: a direction must be finite and not zero; the command is ignored")
         await_("a line for each", lambda: all(rig.log(rig.process).count(line) == 1 for line in lines))
-        for subtype, payload in ((4, struct.pack(">f", 0)), (4, struct.pack(">f", math.nan)), (4, b""), (3, b"ab"), (1, b""), (99, b"")):
+        for subtype, payload in ((4, struct.pack(">f", 0)), (4, struct.pack(">f", math.nan)), (4, b""), (2, b"ab"), (1, b""), (99, b"")):
             client.refused(LIMB, 0, subtype, payload)
         client.command(LIMB, 0, 3, b"short")
 
