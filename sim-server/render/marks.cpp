@@ -89,16 +89,20 @@ std::vector<SeenObject> seen_objects(const Scene& scene, std::span<const std::ui
   for (const SceneVisual& visual : scene.visuals) object_of.push_back(visual.object);
   std::vector<SeenObject> all(scene.objects.size());
   const auto columns = static_cast<std::size_t>(width);
+  // By runs of one mark, of which a row has few.
   for (std::size_t row = 0; (row + 1) * columns <= marks.size(); ++row) {
-    for (std::size_t column = 0; column < columns; ++column) {
-      const std::uint32_t mark = marks[row * columns + column] & visual_bits;
+    const std::span<const std::uint32_t> line = marks.subspan(row * columns, columns);
+    for (std::size_t first = 0, end = 0; first < columns; first = end) {
+      for (end = first + 1; end < columns && line[end] == line[first];) ++end;
+      const std::uint32_t mark = line[first] & visual_bits;
       const std::uint32_t object = mark < object_of.size() ? object_of[mark] : 0;
       if (object == 0) continue;
       SeenObject& seen = all[object - 1];
-      const int x = static_cast<int>(column), y = static_cast<int>(row);
-      if (seen.pixels++ == 0) seen = {object - 1, 1, x, y, x, y};
-      seen.left = std::min(seen.left, x);
-      seen.right = std::max(seen.right, x);
+      const int left = static_cast<int>(first), right = static_cast<int>(end) - 1, y = static_cast<int>(row);
+      if (seen.pixels == 0) seen = {object - 1, 0, left, y, right, y};
+      seen.pixels += static_cast<std::uint32_t>(end - first);
+      seen.left = std::min(seen.left, left);
+      seen.right = std::max(seen.right, right);
       seen.bottom = y;
     }
   }

@@ -547,4 +547,32 @@ def settings():
         await_("the refusal", lambda: "SAVE of simulation is ignored" in rig.log(rig.process))
 
 
-run(identity, configure, power, estimates, settings, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)
+# Marks of a detector, and a coloured ball and the boxes of labelled things as blobs.
+def seen():
+    with Rig() as rig:
+        rig.sim(world=f"{source}/worlds/devices.sdf")
+        rig.gateway(robots=1)
+        port = next(port for port, robot, _ in rig.lines() if robot == "mast")
+        words = next(words for _, robot, words in rig.lines() if robot == "mast").split()
+        client = Client(int(port))
+        index_of = lambda device: next(int(word.split(":")[1].split("=")[0]) for word in words if word.startswith(device.split("=")[0]) and word.endswith("=" + device.split("=")[1]))
+        client.subscribe(FIDUCIAL, index_of("fiducial=mast::marks"))
+        fields = Fields(client.read_until(FIDUCIAL, index=index_of("fiducial=mast::marks")))
+        marks = fields.many("i12d")
+        fields.finish()
+        assert sorted(mark[0] for mark in marks) == [0, 1, 2], marks
+        first = next(mark for mark in marks if mark[0] == 0)
+        assert abs(first[1] - 3.5) + abs(first[2] - 0.2) + abs(first[3] + 0.1) < 0.1 and abs(first[7] - 0.005) < 1e-9, first
+        kind, view = client.request(FIDUCIAL, index_of("fiducial=mast::marks"), 2)
+        assert kind == ACK and [round(one, 4) for one in struct.unpack(">3f", view)] == [0, 6, 1.2]
+        camera = index_of("blobfinder=mast::camera")
+        client.subscribe(BLOBFINDER, camera)
+        fields = Fields(client.read_until(BLOBFINDER, index=camera))
+        assert fields.take("II") == (640, 480)
+        blobs = fields.many("9If")
+        fields.finish()
+        ball = next(blob for blob in blobs if blob[1] == 0x0000ff)  # the ball of 0.2 m is at (2.6, -0.6, 0.2)
+        assert abs(ball[3] - (320 + 467.7 * 0.6 / 2.6)) < 6 and abs(ball[4] - (240 + 467.7 * 0.7 / 2.6)) < 10, ball
+
+
+run(seen, identity, configure, power, estimates, settings, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)
