@@ -11,7 +11,6 @@
 #include "base/text.h"
 #include "gateway.h"
 #include "served.h"
-#include "supervisor.h"
 
 namespace {
 
@@ -137,13 +136,11 @@ int main(int argc, char** argv) {
   const bool is_domain_typed = app.count("--domain") > 0 || std::getenv("ROS_DOMAIN_ID") != nullptr;
   if (auto done = complete(options, typed, is_domain_typed, app.count("--clock-rate") > 0); !done) return end_with(done.error());
   block_end_signals();
-  return ros2::supervise([&] {
-    try {
-      ros2::Gateway gateway(options);
-      if (const auto done = gateway.run(); !done) return end_with(done.error());
-    } catch (const std::exception& e) {
-      return end_with({std::string("out of system resources (threads or files): ") + e.what()});
-    }
-    return 0;
-  });
+  try {
+    ros2::Gateway gateway(std::move(options));
+    if (const auto done = gateway.run(); !done) return end_with(done.error());
+  } catch (const std::exception& e) {
+    return end_with({std::string("out of system resources (threads or files): ") + e.what()});
+  }
+  return 0;
 }

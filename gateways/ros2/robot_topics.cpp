@@ -94,17 +94,6 @@ shm::Pose motion_of(const shm::Joint& joint, double position) {
   return {0, 0, 0, std::cos(position / 2), a[0] * s, a[1] * s, a[2] * s};
 }
 
-// The frame of a joint on the model, with all joints at 0.
-shm::Pose rest_of(std::span<const shm::Joint> joints, std::size_t i) {
-  shm::Pose pose = joints[i].pose;
-  std::size_t parent = joints[i].parent;
-  for (std::size_t steps = 0; parent != 0 && parent <= joints.size() && steps < joints.size(); ++steps) {
-    pose = ros::product(joints[parent - 1].pose, pose);
-    parent = joints[parent - 1].parent;
-  }
-  return pose;
-}
-
 }  // namespace
 
 std::vector<ServedRow> served_rows() {
@@ -135,21 +124,17 @@ void RobotTopics::make(const Listed& listed) {
   for (const auto& iface : listed.ifaces) {
     if (iface.model == robot_.model_ || iface.name.starts_with(robot_.model_ + "::")) own.push_back(iface);
   }
-  // The drive says where the base is, and joints where links are: they come first.
-  std::ranges::stable_sort(own, {}, [](const ListedIface& one) {
-    using enum shm::IfaceType;
-    return one.type == position2d || one.type == position3d ? 0 : one.type == joints ? 1 : 2;
-  });
+  // The drive first: it says where the base is.
+  std::ranges::stable_sort(
+      own, {}, [](const ListedIface& one) { return one.type != shm::IfaceType::position2d && one.type != shm::IfaceType::position3d; });
   const bool has_drive = !own.empty() && (own[0].type == shm::IfaceType::position2d || own[0].type == shm::IfaceType::position3d);
-  const auto model = std::ranges::find(listed.models, robot_.model_, &ListedModel::name);
-  if (model != listed.models.end()) listed_ = &*model;
   for (const auto& iface : own) {
     const auto count = std::ranges::count(own, iface.type, &ListedIface::type);
     add(iface, count == 1);
   }
-  if (listed_ == nullptr) return;
-  if (!has_drive) put_frame("world", base(), listed_->pose);
-  add_description();
+  const auto model = std::ranges::find(listed.models, robot_.model_, &ListedModel::name);
+  if (!has_drive && model != listed.models.end()) put_frame("world", base(), model->pose);
+  add_description(listed);
 }
 
 void RobotTopics::add(const ListedIface& listed, bool is_only) {
@@ -226,22 +211,7 @@ void RobotTopics::put_frame(const std::string& parent, const std::string& child,
 }
 
 void RobotTopics::put_sensor_frame(const Place& place, const shm::Pose& on_model) {
-  if (const MovingLink* link = carrier_of(place.name))
-    return put_frame(link->frame, place.frame, ros::product(ros::inverse(link->rest), on_model));
   put_frame(base(), place.frame, ros::product(ros::inverse(base_on_model_), on_model));
-}
-
-const RobotTopics::MovingLink* RobotTopics::carrier_of(const std::string& iface) const {
-  if (listed_ == nullptr) return nullptr;
-  const auto sensor = listed_->sensor_links.find(iface);
-  std::string link = sensor == listed_->sensor_links.end() ? "" : sensor->second;
-  for (std::size_t i = 0; i <= listed_->links.size(); ++i) {  // a ring of fixed joints has an end, too
-    if (const auto found = moving_links_.find(link); found != moving_links_.end()) return &found->second;
-    const auto parent = listed_->fixed_to.find(link);
-    if (parent == listed_->fixed_to.end()) return nullptr;
-    link = parent->second;
-  }
-  return nullptr;
 }
 
 template <class Message, class Info, class Make>
@@ -418,11 +388,8 @@ void RobotTopics::add_joints(Place& place) {
   // The frame of a link is that of the joint that moves it, as in URDF.
   const auto* joints = reinterpret_cast<const shm::Joint*>(place.source->iface().info_followers(0));
   std::vector<std::string> frames;
-  for (std::size_t i = 0; i < place.source->iface().count(); ++i) {
-    const std::string link = ros::text_of(joints[i].link);
-    frames.push_back(robot_.names_.frame(token(link)));
-    moving_links_[link] = {frames.back(), rest_of({joints, place.source->iface().count()}, i)};
-  }
+  for (std::size_t i = 0; i < place.source->iface().count(); ++i)
+    frames.push_back(robot_.names_.frame(token(ros::text_of(joints[i].link))));
   made.show = [writer, tf, frames, root = base(), to_base = ros::inverse(base_on_model_)](Iface& iface, const HeldFrame*) {
     publish_if(writer, ros::joints_message(iface));
     if (tf == nullptr || tf->readers().empty()) return;
@@ -455,13 +422,15 @@ void RobotTopics::add_altimeter(Place& place) {
   });
 }
 
-void RobotTopics::add_description() {
+void RobotTopics::add_description(const Listed& listed) {
+  const auto model = std::ranges::find(listed.models, robot_.model_, &ListedModel::name);
+  if (model == listed.models.end()) return;
   const shm::Iface* joints = nullptr;
   for (const Outlet& one : robot_.outlets_) {
     if (one.source->iface().type() == shm::IfaceType::joints) joints = &one.source->iface();
   }
   Writer* writer = robot_.node_.advertise<ros::Text>(robot_.names_.topic("robot_description"), {true, 1}, true);
-  if (writer != nullptr) publish(*writer, ros::Text{urdf_of(*listed_, joints, base_on_model_)});
+  if (writer != nullptr) publish(*writer, ros::Text{urdf_of(*model, joints, base_on_model_)});
 }
 
 }  // namespace ros2

@@ -1,7 +1,6 @@
 // Makes the topics of a robot: one function for each type of iface. One thread at a time.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -35,11 +34,6 @@ class RobotTopics {
     std::string frame;
   };
 
-  struct MovingLink {
-    std::string frame;
-    shm::Pose rest;  // on the model, with all joints at 0
-  };
-
   void add(const ListedIface& listed, bool is_only);
   void add_laser(Place& place);
   void add_cloud_of_laser(Place& place);
@@ -51,7 +45,7 @@ class RobotTopics {
   void add_joints(Place& place);
   void add_bumper(Place& place);
   void add_altimeter(Place& place);
-  void add_description();
+  void add_description(const Listed& listed);
   template <class Message, class Info, class Make>
   void add_meter(Place& place, const std::string& topic, Make make);
 
@@ -61,14 +55,10 @@ class RobotTopics {
   Outlet& outlet(const Place& place, std::vector<Writer*> writers);
   void put_frame(const std::string& parent, const std::string& child, const shm::Pose& pose);
   void put_sensor_frame(const Place& place, const shm::Pose& on_model);
-  // The moving link that carries the sensor, also by fixed joints; nothing when it does not move on the base.
-  const MovingLink* carrier_of(const std::string& iface) const;
   std::string base() const { return robot_.names_.frame("base_link"); }
 
   Robot& robot_;
   shm::Pose base_on_model_ = shm::identity_pose;
-  const ListedModel* listed_ = nullptr;             // while topics are made
-  std::map<std::string, MovingLink> moving_links_;  // by name
 };
 
 }  // namespace ros2

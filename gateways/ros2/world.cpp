@@ -19,7 +19,7 @@ shm::Pose listed_pose(const Json& json) {
 }
 
 ListedModel listed_model(const Json& json) {
-  ListedModel model{json.value("name", ""), listed_pose(json), json.value("static", false), {}, {}, {}};
+  ListedModel model{json.value("name", ""), listed_pose(json), json.value("static", false), {}, {}};
   const auto to_model = ros::inverse(model.pose);
   for (const auto& link : json.value("links", Json::array())) {
     ListedLink listed{link.value("name", ""), {}};
@@ -30,9 +30,6 @@ ListedModel listed_model(const Json& json) {
     for (const auto& sensor : link.value("sensors", Json::array()))
       if (const auto iface = sensor.value("iface", ""); !iface.empty()) model.sensor_links[iface] = listed.name;
     model.links.push_back(std::move(listed));
-  }
-  for (const auto& joint : json.value("joints", Json::array())) {
-    if (joint.value("type", "") == "fixed") model.fixed_to[joint.value("child", "")] = joint.value("parent", "");
   }
   return model;
 }

@@ -41,7 +41,6 @@ struct ListedModel {
   bool is_static = false;
   std::vector<ListedLink> links;
   std::map<std::string, std::string> sensor_links;  // by iface: the link that carries the sensor
-  std::map<std::string, std::string> fixed_to;      // by child of a fixed joint: its parent
 };
 struct Listed {
   std::vector<ListedIface> ifaces;

@@ -253,11 +253,10 @@ class Peer {
 
   void tell_peers() {
     for (const bool is_writer : {true, false}) {
-      constexpr std::size_t most = 20000;
-      std::vector<void*> samples(most);
-      std::vector<dds_sample_info_t> infos(most);
+      void* samples[1000] = {};
+      dds_sample_info_t infos[1000];
       const dds_entity_t reader = is_writer ? publications_ : subscriptions_;
-      const int count = dds_read(reader, samples.data(), infos.data(), most, most);
+      const int count = dds_read(reader, samples, infos, 1000, 1000);
       for (int i = 0; i < count; ++i) {
         if (!infos[i].valid_data || infos[i].instance_state != DDS_IST_ALIVE) continue;
         const auto* endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
@@ -268,7 +267,7 @@ class Peer {
                     hex_of(endpoint->key.v, 16).c_str(), size > 0 ? std::string(static_cast<char*>(data), size).c_str() : "-");
         dds_free(data);
       }
-      if (count > 0) dds_return_loan(reader, samples.data(), count);
+      if (count > 0) dds_return_loan(reader, samples, count);
     }
     std::printf("end\n");
   }

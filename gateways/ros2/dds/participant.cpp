@@ -1,6 +1,5 @@
 #include "dds/participant.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
 #include <fastdds/rtps/RTPSDomain.h>
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
@@ -19,9 +18,6 @@
 #include <fastrtps/qos/ReaderQos.h>
 #include <fastrtps/qos/WriterQos.h>
 #include <fastrtps/utils/IPLocator.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <netinet/in.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include <fastdds/dds/log/Log.hpp>
@@ -341,21 +337,6 @@ rtps::Locator_t ipv4(const std::string& address, std::uint32_t port) {
   return locator;
 }
 
-// Those of this machine, 127.0.0.1 too: Fast DDS leaves it out where there is another one, but some peers use no other.
-std::vector<std::string> own_addresses() {
-  std::vector<std::string> addresses;
-  ifaddrs* all = nullptr;
-  if (::getifaddrs(&all) != 0) return addresses;
-  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET || (one->ifa_flags & IFF_UP) == 0) continue;
-    std::array<char, INET_ADDRSTRLEN> text{};
-    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr, text.data(), text.size());
-    addresses.emplace_back(text.data());
-  }
-  ::freeifaddrs(all);
-  return addresses;
-}
-
 rtps::RTPSParticipantAttributes attributes_of(const ParticipantSettings& settings) {
   rtps::RTPSParticipantAttributes attributes;
   attributes.setName("/");
@@ -370,15 +351,10 @@ rtps::RTPSParticipantAttributes attributes_of(const ParticipantSettings& setting
   auto& builtin = attributes.builtin;
   builtin.discovery_config.leaseDuration = {10, 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
-  // Where there are such lists, no multicast is listened to.
-  for (const auto& address : settings.network == Network::loopback ? std::vector<std::string>{"127.0.0.1"} : own_addresses()) {
-    builtin.metatrafficUnicastLocatorList.push_back(ipv4(address, 0));
-    attributes.defaultUnicastLocatorList.push_back(ipv4(address, 0));
-  }
   if (settings.network == Network::lan) {
-    const auto group = ipv4("239.255.0.1", 7400 + 250 * settings.domain);
-    builtin.metatrafficMulticastLocatorList.push_back(group);
-    builtin.initialPeersList.push_back(group);
+    builtin.initialPeersList.push_back(ipv4("239.255.0.1", 7400 + 250 * settings.domain));
+  } else {
+    builtin.metatrafficUnicastLocatorList.push_back(ipv4("", 0));  // one of its own, so that no multicast is listened to
   }
   builtin.initialPeersList.push_back(ipv4("127.0.0.1", 0));
   return attributes;
