@@ -163,10 +163,10 @@ bool is_everybodys(const std::string& header) {
   static const Names folders = {"sys/", "linux/", "netinet/", "net/", "arpa/", "bits/"};
   if (std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) { return header.starts_with(folder); })) return true;
   static const Names names = {
-      "cxxabi.h", "dirent.h",    "dlfcn.h",   "elf.h",       "errno.h",  "execinfo.h", "fcntl.h",     "fnmatch.h", "getopt.h",
-      "glob.h",   "grp.h",       "ifaddrs.h", "immintrin.h", "limits.h", "link.h",     "locale.h",    "malloc.h",  "math.h",
-      "netdb.h",  "pmmintrin.h", "poll.h",    "pthread.h",   "pwd.h", "regex.h", "sched.h",    "semaphore.h", "signal.h",  "spawn.h",
-      "stddef.h", "stdint.h",    "stdio.h",   "stdlib.h",    "string.h", "termios.h",  "time.h",      "unistd.h",  "xmmintrin.h",
+      "cxxabi.h", "dirent.h",  "dlfcn.h",     "elf.h",     "errno.h", "execinfo.h",  "fcntl.h",     "fnmatch.h", "getopt.h", "glob.h",
+      "grp.h",    "ifaddrs.h", "immintrin.h", "limits.h",  "link.h",  "locale.h",    "malloc.h",    "math.h",    "netdb.h",  "pmmintrin.h",
+      "poll.h",   "pthread.h", "pwd.h",       "regex.h",   "sched.h", "semaphore.h", "signal.h",    "spawn.h",   "stddef.h", "stdint.h",
+      "stdio.h",  "stdlib.h",  "string.h",    "termios.h", "time.h",  "unistd.h",    "xmmintrin.h",
   };
   return std::find(names.begin(), names.end(), header) != names.end();
 }
