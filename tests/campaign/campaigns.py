@@ -333,8 +333,8 @@ def disk_full():
     p = plan("repeat: 20\n")
     rtse("sweep", p, "--rows", "1..2")
     before = times()
-    plan("repeat: 100000\n")
-    limit = 2048  # kB; enough for the shared memory of the simulator that is asked about the world, and not for a list of all rows
+    plan("repeat: 200000\n")
+    limit = 4096  # kB; enough for the shared memory of the simulator that is asked about the world, and not for a list of all rows
     words = " ".join(map(shlex.quote, [f"{bin_dir}/rtse", "sweep", p, "-j", "2", "--rows", "1..12"]))
     done = subprocess.run(["bash", "-c", f"ulimit -f {limit}; exec {words}"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           timeout=200)

@@ -21,13 +21,14 @@ OPTIONAL = {
     "debootstrap": "tests/package/bare and others by hand say what to install",
     "piuparts": "tests/package/clean, by hand, says what to install",
     "scancel": "Slurm: campaigns.slurm_* are skipped without (scripts/setup --with-slurm)",
+    "stage": "tests/bench/fleet_bench, by hand, does without",
     "strace": "tests/bench/sim_bench, by hand, does without",
     "sudo": "scripts/setup says what root has to install",
     "valgrind": "tests/robustness, by hand with --valgrind",
 }
 # Modules of Python's standard library that Debian's python3 does not install.
 SPLIT_OFF = {"distutils", "ensurepip", "idlelib", "lib2to3", "tkinter", "turtle", "venv"}
-OTHER_MODULES = {"omniidl": "a back end of omniidl runs inside it", "gymnasium": "rtmsim uses it where it is installed, and has stand-ins"}
+OTHER_MODULES = {"omniidl": "a back end of omniidl runs inside it", **dict.fromkeys(("Later", "OldShop", "OldShop__POA"), "tests/python/service_test.py makes them"), "gymnasium": "rtmsim uses it where it is installed, and has stand-ins"}
 # Modules that packages of their own install.
 PACKAGED_MODULES = {"numpy": "python3-numpy", "pytest": "python3-pytest"}
 BUILTINS = set(""". : [ [[ alias bg break builtin cd command compgen complete compopt continue declare dirs disown echo enable eval exec exit export false fc fg getopts hash help
@@ -358,7 +359,10 @@ def called(source):
         elif path.suffix in (".mjs", ".ts"):
             for name in re.findall(r"\b(?:spawn|spawnSync|execFile|execFileSync|exec|execSync)\)?\(\s*['\"`]([\w.+-]+)", text):
                 likely[name].add(file)
+        elif path.suffix == ".idl":  # a stub has the modules of its interfaces
+            ours |= {f"{name}{kind}" for name in re.findall(r"^\s*module (\w+)", text, re.M) for kind in ("", "__POA")} | {f"{path.stem}_idl", f"{path.stem}_idl_example"}
         elif path.suffix in (".cpp", ".h", ".c"):
+            ours |= set(re.findall(r"\bPYBIND11_MODULE\((\w+)", text))
             for name in re.findall(r"\b(?:system|popen|execlp|execvp|posix_spawnp?)\((?:&?\w+, )?\"([\w.+-]+)", text) + re.findall(r"command = \"([\w.+-]+) ", text):
                 sure[name].add(file)
     for name in functions:

@@ -35,7 +35,7 @@ servers = {
 }
 if os.path.exists(f"{bin_dir}/rtm-studio"):
     servers["rtm-studio"] = [f"{bin_dir}/rtm-studio", "--ns", nothing, "-s", server, "--port", "0"]
-least = {"rtm-studio": 30 << 20}  # [octets] with less it ends in the initializers of omniORB's libraries, before its own begin
+least = {"rtm-studio": 30 << 20, "rtse ls": 27 << 20}  # [octets] with less it ends in the initializers of omniORB's libraries, before its own begin
 tools = {
     "rtse ls": [f"{bin_dir}/rtse", "--ns", nothing, "ls"],
     "simctl list": [f"{bin_dir}/simctl", "list", "-a"],

@@ -199,7 +199,7 @@ def arm_rig():
 def actarray():
     with arm_rig() as rig:
         assert [(name, words.split()[:-1]) for _, name, words in rig.lines()] == [
-            ("arm", ["actarray:0=arm::joints", "limb:0=arm::joints", "gripper:0=arm::joints"]), ("eye", ["camera:0=eye::camera", "actarray:0=eye::joints", "ptz:0=eye::joints"])], rig.lines()
+            ("arm", ["actarray:0=arm::joints", "limb:0=arm::joints", "gripper:0=arm::joints"]), ("eye", ["camera:0=eye::camera", "actarray:0=eye::joints", "ptz:0=eye::joints", "blobfinder:0=eye::camera"])], rig.lines()
         client = Client(rig.ports[0])
         # Before anybody is subscribed, and with data always: clients do not see a refusal.
         fields = Fields(client.demand(ACTARRAY, 0, 3))

@@ -306,7 +306,7 @@ def replayed():
     # Another module than the one that was asked for says nothing.
     empty = rig.path("empty")
     os.mkdir(empty)
-    refused(*call, "--module-path", empty, says="LaserObstacleAvoid.so is not in --module-path")
+    refused(*call, "--module-path", empty, says="module LaserObstacleAvoid.so or LaserObstacleAvoid.py is not in --module-path")
     refused("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "1", "--module-path", empty,
             says=f'module path "{empty}": holds no modules (*.so)')
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")

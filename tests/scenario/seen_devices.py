@@ -22,7 +22,7 @@ def sample(port):
     return json.loads(rig.rtse("--json", "print", port, "-n", "1", "-t", "60"))["value"]
 
 
-def call(what):
+def ask(what):
     rig.rtse("conf", "SeenProbe0", "set", "call", what)
     rig.rtse("act", "SeenProbe0")
     assert rig.state("SeenProbe0") == "Active", rig.log(rig.running[-1])
@@ -61,10 +61,10 @@ def fiducial():
     assert ids() == [0, 1, 2], ids()  # the fourth is behind a crate
     first = sample("RTCFiducial0:fiducials")["fiducialsList"][0]
     assert first["size"]["w"] == 0.2 and abs(first["poseUncertainty"]["position"]["x"] - 0.005) < 1e-9, first
-    call("view")
-    call("near")
+    ask("view")
+    ask("near")
     await_("only the nearest", lambda: ids() == [1])
-    call("nan")
+    ask("nan")
     await_("all again", lambda: ids() == [0, 1, 2])
 
 
@@ -75,7 +75,7 @@ def multicamera():
     left, right = images["images"]
     assert left["tm"] == right["tm"] == images["tm"] and (left["width"], left["height"], left["format"]) == (320, 240, "RGB8")
     assert len(left["pixels"]) == 3 * 320 * 240 and left["pixels"] != right["pixels"]
-    call("stereo")
+    ask("stereo")
 
 
 def thermal():
@@ -93,8 +93,8 @@ def map():
 <model name='mover'><pose>5 5 0.5 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>""")
     up("RTCMap", world=rig.path("w.sdf"))
     rig.rtse("con", "SeenProbe0:map", "RTCMap0:map")
-    call("map")
-    call("server")
+    ask("map")
+    ask("server")
     rig.rtse("deact", "RTCMap0")
     rig.rtse("conf", "RTCMap0", "set", "area", "1,2,0")
     rig.try_rtse("act", "RTCMap0")
