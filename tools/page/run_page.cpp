@@ -29,6 +29,7 @@ using namespace std::chrono_literals;
 // Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
 constexpr std::size_t part_size = 3U << 19U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
+constexpr nanoseconds pose_step(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
 constexpr int growth = 4;                          // of the length from one part to the next, at most
 constexpr std::string_view marker = "<!--run-->";  // in the viewer: the place of the data
 constexpr int compression_level = 9;
@@ -162,6 +163,7 @@ class RunPage {
       parts_.push_back(Json::array({facts_->seconds(from), facts_->seconds(to)}));
       length = std::clamp(length * static_cast<std::int64_t>(part_size) / static_cast<std::int64_t>(*size),
                           std::max(shortest_part, length / growth), std::min(longest_part, length * growth));
+      length -= length % pose_step;  // the poses of all parts are at the times of those of the first
       from = to;
     }
     if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
@@ -209,8 +211,7 @@ class RunPage {
   static Result<void> add_poses(Json& part, const studio::RecordingFacts& facts, studio::Playhead& playhead, nanoseconds from,
                                 nanoseconds to) {
     part["poses"] = part["late"] = Json::array();
-    const auto step = nanoseconds(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
-    for (auto time = from; time < to; time += step) {
+    for (auto time = from; time < to; time += pose_step) {
       const auto news = playhead.look(time, time == from);
       if (!news) return news.error();
       for (const auto& [key, frame] : *news) {
