@@ -332,7 +332,7 @@ def sensors():
         rig.sim("--paused", world=path)
         rig.gateway()
         flyer, faller = Client(rig.ports[0]), Client(rig.ports[1])
-        assert flyer.devices() == [(POSITION3D, 0), (CAMERA, 0), (CAMERA, 1), (SIMULATION, 0)], flyer.devices()
+        assert flyer.devices() == [(POSITION3D, 0), (CAMERA, 0), (CAMERA, 1), (BLOBFINDER, 0), (BLOBFINDER, 1), (SIMULATION, 0)], flyer.devices()
         assert faller.devices() == [(GPS, 0), (IMU, 0), (BUMPER, 0), (SIMULATION, 0)], faller.devices()
         for device in ((GPS, 0), (IMU, 0), (BUMPER, 0)):
             faller.subscribe(*device)

@@ -236,7 +236,7 @@ def views():
     kinds = {c["type"].split("/")[-1] for c in info["channels"]}
     assert kinds == {"TFMessage", "Clock", "LaserScan", "Range", "Image", "CameraInfo", "PointCloud2", "MarkerArray", "Imu", "NavSatFix", "Float64",
                      "MagneticField", "FluidPressure", "WrenchStamped", "Odometry", "JointState", "BatteryState", "TwistWithCovarianceStamped", "TwistStamped", "String",
-                     "PoseWithCovarianceStamped"}, kinds
+                     "PoseWithCovarianceStamped", "Detection2DArray"}, kinds
     assert all(c["samples"] > 0 and c["missing"] == 0 for c in info["channels"]), info["channels"]
     ours, theirs = lines("cat", file), foreign(file)[:-1]
     assert len(ours) == len(theirs)
