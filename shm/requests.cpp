@@ -320,8 +320,7 @@ base::Result<Request> Decoder::fault() const {
   FaultRequest request{name_, raw_.text, std::nullopt, values()[1]};
   if ((body().flags & flag_1) != 0) request.amount = values()[0];
   if (const auto row = check_fault(request.kind, request.amount); !row) return row.error();
-  if (request.duration < 0 && request.duration != WrenchRequest::until_the_next)
-    return fail("duration must not be negative (or -1: until the next), got " + base::format_number(request.duration));
+  if (request.duration < 0) return fail("duration must not be negative, got " + base::format_number(request.duration));
   return Request(std::move(request));
 }
 

@@ -40,16 +40,16 @@ struct ReceivedScan {
   }
 };
 
-volatile sig_atomic_t is_told_to_end = 0;
+volatile sig_atomic_t is_ended = 0;
 
-void say(const std::string& text) { std::cout << text << std::endl; }
+void report(const std::string& text) { std::cout << text << std::endl; }
 
 double yaw_of(const ros::Quaternion& q) { return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)); }
 std::int64_t nanoseconds_of(const ros::Time& time) { return std::int64_t{time.sec} * 1'000'000'000 + time.nanosec; }
 
-class Follower {
+class DdsFollower {
  public:
-  Follower(std::string robot, const follow::SteeringSettings& steering) : robot_(std::move(robot)), steering_(steering) {
+  DdsFollower(std::string robot, const follow::SteeringSettings& steering) : robot_(std::move(robot)), steering_(steering) {
     follow::TrackerSettings settings;
     settings.max_speed = steering.max_speed;
     tracker_ = follow::LeaderTracker(settings);
@@ -71,13 +71,13 @@ class Follower {
     auto drive = (*participant)->make_writer({front + "cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", ""});
     if (!tf || !odom || !scan || !drive) return base::Error{"cannot create the DDS endpoints"};
     drive_ = drive->get();
-    while (is_told_to_end == 0) {
+    while (is_ended == 0) {
       pollfd news{(*participant)->descriptor(), POLLIN, 0};
       ::poll(&news, 1, 200);
       (*participant)->deliver();
       if (!is_connected_ && mount_ && !drive_->readers().empty() && !(*scan)->writers().empty() && !(*odom)->writers().empty()) {
         is_connected_ = true;
-        say("connected to " + robot_);
+        report("connected to " + robot_);
       }
     }
     return {};
@@ -139,9 +139,9 @@ class Follower {
   void tell(const std::optional<follow::Sighting>& leader) {
     if (leader.has_value() == is_following_) return;
     is_following_ = leader.has_value();
-    say(leader ? fmt::format("leader at {:.2f} m, {:.0f} degrees", leader->distance,
-                             std::round(leader->bearing * 180 / std::numbers::pi) + 0.0)
-               : "leader not seen");
+    report(leader ? fmt::format("leader at {:.2f} m, {:.0f} degrees", leader->distance,
+                                std::round(leader->bearing * 180 / std::numbers::pi) + 0.0)
+                  : "leader not seen");
   }
 
   const std::string robot_;
@@ -182,8 +182,8 @@ int main(int argc, char** argv) {
   if (const auto end = base::parse_command_line(app, "follow-ros2", argc, argv)) return *end;
   settings.network = network == "lan" ? ros2::Network::lan : network == "loopback" ? ros2::Network::loopback : ros2::Network::host;
   settings.user_data.clear();  // no node of ROS, as a stranger
-  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, [](int) { is_told_to_end = 1; });
-  if (const auto done = Follower(robot, steering).run(settings); !done) {
+  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, [](int) { is_ended = 1; });
+  if (const auto done = DdsFollower(robot, steering).run(settings); !done) {
     std::cerr << "follow-ros2: " << done.error().message << '\n';
     return 1;
   }

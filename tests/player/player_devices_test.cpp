@@ -184,7 +184,7 @@ TEST(ToPoints, frames_that_are_none_or_too_short_have_no_places) {
 TEST(DeviceKinds, capabilities_follow_from_the_table_of_each_device) {
   const auto table = find_kind(player::Interface::position2d)->served;
   EXPECT_TRUE(is_served(table, 2, 2));
-  EXPECT_FALSE(is_served(table, 2, 3));
+  EXPECT_FALSE(is_served(table, 2, 5));
   EXPECT_FALSE(is_served(table, 0x102, 2));
   EXPECT_FALSE(is_served(table, 2, 0x102));
   EXPECT_EQ(find_kind(player::Interface::player), nullptr);

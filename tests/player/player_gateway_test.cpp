@@ -217,7 +217,7 @@ TEST(Mapping, each_robot_has_a_port_in_world_order) {
   EXPECT_EQ(shown(plans[0]),
             "6665 b: position2d:0=b::drive laser:0=b::front laser:1=b::rear sonar:0=b::sonar ranger:0=b::front ranger:1=b::rear "
             "ranger:2=b::sonar simulation:0=world");
-  EXPECT_EQ(shown(plans[1]), "6666 a: position2d:0=a::drive camera:0=a::arm::camera simulation:0=world");
+  EXPECT_EQ(shown(plans[1]), "6666 a: position2d:0=a::drive camera:0=a::arm::camera blobfinder:0=a::arm::camera simulation:0=world");
 }
 
 std::string with_fields(const PortPlan& plan) {
@@ -245,7 +245,7 @@ TEST(Mapping, magnetometers_are_part_of_imus_and_depth_cameras_are_shown_once) {
     ifaces.push_back({type, name, "r"});
   EXPECT_EQ(with_fields(plan_by_world(ifaces, 0)[0]),
             "camera:0=rgbd camera:1=rgbd camera:2=d imu:0=i1+m1 imu:1=i2+m2 imu:2=m3 aio:0=a aio:1=p aio:2=f pointcloud3d:0=rgbd "
-            "pointcloud3d:1=d simulation:0=world ");
+            "pointcloud3d:1=d blobfinder:0=rgbd simulation:0=world ");
 }
 
 TEST(Mapping, world_without_robots_has_one_port) {
@@ -290,7 +290,7 @@ TEST_F(MappingFile, names_robots_and_devices) {
   ASSERT_EQ(plans.size(), 2U);
   EXPECT_EQ(shown(plans[0]),
             "7000 b a: position2d:0=b::drive laser:0=b::front laser:1=b::rear sonar:0=b::sonar ranger:0=b::front ranger:1=b::rear "
-            "ranger:2=b::sonar position2d:1=a::drive camera:0=a::arm::camera simulation:0=world");
+            "ranger:2=b::sonar position2d:1=a::drive camera:0=a::arm::camera blobfinder:0=a::arm::camera simulation:0=world");
   EXPECT_EQ(shown(plans[1]), "0 : laser:3=b::rear ranger:0=b::sonar simulation:0=world");
   EXPECT_TRUE(missing.empty());
 }
@@ -323,8 +323,8 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: \"lazer\" is no interface of Player; did you mean laser?");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    Position2D:0: x\n"),
             ":4: \"Position2D\" is no interface of Player; did you mean position2d?");
-  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    blobfinder:0: x\n").substr(0, 82),
-            ":4: \"blobfinder\" is an interface of Player that is not served here; served are pos");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    stereo:0: x\n").substr(0, 78),
+            ":4: \"stereo\" is an interface of Player that is not served here; served are pos");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    colour:0: x\n").substr(0, 66),
             ":4: \"colour\" is no interface of Player; expected one of position2d");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:x: x\n"), ":4: expected INTERFACE:INDEX as in laser:0, got \"laser:x\"");

@@ -76,6 +76,7 @@ const std::vector<Layer> layers = {
     {"clients/examples", {"rtm", "coil", "stubs"}},
     {"clients/obstacle-avoidance", {"rtm", "coil", "stubs"}},
     {"clients/box-stacker", {"rtm", "coil", "stubs"}},
+    {"clients/pilot", {"rtm", "coil", "stubs"}},
     {"clients/warehouse", {"rtm", "coil", "stubs"}},
     {"clients/way-points", {"rtm", "coil", "stubs"}},
     {"clients/video-player", {"rtm", "coil", "stubs"}, {"SDL2", "X11", "JPEG", "PNG"}},

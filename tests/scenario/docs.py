@@ -74,7 +74,7 @@ def write_layers():
 # (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of drives and rangers are in common files.
 def facts_of_components():
     sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp",
-               source / "clients/box-stacker/box_stacker.cpp", source / "clients/way-points/way_points.cpp", source / "clients/warehouse/porter.cpp", source / "clients/video-player/video_player.cpp"]
+               source / "clients/box-stacker/box_stacker.cpp", source / "clients/pilot/waypoint_pilot.cpp", source / "clients/way-points/way_points.cpp", source / "clients/warehouse/porter.cpp", source / "clients/video-player/video_player.cpp"]
     drive, ranger = ((source / f"iface-components/{name}_component.cpp").read_text() for name in ("drive", "ranger"))
     for file in sources:
         text, header = file.read_text(), file.with_suffix(".h").read_text()

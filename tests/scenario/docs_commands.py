@@ -54,6 +54,7 @@ elsewhere = {
 left_out = {
     ("README.md", "scripts/demo"): "it builds; package.demo runs what it runs then",
     ("README.md", "scripts/test"): "it builds, and runs this test",
+    ("docs/ros2.md", ""): "uses the DDS domain that programs of this machine may be in: ros2.* run the same programs in domains of their own",
     ("docs/packages.md", ""): "installs packages: package.installed does so, in a root of its own",
 }
 # What is to be done before a line, where the text around the block asks for it.

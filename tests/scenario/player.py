@@ -66,7 +66,7 @@ def properties():
         def can(interface, kind, subtype):
             return client.request(interface, 0, 255, struct.pack(">II", kind, subtype))[0] == ACK
 
-        assert all(can(POSITION2D, CMD, subtype) for subtype in (1, 2, 4)) and not can(POSITION2D, CMD, 3)
+        assert all(can(POSITION2D, CMD, subtype) for subtype in (1, 2, 3, 4)) and not can(POSITION2D, CMD, 5)
         assert all(can(POSITION2D, REQ, subtype) for subtype in range(1, 10)) and not can(POSITION2D, REQ, 10)
         assert can(LASER, DATA, 1) and not can(LASER, DATA, 2) and not can(LASER, REQ, 6) and not can(LASER, CMD, 1)
         assert can(SIMULATION, CMD, 1) and not can(SIMULATION, DATA, 1)

@@ -14,7 +14,7 @@ namespace {
 // slower, since the drag of rotors is weak.
 constexpr double velocity_gain = 1.8, attitude_gain = 50, attitude_gain_of_yaw = 1.5, rate_gain = 10, rate_gain_of_yaw = 1.8;
 constexpr double usual_acceleration = 2;  // [m/s^2]
-constexpr double usual_speed = 5, usual_yaw_rate = 2;
+constexpr double usual_vehicle_speed = 5, usual_yaw_rate = 2;
 
 struct Numbers {
   Eigen::Vector3d velocity, attitude, rate;  // gains: [N s/m], [N m], [N m s]
@@ -64,7 +64,7 @@ class Multicopter final : public VehicleControl {
       ++rotor;
     }
   }
-  double most_speed() const override { return numbers_.speed.x() > 0 ? numbers_.speed.x() : usual_speed; }
+  double most_speed() const override { return numbers_.speed.x() > 0 ? numbers_.speed.x() : usual_vehicle_speed; }
   double most_yaw_rate() const override { return numbers_.turn.z() > 0 ? numbers_.turn.z() : usual_yaw_rate; }
 
  private:
