@@ -124,6 +124,7 @@ void ManagerImpl::destroy(std::uint64_t id) {
     at->second.finalized = true;
   }
   withdraw(record);
+  state.lock()->reserved_names.erase(record.instance_name);  // before its number is free, which the next component may get at once
   if (record.numbered) {
     const auto mine = numbering_turn.take(numbering_patience);
     if (mine && numbering != nullptr) numbering->onDelete(record.component);
@@ -140,7 +141,6 @@ void ManagerImpl::destroy(std::uint64_t id) {
   bool is_last = false;
   {
     auto locked = state.lock();
-    locked->reserved_names.erase(record.instance_name);
     locked->records.erase(id);
     is_last = locked->records.empty() && locked->had_components && locked->activated && locked->phase == Phase::active;
   }

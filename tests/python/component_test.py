@@ -271,8 +271,8 @@ def test_a_component_leaves_and_another_one_comes_in_one_process(system, tmp_pat
     print("twenty times", flush=True)
     mgr.shutdown()""")
     (tmp_path / file).write_text(text)
-    process = program(system, file, folder=tmp_path)
-    assert process.wait(60) == 0
+    process = program(system, file, "-o", "manager.shutdown_on_nortcs:NO", folder=tmp_path)
+    assert process.wait(60) == 0, system.log(process)
     log = system.log(process)
     assert "twenty times" in log and log.count("finalized") >= 20 and log.count("deleted") >= 19
 

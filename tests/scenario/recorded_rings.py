@@ -172,7 +172,8 @@ def of_a_killed_recorder():
     out, err = run.communicate(timeout=200)
     assert run.returncode == 1 and f"rtse recording repair {file} puts it together" in out + err, (out, err)
     assert len(pieces()) == 2
-    assert "samples kept of" in rig.rtse("recording", "repair", file) and scan_times("run.mcap")
+    done = rig.try_rtse("recording", "repair", file)  # 1: it was killed while it wrote, and the last samples are cut
+    assert done.returncode in (0, 1) and "samples kept of" in done.stdout and scan_times("run.mcap"), done
 
 
 def is_recorder(pid):

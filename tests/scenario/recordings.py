@@ -308,7 +308,7 @@ def replayed():
     os.mkdir(empty)
     refused(*call, "--module-path", empty, says="module LaserObstacleAvoid.so or LaserObstacleAvoid.py is not in --module-path")
     refused("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "1", "--module-path", empty,
-            says=f'module path "{empty}": holds no modules (*.so)')
+            says=f'module path "{empty}": holds no modules (*.so, *.py)')
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
     refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
     refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')

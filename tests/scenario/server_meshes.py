@@ -311,9 +311,11 @@ def lock_step_waits_for_the_first_picture():
         if is_held:
             time.sleep(0.5)  # for what would happen without the files
             os.kill(reader, signal.SIGCONT)
-        ok("step", "500")
-        await_("the last picture", lambda: eye.frames() and eye.frames()[-1][0] == "500000000")
-        seen.append(dict(eye.frames()))  # a slow subscriber misses some
+        ok("step", "1")
+        await_("the first picture", eye.frames)
+        ok("step", "499")
+        await_("the last picture", lambda: eye.frames()[-1][0] == "500000000")
+        seen.append(dict(eye.frames()))  # a slow subscriber misses some in between
         eye.end()
         stop(process)
     common = seen[0].keys() & seen[1].keys()
