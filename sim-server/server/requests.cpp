@@ -36,7 +36,8 @@ shm::Reply no_model(const Physics& physics, const std::string& name) {
 shm::Reply no_iface(const Simulation& simulation, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& device : simulation.devices()) {
-    if (known.size() < most_compared) known.push_back(device->iface().name());
+    const std::string& other = device->iface().name();
+    if (other != name && known.size() < most_compared) known.push_back(other);
   }
   return refused(shm::RequestStatus::not_found, "no iface " + name + base::suggestion(name, known));
 }

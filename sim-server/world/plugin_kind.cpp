@@ -47,6 +47,7 @@ const std::map<std::string_view, PluginKind>& table() {
       {"detachablejoint", detachable_joint},
       {"mecanumdrive", mecanum_drive},
       {"omnidrive", omni_drive},
+      {"rtmsimomnidrive", omni_drive},
       {"omniwheeldrive", omni_drive},
       {"omnidirectionaldrive", omni_drive},
       {"tricycledrive", tricycle_drive},

@@ -183,6 +183,15 @@ TEST(TricycleDrive, drives_curves_and_turns_almost_on_the_spot) {
   EXPECT_LT(std::hypot(later.true_pose.x - spot.true_pose.x, later.true_pose.y - spot.true_pose.y), 0.12);
 }
 
+TEST(TricycleDrive, odometry_is_what_its_wheels_in_the_rear_have_rolled) {
+  LandRide ride(tricycle_text(), "trike::drive");
+  ride.after(0.5);
+  const auto begin = ride.after(0.001);
+  ride.command(1, 0, 0);  // at once: the driven wheel spins
+  const auto end = ride.after(1);
+  EXPECT_NEAR(end.odometry[0] - begin.odometry[0], end.true_pose.x - begin.true_pose.x, 0.01);
+}
+
 TEST(CarCommand, of_0_3_rad_at_1_m_s_turns_with_0_309_rad_s_at_a_radius_of_3_233_m) {
   LandRide ride(car_text(), "car::position2d");
   const auto& info = ride.drive.info<shm::Position2dInfo>();

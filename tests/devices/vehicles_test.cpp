@@ -180,6 +180,22 @@ TEST(Multicopter, a_weak_drive_is_slower_and_a_halted_one_goes_on) {
   f.simulation->end_faults({}, std::nullopt);
   f.run(8);
   EXPECT_NEAR(sample(pilot).velocity[0], 0, 0.05);
+  // A rotor that is halted keeps its speed while the vehicle asks for others.
+  fault(shm::FaultKind::halted, "x3::joints::x3_joint_0");
+  auto joints = f.open(IfaceType::joints, "x3::joints");
+  const auto speed = [&](std::size_t joint) {
+    EXPECT_TRUE(joints.read());
+    return std::abs(joints.elements<shm::JointState>()[joint].velocity);
+  };
+  f.run(0.1);
+  const double kept = speed(0);
+  command(pilot, {0, 0, 3, 0, 0, 0});
+  f.run(0.2);
+  EXPECT_NEAR(speed(0), kept, 0.5);
+  EXPECT_GT(speed(1), kept + 5);
+  f.simulation->end_faults({}, std::nullopt);
+  command(pilot, {0, 0, 0, 0, 0, 0});
+  f.run(8);
   // A rotor that has half of its thrust left cannot carry its corner.
   fault(shm::FaultKind::weak, "x3::joints::x3_joint_0");
   f.run(5);

@@ -249,6 +249,7 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
   for (const char* name : {"gz-sim-velocity-control-system", "libgazebo_ros_planar_move.so"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::velocity_control) << name;
   EXPECT_EQ(kind_of_plugin("gz-sim-trajectory-follower-system", "x"), PluginKind::trajectory_follower);
+  EXPECT_EQ(kind_of_plugin("rtmsim-omni-drive", "OmniDrive"), PluginKind::omni_drive);
   EXPECT_EQ(kind_of_plugin("something", "gz::sim::systems::DiffDrive"), PluginKind::differential_drive);
   for (const char* name :
        {"gz-sim-physics-system", "ignition-gazebo-scene-broadcaster-system", "libgazebo_ros_laser.so", "gz-sim-imu-system"}) {

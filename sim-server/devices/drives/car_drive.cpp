@@ -36,6 +36,8 @@ struct CarSettings {
   double rate = 0;                        // of samples [Hz]; 0: every step
   double tightest = 1;                    // curve that a velocity can ask for [1/m]
   bool is_tricycle = false;               // one wheel in front is driven and steered
+  std::vector<std::uint32_t> encoders;    // joints of its wheels in the rear, left and right, which its odometry comes from; or none
+  double encoder_radius = 0;              // of those wheels [m]
 };
 
 Wheel place_of(const ModelDef& model, std::uint32_t joint) {
@@ -105,6 +107,12 @@ base::Result<void> find_tricycle(const ModelDef& model, const PluginDef& plugin,
   s.separation = rear.size() == 2 ? (wheel_place(model, rear[0]) - wheel_place(model, rear[1])).head<2>().norm()
                                   : p.number_of({"encoderWheelSeparation", "encoder_wheel_separation"}).value_or(s.wheel_base);
   s.is_tricycle = true;
+  if (rear.size() == 2) {
+    s.encoders = rear;
+    s.encoder_radius = p.number_of({"encoderWheelDiameter", "encoder_wheel_diameter"}).value_or(2 * wheel_radius(model, rear[0])) / 2;
+    if (!(s.encoder_radius > 0))
+      return error(fmt::format("the diameter of an encoder's wheel must be positive, got {}", 2 * s.encoder_radius));
+  }
   return {};
 }
 
@@ -193,6 +201,7 @@ class Car final : public DriveTrain {
   }
 
   Travel travel() override {
+    if (!settings_.encoders.empty()) return travel_of_encoders();
     const double curve = steered_curvature();
     double forward = 0, speed = 0;
     for (std::size_t i = 0; i < settings_.driven.size(); ++i) {
@@ -240,6 +249,19 @@ class Car final : public DriveTrain {
     }
   }
 
+  // Of a tricycle: what its wheels in the rear have rolled, also while the one in front slips.
+  Travel travel_of_encoders() {
+    std::array<double, 2> way{}, speed{};
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      const JointState state = physics_.joint_state({model_, settings_.encoders[i]});
+      way[i] = settings_.encoder_radius * wrapped(state.position - angles_[i]);
+      speed[i] = settings_.encoder_radius * state.velocity;
+      angles_[i] = state.position;
+    }
+    return {(way[0] + way[1]) / 2, (way[1] - way[0]) / settings_.separation, (speed[0] + speed[1]) / 2,
+            (speed[1] - speed[0]) / settings_.separation};
+  }
+
   // The curve that the wheels are steered to now [1/m].
   double steered_curvature() const {
     double sum = 0;
@@ -252,14 +274,18 @@ class Car final : public DriveTrain {
 
   void read_angles() {
     angles_.clear();
-    for (const Wheel& wheel : settings_.driven) angles_.push_back(physics_.joint_state({model_, wheel.joint}).position);
+    std::vector<std::uint32_t> joints = settings_.encoders;
+    if (joints.empty()) {
+      for (const Wheel& wheel : settings_.driven) joints.push_back(wheel.joint);
+    }
+    for (const auto joint : joints) angles_.push_back(physics_.joint_state({model_, joint}).position);
   }
 
   Physics& physics_;
   ModelId model_;
   CarSettings settings_;
   double speed_ = 0, curvature_ = 0;  // that the motors follow [m/s], [1/m]
-  std::vector<double> angles_;        // of the driven wheels
+  std::vector<double> angles_;        // of the wheels that the odometry comes from
 };
 
 }  // namespace

@@ -205,6 +205,7 @@ std::shared_ptr<Propellers> Propellers::of(DeviceWorld& world, ModelId model, st
   }
   if (made->all_.empty()) return nullptr;
   made->wishes.resize(made->all_.size());
+  made->followed.resize(made->all_.size());
   return made;
 }
 

@@ -84,7 +84,8 @@ class Propellers {
     bool is_thrust = false;
     double value = 0;
   };
-  std::vector<Wish> wishes;  // of the vehicle, by place
+  std::vector<Wish> wishes;    // of the vehicle, by place
+  std::vector<Wish> followed;  // what each follows; one that is halted goes on with it
 
  private:
   std::vector<Propeller> all_;

@@ -199,8 +199,9 @@ void JointsDevice::turn_propellers(const Moment& moment) {
   for (Axis& axis : axes_) {
     if (!axis.propeller) continue;
     Propeller& propeller = propellers_->all()[*axis.propeller];
-    Propellers::Wish wish = propellers_->wishes[*axis.propeller];
-    if (axis.owner != 0) wish = {axis.servo.mode() == JointMode::effort, axis.servo.is_turning() ? axis.servo.target() : 0};
+    const Propellers::Wish own{axis.servo.mode() == JointMode::effort, axis.servo.is_turning() ? axis.servo.target() : 0};
+    Propellers::Wish& wish = propellers_->followed[*axis.propeller];
+    if (!axis.is_halted) wish = axis.owner != 0 ? own : propellers_->wishes[*axis.propeller];
     wish.is_thrust ? propeller.set_thrust(wish.value) : propeller.set_speed(wish.value);
     propeller.before_step(world().physics, world().world.physics.wind, moment.dt);
   }
@@ -279,7 +280,7 @@ void JointsDevice::restart() {
   is_active_ = false;
   for (std::size_t i = 0; propellers_ && i < propellers_->all().size(); ++i) {
     propellers_->all()[i].reset();
-    propellers_->wishes[i] = {};
+    propellers_->wishes[i] = propellers_->followed[i] = {};
   }
 }
 
