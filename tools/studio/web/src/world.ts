@@ -19,7 +19,7 @@ import { type Mover, Trails } from './trails';
 import type { Poses } from './wire';
 import { fetch_data } from './token';
 
-const wanted_cost = 10, least_share = 0.5; // [ms] of a picture while things move; the fewest pixels across
+const wanted_cost = 10, least_share = 0.375; // [ms] of a picture while things move; the fewest pixels across
 const rest_after = 300; // [ms] without a change
 
 export class WorldView {
@@ -81,7 +81,7 @@ export class WorldView {
       if (this.dirty && now >= this.next_draw) {
         this.set_share(this.moving_share);
         this.draw();
-        this.next_draw = now + 2 * this.cost;
+        this.next_draw = now + (this.cost > 40 ? 2 : 1) * this.cost;
         this.rests_at = now + rest_after;
       } else if (!this.dirty && this.share < 1 && now >= this.rests_at) {
         this.set_share(1);
