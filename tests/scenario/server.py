@@ -46,6 +46,10 @@ def requests():
     drive.send_signal(signal.SIGKILL)
     drive.wait()
     await_("a robot without commander that stands", lambda: abs(read("echo", f"{robot}::position2d", "-n", "1")["velocity"][0]) < 0.01)
+    drive = client("velocity", f"{robot}::position2d", "0.3", "0", "0")
+    await_("a driving robot", lambda: read("echo", f"{robot}::position2d", "-n", "1")["velocity"][0] > 0.1)
+    ok("delete", robot)
+    assert drive.wait(watchdog) == 1, "who commands what is deleted ends"
     stop(process)
 
 

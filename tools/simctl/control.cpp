@@ -123,6 +123,8 @@ void await_end(Control& control, const shm::Iface& iface, shm::Iface& simulation
     if (now.resets != begin.resets) return control.fail("iface " + iface.name() + ": the world was reset, which ends the command");
     if (!iface.is_commander()) return control.fail("iface " + iface.name() + ": another client commands it now");
     if (simulation.wait(now.sequence, std::chrono::milliseconds(100)) == shm::Wait::closed) return control.fail("the simulator has exited");
+    if (iface.status() != shm::Status::live)
+      return control.fail("iface " + iface.name() + ": its model was deleted, which ends the command");
   }
 }
 

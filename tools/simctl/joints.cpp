@@ -131,6 +131,8 @@ void command(Control& control, shm::Iface& iface, const JointOptions& options) {
     if (options.seconds <= 0 && options.mode == "position" && now() >= begin + taken && iface.read() && have_arrived(iface, *values)) break;
     if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
       return control.fail("the simulator has exited");
+    if (iface.status() != shm::Status::live)
+      return control.fail("iface " + iface.name() + ": its model was deleted, which ends the command");
   }
   if (iface.read()) show(control, iface);
 }
