@@ -154,7 +154,7 @@ bool Gateway::is_paused() const {
   return world_.clock() && world_.clock()->iface().read() && world_.clock()->iface().sample<shm::SimulationSample>().paused != 0;
 }
 
-// Time would jump to and fro between two of them.
+// Time would jump back and forth between two of them.
 void Gateway::watch_other_clocks() {
   const auto peers = graph_->peers_of("rt/clock");
   const auto other = std::ranges::find_if(peers, [](const Peer* peer) { return peer->is_writer; });

@@ -67,7 +67,8 @@ void collect(const fs::path& source, const std::string& library, const std::stri
 // "library namespace::name: files", for each name that two sources of a library have. Aliases of one type are allowed.
 Lines names_of_two(const fs::path& root) {
   Places places;
-  for (const char* top : {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
+  for (const char* top :
+       {"base", "shm", "ros", "arms", "rtm-core", "sim-server", "iface-components", "gateways", "tools", "clients", "python"}) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       if (!entry.is_regular_file() || entry.path().extension() != ".cpp") continue;

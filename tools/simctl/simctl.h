@@ -59,11 +59,11 @@ struct JointOptions {
 // Shows the joints when there are no settings. A joint brakes when this command ends.
 void joints(Control& control, const JointOptions& options);
 struct SpawnOptions {
-  std::string file, name, gains;  // gains: a file
-  std::vector<double> pose;  // of the first, if there are several
+  std::string file, name, gains;    // gains: a file
+  std::vector<double> pose;         // of the first, if there are several
   std::vector<std::string> joints;  // JOINT=POSITION
-  std::string list;          // "robot=r0..r9": a model for each value, with {robot} in file and name filled in; empty: one model
-  double spacing = 2;        // of several, in a square grid [m]
+  std::string list;                 // "robot=r0..r9": a model for each value, with {robot} in file and name filled in; empty: one model
+  double spacing = 2;               // of several, in a square grid [m]
 };
 void spawn(Control& control, const SpawnOptions& options);
 // Attaches or detaches what a gripper or a detachable joint holds; without a name shows all of them.

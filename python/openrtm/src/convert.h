@@ -1,4 +1,4 @@
-// Values of the generated C++ types as Python objects of the stubs, and back, by way of their bytes. With the interpreter's lock.
+// Values of the generated C++ types as Python objects of the stubs, by way of their bytes. With the interpreter's lock.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -24,21 +24,8 @@ pybind11::object to_python(const Value& value, const char* id) {
   } catch (const PythonFailed&) {
     throw pybind11::error_already_set();
   } catch (const BadOctets&) {
-    throw pybind11::value_error(std::string("a value is no ") + id);
+    throw pybind11::type_error(std::string("a value is no ") + id);
   }
-}
-
-template <class Value>
-void from_python(pybind11::handle object, const char* id, Value& value) {
-  cdrMemoryStream stream;
-  try {
-    encode(type_by_id(id), object.ptr(), stream);
-  } catch (const PythonFailed&) {
-    throw pybind11::error_already_set();
-  } catch (const BadValue& bad) {
-    throw pybind11::type_error(bad.text());
-  }
-  value <<= stream;
 }
 
 }  // namespace python
