@@ -191,6 +191,17 @@ void RobotTopics::add(const ListedIface& listed, bool is_only) {
       return add_meter<ros::FluidPressure, shm::MeterInfo>(place, place.front + "air_pressure", ros::pressure_message);
     case force_torque:
       return add_meter<ros::WrenchStamped, shm::MeterInfo>(place, place.leaf + "/wrench", ros::wrench_message);
+    case logical_camera:  // no topics yet; recordings have them
+    case boxes:
+    case fiducial:
+    case battery:
+    case dvl:
+    case air_speed:
+    case ins:
+    case rfid:
+    case wireless:
+    case wheels:
+    case localization:
     case truth:
     case simulation:
       break;
