@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace ros {
 
@@ -190,6 +191,62 @@ FluidPressure pressure_message(const shm::Iface& iface, const std::string& frame
   const auto& sample = iface.sample<shm::AirPressureSample>();
   const double noise = iface.info<shm::MeterInfo>().noise[0];
   return {header_of(sample.stamp, frame), sample.pressure, noise * noise};
+}
+
+namespace {
+
+std::vector<PointField> point_fields(bool with_intensity) {
+  std::vector<PointField> fields = {{"x", 0}, {"y", 4}, {"z", 8}};
+  if (with_intensity) fields.push_back({"intensity", 12});
+  return fields;
+}
+
+}  // namespace
+
+PointCloud2 cloud_message(const shm::Stamp& stamp, const std::string& frame, std::uint32_t width, std::uint32_t height, bool with_intensity,
+                          std::span<const std::uint8_t> data) {
+  const std::uint32_t step = with_intensity ? 16 : 12;
+  return {.header = header_of(stamp, frame),
+          .height = height,
+          .width = width,
+          .point_fields = point_fields(with_intensity),
+          .point_step = step,
+          .row_step = step * width,
+          .data = data};
+}
+
+std::vector<RayPoint> ray_points(const shm::LaserInfo& info, const shm::ScanView& scan) {
+  std::vector<RayPoint> points;
+  points.reserve(scan.ranges.size());
+  const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
+  const double sweep = info.beams > 1 ? 1e-9 * scan.sample->sweep_ns / (info.beams - 1) : 0;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    const std::size_t beam = i % info.beams, layer = i / info.beams;
+    const double yaw = info.min_angle + static_cast<double>(beam) * info.angle_step;
+    const double pitch = info.min_vertical + static_cast<double>(layer) * rise;
+    const bool is_hit = std::isfinite(range);
+    const auto coordinate = [&](double factor) {
+      return is_hit ? static_cast<float>(range * factor) : std::numeric_limits<float>::quiet_NaN();
+    };
+    points.push_back({coordinate(std::cos(pitch) * std::cos(yaw)), coordinate(std::cos(pitch) * std::sin(yaw)), coordinate(std::sin(pitch)),
+                      i < scan.intensities.size() ? scan.intensities[i] : 0.0F, static_cast<std::uint16_t>(layer), 0,
+                      static_cast<float>(sweep * static_cast<double>(beam))});
+  }
+  return points;
+}
+
+PointCloud2 ring_message(const shm::LaserInfo& info, const shm::ScanView& scan, const std::string& frame,
+                         std::span<const RayPoint> points) {
+  shm::Stamp begin = scan.sample->stamp;
+  begin.sim_time_ns = std::max<std::int64_t>(begin.sim_time_ns - scan.sample->sweep_ns, 0);
+  PointCloud2 message = cloud_message(begin, frame, info.beams, info.layers, true,
+                                      {reinterpret_cast<const std::uint8_t*>(points.data()), points.size_bytes()});
+  message.point_fields.push_back({"ring", 16, PointField::uint16});
+  message.point_fields.push_back({"time", 20});
+  message.point_step = sizeof(RayPoint);
+  message.row_step = message.point_step * info.beams;
+  return message;
 }
 
 }  // namespace ros

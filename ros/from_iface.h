@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/jpeg.h"
 #include "base/result.h"
@@ -55,5 +56,21 @@ NavSatFix fix_message(const shm::Iface& iface, const std::string& frame);
 WrenchStamped wrench_message(const shm::Iface& iface, const std::string& frame);
 MagneticField field_message(const shm::Iface& iface, const std::string& frame);
 FluidPressure pressure_message(const shm::Iface& iface, const std::string& frame);
+
+// Points of 12 bytes, or 16 with an intensity. `data` must outlive the message.
+PointCloud2 cloud_message(const shm::Stamp& stamp, const std::string& frame, std::uint32_t width, std::uint32_t height, bool with_intensity,
+                          std::span<const std::uint8_t> data);
+
+// A scanner of several layers: its hits, in the order of beams; NaN where there is none. `ring` 0 is the lowest layer, `time` [s] counts
+// from the first beam, which the stamp of the message is that of.
+struct RayPoint {
+  float x, y, z, intensity;
+  std::uint16_t ring, padding;
+  float time;
+};
+static_assert(sizeof(RayPoint) == 24);
+std::vector<RayPoint> ray_points(const shm::LaserInfo& info, const shm::ScanView& scan);
+// `points` must outlive the message.
+PointCloud2 ring_message(const shm::LaserInfo& info, const shm::ScanView& scan, const std::string& frame, std::span<const RayPoint> points);
 
 }  // namespace ros

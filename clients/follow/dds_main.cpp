@@ -114,7 +114,7 @@ class DdsFollower {
   void steer() {
     if (!scan_ || !mount_ || odometry_.empty()) return;
     const auto time = nanoseconds_of(scan_->header.stamp);
-    if (time == 0) scan_.reset();  // a stamp of 0 is none: nobody waits for the answer
+    if (time == 0) scan_.reset();  // a stamp of 0 is none: no tick waits for the answer
     if (!scan_ || last_odometry_ < time) return;
     const auto after = odometry_.upper_bound(time);
     if (after == odometry_.begin()) return;
@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
   app.add_option("--max-speed", steering.max_speed, "Maximum speed [m/s]")->check(base::number_between(0, 10))->capture_default_str();
   if (const auto end = base::parse_command_line(app, "follow-ros2", argc, argv)) return *end;
   settings.network = network == "lan" ? ros2::Network::lan : network == "loopback" ? ros2::Network::loopback : ros2::Network::host;
-  settings.user_data.clear();  // no node of ROS, as a stranger
+  settings.user_data.clear();  // as a plain DDS program, which is no node of ROS
   for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, [](int) { is_ended = 1; });
   if (const auto done = DdsFollower(robot, steering).run(settings); !done) {
     std::cerr << "follow-ros2: " << done.error().message << '\n';

@@ -161,7 +161,7 @@ void Graph::see(const Peer& peer) {
   if (is_new) judge_fit(peer);
 }
 
-// A writer of the graph without type hash is one of Humble; whoever gives the hash of a topic is of Iron or later. Others say nothing.
+// A graph writer without a type hash belongs to Humble. A topic with a type hash belongs to Iron or later. Other endpoints decide nothing.
 void Graph::judge_family(const Peer& peer) {
   const bool has_hash = value_in(peer.user_data, "typehash").has_value();
   const bool is_graph = peer.topic == graph_topic;

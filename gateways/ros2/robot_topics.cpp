@@ -38,31 +38,6 @@ std::vector<Writer*> without_null(std::vector<Writer*> writers) {
   return writers;
 }
 
-// A point of a scanner of several layers, as drivers of such scanners send it.
-struct RingPoint {
-  float x, y, z, intensity;
-  std::uint16_t ring, reserved;
-  float time;
-};
-static_assert(sizeof(RingPoint) == 24);
-
-std::vector<RingPoint> ring_points(const shm::LaserInfo& info, const shm::ScanView& scan) {
-  std::vector<RingPoint> points;
-  points.reserve(scan.ranges.size());
-  const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double range = std::isfinite(scan.ranges[i]) ? scan.ranges[i] : std::numeric_limits<double>::quiet_NaN();
-    const double yaw = info.min_angle + static_cast<double>(i % info.beams) * info.angle_step;
-    const double pitch = info.min_vertical + static_cast<double>(i / info.beams) * rise;
-    points.push_back({static_cast<float>(range * std::cos(pitch) * std::cos(yaw)),
-                      static_cast<float>(range * std::cos(pitch) * std::sin(yaw)), static_cast<float>(range * std::sin(pitch)),
-                      i < scan.intensities.size() ? scan.intensities[i] : 0.0F, static_cast<std::uint16_t>(i / info.beams), 0, 0});
-  }
-  return points;
-}
-
-constexpr std::uint8_t uint16_field = 4, float32_field = 7;
-
 ros::Contacts contacts_message(const shm::Iface& iface, const std::string& frame) {
   const auto view = iface.bumper();
   ros::Contacts message{ros::header_of(view.sample->stamp, frame), {}};
@@ -291,18 +266,9 @@ void RobotTopics::add_cloud_of_laser(Place& place) {
   outlet(place, {writer}).show = [writer, frame = place.frame](Iface& iface, const HeldFrame*) {
     const auto scan = iface.laser_scan();
     const auto& info = iface.info<shm::LaserInfo>();
-    const auto points = ring_points(info, scan);
-    ros::PointCloud2 message{.header = ros::header_of(scan.sample->stamp, frame), .height = info.layers, .width = info.beams};
-    message.point_fields = {{"x", 0},
-                            {"y", 4},
-                            {"z", 8},
-                            {"intensity", 12},
-                            {"ring", offsetof(RingPoint, ring), uint16_field},
-                            {"time", offsetof(RingPoint, time), float32_field}};
-    message.point_step = sizeof(RingPoint);
-    message.row_step = message.point_step * message.width;
-    message.data = {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * sizeof(RingPoint)};
-    message.is_dense = std::ranges::all_of(points, [](const RingPoint& point) { return std::isfinite(point.x); });
+    const auto points = ros::ray_points(info, scan);
+    auto message = ros::ring_message(info, scan, frame, points);
+    message.is_dense = std::ranges::all_of(points, [](const ros::RayPoint& point) { return std::isfinite(point.x); });
     publish(*writer, message);
   };
 }
@@ -360,13 +326,8 @@ void RobotTopics::add_points(Place& place) {
   outlet(place, {writer}).show = [writer, frame_id = place.frame](Iface&, const HeldFrame* frame) {
     const auto& head = frame->head();
     const bool has_intensity = static_cast<shm::Format>(head.format) == shm::Format::points_intensity_float;
-    ros::PointCloud2 message{.header = ros::header_of(head.stamp, frame_id), .height = head.height, .width = head.width};
-    message.point_fields = {{"x", 0}, {"y", 4}, {"z", 8}};
-    if (has_intensity) message.point_fields.push_back({"intensity", 12});
-    message.point_step = has_intensity ? 16 : 12;
-    message.row_step = message.point_step * message.width;
-    message.data = {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()};
-    publish(*writer, message);
+    publish(*writer, ros::cloud_message(head.stamp, frame_id, head.width, head.height, has_intensity,
+                                        {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}));
   };
 }
 

@@ -321,7 +321,7 @@ class FastReader final : public Reader, private rtps::ReaderListener {
 
 class LogLines final : public dds::LogConsumer {
  public:
-  // Of one thread of Fast DDS. Whoever sends damaged packets could fill a disk: the first lines are enough.
+  // Of one thread of Fast DDS. Damaged packets could fill a disk with lines, so only the first lines are logged.
   void Consume(const dds::Log::Entry& entry) override {
     constexpr int most = 20;
     if (entry.kind == dds::Log::Kind::Info || count_ > most) return;

@@ -98,7 +98,7 @@ class Participant {
   // `on_match` is called by deliver() when a reader comes or goes.
   virtual base::Result<std::unique_ptr<Writer>> make_writer(EndpointSettings settings, std::function<void()> on_match = {}) = 0;
   virtual base::Result<std::unique_ptr<Reader>> make_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) = 0;
-  // `on_peer` is called by deliver() for each endpoint of others that comes or goes.
+  // `on_peer` is called by deliver() for each remote endpoint that comes or goes.
   virtual void watch(std::function<void(const Peer&)> on_peer) = 0;
 
   // Readable when deliver() has something to do; an eventfd.

@@ -34,67 +34,6 @@ IfaceView flat_laser_view(const shm::Iface& iface) {
   return view;
 }
 
-std::vector<ros::PointField> point_fields(bool with_intensity) {
-  std::vector<ros::PointField> fields = {{"x", 0}, {"y", 4}, {"z", 8}};
-  if (with_intensity) fields.push_back({"intensity", 12});
-  return fields;
-}
-
-ros::PointCloud2 cloud_message(const shm::Stamp& stamp, const std::string& frame, std::uint32_t width, std::uint32_t height,
-                               bool with_intensity, std::span<const std::uint8_t> data) {
-  const std::uint32_t step = with_intensity ? 16 : 12;
-  return {.header = header_of(stamp, frame),
-          .height = height,
-          .width = width,
-          .point_fields = point_fields(with_intensity),
-          .point_step = step,
-          .row_step = step * width,
-          .data = data};
-}
-
-// A scanner of several layers: its hits, in the order of beams; NaN where there is none. `ring` 0 is the lowest layer, `time` [s] counts
-// from the first beam, which the stamp of the message is that of.
-struct RayPoint {
-  float x, y, z, intensity;
-  std::uint16_t ring, padding;
-  float time;
-};
-static_assert(sizeof(RayPoint) == 24);
-
-std::vector<RayPoint> points_of(const shm::LaserInfo& info, const shm::ScanView& scan) {
-  std::vector<RayPoint> points;
-  points.reserve(scan.ranges.size());
-  const double rise = info.layers > 1 ? (info.max_vertical - info.min_vertical) / (info.layers - 1) : 0;
-  const double sweep = info.beams > 1 ? 1e-9 * scan.sample->sweep_ns / (info.beams - 1) : 0;
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double range = scan.ranges[i];
-    const std::size_t beam = i % info.beams, layer = i / info.beams;
-    const double yaw = info.min_angle + static_cast<double>(beam) * info.angle_step;
-    const double pitch = info.min_vertical + static_cast<double>(layer) * rise;
-    const bool is_hit = std::isfinite(range);
-    const auto coordinate = [&](double factor) {
-      return is_hit ? static_cast<float>(range * factor) : std::numeric_limits<float>::quiet_NaN();
-    };
-    points.push_back({coordinate(std::cos(pitch) * std::cos(yaw)), coordinate(std::cos(pitch) * std::sin(yaw)), coordinate(std::sin(pitch)),
-                      i < scan.intensities.size() ? scan.intensities[i] : 0.0F, static_cast<std::uint16_t>(layer), 0,
-                      static_cast<float>(sweep * static_cast<double>(beam))});
-  }
-  return points;
-}
-
-ros::PointCloud2 ring_message(const shm::LaserInfo& info, const shm::ScanView& scan, const std::string& frame,
-                              std::span<const RayPoint> points) {
-  shm::Stamp begin = scan.sample->stamp;
-  begin.sim_time_ns = std::max<std::int64_t>(begin.sim_time_ns - scan.sample->sweep_ns, 0);
-  ros::PointCloud2 message = cloud_message(begin, frame, info.beams, info.layers, true,
-                                           {reinterpret_cast<const std::uint8_t*>(points.data()), points.size_bytes()});
-  message.point_fields.push_back({"ring", 16, ros::PointField::uint16});
-  message.point_fields.push_back({"time", 20});
-  message.point_step = sizeof(RayPoint);
-  message.row_step = message.point_step * info.beams;
-  return message;
-}
-
 IfaceView laser_view(const shm::Iface& iface) {
   if (iface.info<shm::LaserInfo>().layers == 1) return flat_laser_view(iface);
   IfaceView view;
@@ -104,8 +43,8 @@ IfaceView laser_view(const shm::Iface& iface) {
     const auto scan = from.laser_scan();
     if (scan.sample->stamp.valid == 0) return;
     const auto& info = from.info<shm::LaserInfo>();
-    const auto points = points_of(info, scan);
-    said.add(0, ring_message(info, scan, from.name(), points));
+    const auto points = ros::ray_points(info, scan);
+    said.add(0, ros::ring_message(info, scan, from.name(), points));
   };
   return view;
 }
@@ -223,8 +162,8 @@ IfaceView points_view(const shm::Iface& iface) {
     if (frame == nullptr || frame->head().stamp.valid == 0) return;
     const auto& head = frame->head();
     const bool with_intensity = static_cast<shm::Format>(head.format) == shm::Format::points_intensity_float;
-    said.add(0, cloud_message(head.stamp, from.name(), head.width, head.height, with_intensity,
-                              {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}));
+    said.add(0, ros::cloud_message(head.stamp, from.name(), head.width, head.height, with_intensity,
+                                   {reinterpret_cast<const std::uint8_t*>(frame->data().data()), frame->data().size()}));
   };
   return view;
 }

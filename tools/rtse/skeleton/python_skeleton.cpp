@@ -18,10 +18,6 @@ std::string python_name(std::string cpp_name) {
   return base::join(base::split_list(base::join(base::split_list(cpp_name, ':'), "."), ' '), "");
 }
 std::string module_in(const std::string& cpp_name) { return cpp_name.substr(0, cpp_name.find("::")); }
-std::string python_last_name(const std::string& cpp_name) {
-  const auto colons = cpp_name.rfind("::");
-  return colons == std::string::npos ? cpp_name : cpp_name.substr(colons + 2);
-}
 std::string idl_stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
 std::string quoted(const std::string& text) {
@@ -79,7 +75,7 @@ std::string imports(const NewComponent& component) {
   for (const auto& service : component.services) {
     modules.insert(module_in(service.interface));
     if (service.is_provided)
-      examples += fmt::format("from {}_idl_example import {}_i\n", idl_stem(service.idl_file), python_last_name(service.interface));
+      examples += fmt::format("from {}_idl_example import {}_i\n", idl_stem(service.idl_file), last_name(service.interface));
   }
   std::string text = "import sys\n\nimport OpenRTM_aist\n";
   for (const auto& module : modules) text += "import " + module + "\n";
@@ -104,7 +100,7 @@ std::string initialization(const NewComponent& component) {
       text += fmt::format("        self._{0}Port = OpenRTM_aist.CorbaPort(\"{0}\")\n", service.port);
     if (service.is_provided)
       text += fmt::format("        self._{0} = {1}_i()\n        self._{2}Port.registerProvider(\"{0}\", \"{3}\", self._{0})\n",
-                          service.instance, python_last_name(service.interface), service.port, service.interface);
+                          service.instance, last_name(service.interface), service.port, service.interface);
     else
       text += fmt::format(
           "        self._{0} = OpenRTM_aist.CorbaConsumer(interfaceType={1})\n        self._{2}Port.registerConsumer(\"{0}\", \"{3}\", "

@@ -23,12 +23,6 @@ std::string upper(std::string text) {
   return text;
 }
 
-// "SimpleService::MyService" -> "MyService".
-std::string last_name(const std::string& name) {
-  const auto colon = name.rfind("::");
-  return colon == std::string::npos ? name : name.substr(colon + 2);
-}
-
 std::string literal(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -383,6 +377,11 @@ std::string readme_file(const NewComponent& component) {
 }
 
 }  // namespace
+
+std::string last_name(const std::string& name) {
+  const auto colon = name.rfind("::");
+  return colon == std::string::npos ? name : name.substr(colon + 2);
+}
 
 Result<std::map<std::string, std::string>> skeleton(const NewComponent& given) {
   if (const auto ok = check(given); !ok) return ok.error();

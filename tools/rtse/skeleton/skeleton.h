@@ -48,6 +48,8 @@ struct NewComponent {
 
 // Names must be C++ identifiers that do not meet in the code, types known ones; the error names what is not.
 base::Result<void> check(const NewComponent& component);
+// "SimpleService::MyService" -> "MyService".
+std::string last_name(const std::string& name);
 // A data type that comes with the product, as RTC::TimedLong.
 bool is_product_type(const std::string& type);
 // What may stand in `actions`.
