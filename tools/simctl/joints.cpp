@@ -114,6 +114,15 @@ bool have_arrived(const shm::Iface& iface, const std::vector<double>& values) {
   return true;
 }
 
+// The simulator has taken the command to brake: a sample shows it. A command of a client that leaves before that is dropped.
+bool have_braked(const shm::Iface& iface, const std::vector<double>& values) {
+  const auto states = states_of(iface);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (values[RTMSIM_JOINT_VALUES * i] != 0 && states[i].mode != RTMSIM_JOINT_BRAKE && states[i].mode != RTMSIM_JOINT_DISABLED)
+      return false;
+  return true;
+}
+
 void command(Control& control, shm::Iface& iface, const JointOptions& options) {
   const auto values = commands_of(control, iface, options);
   if (!values) return;
@@ -127,7 +136,7 @@ void command(Control& control, shm::Iface& iface, const JointOptions& options) {
   constexpr std::int64_t taken = 50'000'000;  // [ns] after which the simulator has taken the command
   while (!is_interrupted()) {
     if (options.seconds > 0 && now() >= end) break;
-    if (options.seconds <= 0 && options.mode == "brake" && now() > begin) break;
+    if (options.seconds <= 0 && options.mode == "brake" && now() > begin && iface.read() && have_braked(iface, *values)) break;
     if (options.seconds <= 0 && options.mode == "position" && now() >= begin + taken && iface.read() && have_arrived(iface, *values)) break;
     if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
       return control.fail("the simulator has exited");
