@@ -482,9 +482,12 @@ const flows = [
   }],
   ['a signal is dragged into the plots', async ({ page, mock }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/demo/RTCLaser0/range' }));
-    const watch_id = await until('watch', () => asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range' && !m.args.members)?.args.watch);
-    mock.say({ op: 'values', watch: watch_id, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
-    await page.locator('.inspector canvas.polar').waitFor();
+    // The value is said again until it is shown: the newest watch may still be one of an earlier selection.
+    await until('the scan', () => {
+      const watch = asked(mock, 'watch').findLast((m) => m.args.topic === '/demo/RTCLaser0/range' && !m.args.members)?.args.watch;
+      if (watch) mock.say({ op: 'values', watch, t: [12], value: { tm: { sec: 1, nsec: 2 }, config: { minAngle: -2 }, ranges: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } });
+      return page.locator('.inspector canvas.polar').isVisible();
+    });
     await page.locator('.inspector button[aria-label="Plot config.minAngle"]').click();
     await page.locator('.plot .legend').waitFor();
     const plotted = await until('plot watch', () => asked(mock, 'watch').find((m) => m.args.members?.[0] === 'config.minAngle')?.args.watch);
