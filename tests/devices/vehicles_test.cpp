@@ -233,7 +233,58 @@ TEST(Multicopter, rotors_in_one_line_get_no_controller_and_a_line_says_so) {
   EXPECT_NE(f.simulation->device("bar::joints"), nullptr);
 }
 
+TEST(Multicopter, a_rotor_that_its_controller_takes_for_one_of_the_other_hand_has_a_line) {
+  std::string text = quadcopter("x3", "0 0 5 0 0 0");
+  const std::string right =
+      "x3_joint_0</jointName><forceConstant>8.54858e-06</forceConstant><momentConstant>0.016</momentConstant><direction>";
+  const auto at = text.find(right);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at + right.size(), 1, "-1");
+  SimulationFixture f(world_of_text(air + text));
+  ASSERT_EQ(f.dropped.size(), 1U);
+  EXPECT_THAT(f.dropped[0], testing::HasSubstr("<direction> of joint \"x3_joint_0\" is -1, but its motor"));
+  EXPECT_THAT(f.dropped[0], testing::HasSubstr("turns ccw, which is 1"));
+}
+
+TEST(Rotor, a_negative_command_has_one_line_with_its_range) {
+  SimulationFixture f(world_of_text(weightless + quadcopter("x3", "0 0 5 0 0 0", false)));
+  Joints joints(f, "x3");
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 3; ++i) {
+    joints.command(0, RTMSIM_JOINT_VELOCITY, -5);
+    f.run(0.01);
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(joints.state(0).velocity, 0);
+  const auto at = said.find("joint x3_joint_0: the command -5 is outside of 0 to 800, the nearest of which counts");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_EQ(said.find("is outside of", at + 60), std::string::npos) << said;
+}
+
 // --- thrusters
+
+TEST(Thruster, an_uneven_range_is_named_as_it_is) {
+  SimulationFixture f(world_of_text(
+      weightless + torpedo("auv", torpedo_thruster + "<max_thrust_cmd>30</max_thrust_cmd><min_thrust_cmd>-10</min_thrust_cmd>")));
+  Joints joints(f, "auv");
+  testing::internal::CaptureStderr();
+  joints.command(0, RTMSIM_JOINT_EFFORT, -20);
+  f.run(0.01);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("the command -20 is outside of -10 to 30"));
+  EXPECT_NEAR(joints.state(0).effort, -10, 1e-9);
+}
+
+TEST(Thruster, of_the_other_hand_turns_backwards_to_push_forwards) {
+  SimulationFixture f(
+      world_of_text(weightless + torpedo("auv",
+                                         "<thrust_coefficient>-0.004422</thrust_coefficient><propeller_diameter>0.2</propeller_diameter>"
+                                         "<velocity_control>true</velocity_control>")));
+  Joints joints(f, "auv");
+  joints.command(0, RTMSIM_JOINT_EFFORT, 25.47);
+  f.run(0.1);
+  EXPECT_NEAR(joints.state(0).effort, 25.47, 1e-9);
+  EXPECT_NEAR(joints.state(0).velocity, -60, 0.01);
+}
 
 TEST(Thruster, at_sixty_radians_a_second_drives_a_torpedo_at_two_metres_a_second) {
   SimulationFixture f(world_of_text(weightless + torpedo("auv", torpedo_thruster)));

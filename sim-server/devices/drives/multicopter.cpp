@@ -91,7 +91,7 @@ Numbers numbers_of(const ParameterNode& p, const Weight& weight) {
 struct Rotor {
   double force, moment, direction;
 };
-Rotor rotor_of(const ModelDef& model, const PluginDef& plugin, const Propeller& propeller) {
+Rotor rotor_of(const ModelDef& model, const PluginDef& plugin, const Propeller& propeller, std::vector<std::string>& left_out) {
   const auto& setup = propeller.setup();
   Rotor rotor{setup.constant, setup.moment, setup.direction};
   const ParameterNode* all = plugin.parameters.child("rotorConfiguration");
@@ -100,6 +100,11 @@ Rotor rotor_of(const ModelDef& model, const PluginDef& plugin, const Propeller& 
     rotor.force = one.number_of({"forceConstant"}).value_or(rotor.force);
     rotor.moment = one.number_of({"momentConstant"}).value_or(rotor.moment);
     rotor.direction = one.number_of({"direction"}).value_or(rotor.direction);
+    if (rotor.direction * setup.direction > 0) continue;
+    left_out.push_back(plugin.source + ": plugin " + base::in_quotes(plugin.name) + ": <direction> of joint " +
+                       base::in_quotes(model.joints[propeller.joint()].name) + " is " + base::format_number(rotor.direction) +
+                       ", but its motor (" + setup.source + ") turns " + (setup.direction > 0 ? "ccw, which is 1" : "cw, which is -1") +
+                       "; the vehicle turns about its vertical axis the wrong way");
   }
   return rotor;
 }
@@ -135,7 +140,7 @@ std::unique_ptr<VehicleControl> make_multicopter(const DeviceWorld& world, Model
   for (Eigen::Index i = 0; i < count; ++i) {
     const Propeller& propeller = propellers.all()[static_cast<std::size_t>(i)];
     if (!propeller.setup().is_rotor) continue;
-    const Rotor rotor = rotor_of(def, plugin, propeller);
+    const Rotor rotor = rotor_of(def, plugin, propeller, left_out);
     const Eigen::Vector3d place =
         def.links[body.link].pose.inverse() * def.joints[propeller.joint()].pose_in_model.translation() - weight.center;
     efforts.col(i) << rotor.force * place.y(), -rotor.force * place.x(), -rotor.direction * rotor.force * rotor.moment, rotor.force;

@@ -74,11 +74,16 @@ Propeller::Propeller(Physics& physics, const Setup& setup, double dt) : setup_(s
     setup_.most_thrust = setup_.constant * setup_.most_speed * setup_.most_speed;
   } else {
     const double most = std::max(std::abs(setup_.least_thrust), std::abs(setup_.most_thrust));
-    setup_.most_speed = setup_.constant > 0 ? std::sqrt(most / setup_.constant) : 0;
+    setup_.most_speed = setup_.constant != 0 ? std::sqrt(most / std::abs(setup_.constant)) : 0;
   }
 }
 
 double Propeller::most_thrust() const { return std::min(std::max(std::abs(setup_.least_thrust), std::abs(setup_.most_thrust)), most_push); }
+
+std::pair<double, double> Propeller::range(bool is_thrust) const {
+  if (is_thrust) return {std::max(setup_.least_thrust, -most_push), std::min(setup_.most_thrust, most_push)};
+  return {setup_.is_rotor ? 0.0 : -setup_.most_speed, setup_.most_speed};
+}
 
 // Of a thruster whose coefficient follows the advance ratio.
 double Propeller::constant_now(const Physics& physics, double speed) const {
@@ -92,7 +97,7 @@ double Propeller::constant_now(const Physics& physics, double speed) const {
 void Propeller::set_speed(double speed) {
   if (!std::isfinite(speed)) return;
   is_by_speed_ = true;
-  wanted_speed_ = std::clamp(speed, setup_.is_rotor ? 0.0 : -setup_.most_speed, setup_.most_speed);
+  wanted_speed_ = std::clamp(speed, range(false).first, range(false).second);
   wanted_thrust_ = std::clamp(setup_.constant * std::abs(wanted_speed_) * wanted_speed_, setup_.least_thrust, setup_.most_thrust);
 }
 
@@ -100,7 +105,9 @@ void Propeller::set_thrust(double thrust) {
   if (!std::isfinite(thrust)) return;
   is_by_speed_ = false;
   wanted_thrust_ = std::clamp(thrust, setup_.least_thrust, setup_.most_thrust);
-  wanted_speed_ = setup_.constant > 0 ? std::copysign(std::sqrt(std::abs(wanted_thrust_) / setup_.constant), wanted_thrust_) : 0;
+  // A propeller of the other hand (a negative coefficient) turns backwards to push forwards.
+  const double square = setup_.constant != 0 ? wanted_thrust_ / setup_.constant : 0;
+  wanted_speed_ = std::copysign(std::sqrt(std::abs(square)), square);
 }
 
 void Propeller::before_step(Physics& physics, const Eigen::Vector3d& wind, double dt) {

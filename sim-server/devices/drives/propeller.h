@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "devices/device.h"
@@ -41,6 +42,8 @@ class Propeller {
   std::uint32_t joint() const { return setup_.joint.joint; }
   Eigen::Vector3d axis() const { return axis_; }  // of the thrust, in the link
   double most_thrust() const;                     // [N]
+  // Least and most of a command: speeds [rad/s] or thrusts [N].
+  std::pair<double, double> range(bool is_thrust) const;
 
   // What is asked for from the next step on.
   void set_speed(double speed);                                 // [rad/s]

@@ -91,6 +91,15 @@ JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDy
 
 void JointsDevice::warn(const std::string& line) const { base::log(base::Level::warn, writer().name(), "{}", line); }
 
+// Least and most of a command.
+std::pair<double, double> JointsDevice::range_of(const Axis& axis, JointMode mode) const {
+  const auto& setup = axis.listed.setup;
+  if (mode == JointMode::position) return {setup.low, setup.high};
+  if (axis.propeller) return propellers_->all()[*axis.propeller].range(mode == JointMode::effort);
+  const double most = mode == JointMode::velocity ? setup.velocity : setup.effort;
+  return {-most, most};
+}
+
 void JointsDevice::order(Axis& axis, std::uint64_t owner, const JointOrder& order) {
   if (axis.is_halted) {
     axis.told = {owner, order};
@@ -109,14 +118,12 @@ void JointsDevice::order(Axis& axis, std::uint64_t owner, const JointOrder& orde
   }
   axis.owner = owner;
   is_active_ = true;
-  const bool is_within = axis.servo.take(order, state_of(axis));
-  if (!is_within && axis.was_within) {
-    const auto& setup = axis.listed.setup;
-    const bool is_position = order.mode == JointMode::position;
-    const double most = order.mode == JointMode::velocity ? setup.velocity : setup.effort;
-    warn(fmt::format("joint {}: the command {:g} is outside of {:g} to {:g}, the nearest of which counts", name, order.value,
-                     is_position ? setup.low : -most, is_position ? setup.high : most));
-  }
+  const auto [least, most] = range_of(axis, order.mode);
+  const bool is_taken = axis.servo.take(order, state_of(axis));
+  const bool commands_propeller = axis.propeller && (order.mode == JointMode::velocity || order.mode == JointMode::effort);
+  const bool is_within = is_taken && (!commands_propeller || (order.value >= least && order.value <= most));
+  if (!is_within && axis.was_within)
+    warn(fmt::format("joint {}: the command {:g} is outside of {:g} to {:g}, the nearest of which counts", name, order.value, least, most));
   axis.was_within = is_within;
 }
 

@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "devices/drives/propeller.h"
@@ -57,6 +58,7 @@ class JointsDevice final : public Sensor {
   void restart() override;
   void add_state_to(StateHash& hash) const override;
   void take(std::uint64_t owner, const shm::Command& command);
+  std::pair<double, double> range_of(const Axis& axis, JointMode mode) const;
   void order(Axis& axis, std::uint64_t owner, const JointOrder& order);
   void brake_lost_joints();
   Eigen::Matrix3d base_rotation() const;
