@@ -11,6 +11,7 @@
 #include "world/iface_names.h"
 #include "world/joint_builder.h"
 #include "world/plugin_kind.h"
+#include "world/plugin_numbers.h"
 #include "world/repairs.h"
 #include "world/shape_inertia.h"
 #include "world/visual_builder.h"
@@ -76,17 +77,6 @@ std::optional<CollisionDef> build_collision(pugi::xml_node node, BuildContext& c
   return collision;
 }
 
-// In place of a number; what it is for has its default then.
-void name_what_is_no_number(pugi::xml_node node, const std::string& plugin, BuildContext& context) {
-  for (pugi::xml_node child : node.children()) {
-    if (child.first_child().type() == pugi::node_element) name_what_is_no_number(child, plugin, context);
-    const std::string text = base::to_lower(base::trim(child.text().get()));
-    if (text == "nan" || text == "-nan" || text == "+nan")
-      context.complaints.warn(child, "<" + std::string(child.name()) + "> of " + plugin + " must be a number, got " +
-                                         base::in_quotes(text) + "; its default is taken");
-  }
-}
-
 }  // namespace
 
 PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildContext& context) {
@@ -108,8 +98,8 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
              ((kind_of(plugin) == PluginKind::buoyancy || kind_of(plugin) == PluginKind::link_wrench) &&
               std::string_view(node.parent().name()) != "world")) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
-  } else if (kind_of(plugin) != PluginKind::implied && kind_of(plugin) != PluginKind::hydrodynamics) {  // which names its own
-    name_what_is_no_number(node, describe_in_context(node), context);
+  } else if (kind_of(plugin) != PluginKind::implied) {
+    check_numbers(node, plugin, context.complaints);
   }
   return plugin;
 }

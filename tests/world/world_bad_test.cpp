@@ -359,6 +359,53 @@ TEST(BadWorld, parallel_axes_of_a_joint_are_mended) {
   }
 }
 
+TEST(BadWorld, impossible_numbers_of_drives_have_one_line_each_and_their_defaults) {
+  const auto plugin = [](const std::string& file, const std::string& content) {
+    return "<plugin filename='gz-sim-" + file + "-system' name='p'>" + content + "</plugin>";
+  };
+  struct Bad {
+    const char *file, *element, *value, *expected;
+  };
+  for (const Bad& bad : {
+           Bad{"diff-drive", "wheel_radius", "wide", "a number"},
+           Bad{"diff-drive", "wheel_separation", "", "a number"},
+           Bad{"diff-drive", "max_linear_velocity", "-1", "a number of 0 or more"},
+           Bad{"diff-drive", "max_wheel_torque", "0", "a positive number"},
+           Bad{"ackermann-steering", "steering_limit", "-0.5", "a positive number"},
+           Bad{"mecanum-drive", "wheelbase", "0.4 m", "a number"},
+           Bad{"tracked-vehicle", "odom_publish_frequency", "often", "a number of 0 or more"},
+           Bad{"velocity-control", "initial_linear", "1 0", "three numbers"},
+           Bad{"thruster", "propeller_diameter", "0", "a positive number"},
+           Bad{"thruster", "thrust_coefficient", "0", "a number other than 0"},
+           Bad{"multicopter-motor-model", "motorConstant", "-8e-6", "a positive number"},
+           Bad{"multicopter-motor-model", "maxRotVelocity", "nan", "a positive number"},
+           Bad{"multicopter-control", "velocityGain", "1 1", "three numbers of 0 or more"},
+           Bad{"lift-drag", "area", "0", "a positive number"},
+           Bad{"odometry-publisher", "gaussian_noise", "-0.1", "a number of 0 or more"},
+       }) {
+    const std::string element = bad.element, value = bad.value;
+    const LoadResult result =
+        WorldFiles().load("<model name='m'><link name='l'/>" +
+                          plugin(bad.file, "<" + element + ">" + value + "</" + element + "><topic>t</topic>") + "</model>");
+    EXPECT_EQ(result.findings.size(), 1U) << bad.file << " " << element << all_findings(result);
+    EXPECT_EQ(findings_with(result, "<" + element + "> of plugin \"p\" of model \"m\" must be " + bad.expected + ", got \"" + value +
+                                        "\"; its default is taken"),
+              1)
+        << all_findings(result);
+    const ParameterNode& kept = result.world.models.at(0).plugins.at(0).parameters;
+    EXPECT_EQ(kept.child(element), nullptr);
+    EXPECT_EQ(kept.text_of({"topic"}), "t");
+  }
+  const LoadResult nested = WorldFiles().load(
+      "<model name='m'><link name='l'/>" +
+      plugin("multicopter-control",
+             "<rotorConfiguration><rotor><jointName>j</jointName><direction>0</direction></rotor></rotorConfiguration>") +
+      plugin("tracked-vehicle", "<linear_velocity><min_velocity>-1</min_velocity><max_velocity>inf</max_velocity></linear_velocity>") +
+      "</model>");
+  EXPECT_EQ(nested.findings.size(), 1U) << all_findings(nested);
+  EXPECT_EQ(findings_with(nested, "<direction> of plugin \"p\" of model \"m\" must be 1 or -1, got \"0\""), 1) << all_findings(nested);
+}
+
 TEST(BadWorld, a_flood_of_findings_is_cut) {
   const WorldFiles files;
   std::string content;

@@ -1,0 +1,258 @@
+#include "world/plugin_numbers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "base/text.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
+
+namespace sim {
+namespace {
+
+enum class Must { number, positive, not_negative, not_positive, not_zero, one_or_minus_one, vector, vector_not_negative };
+
+struct NumberRow {
+  std::string_view element;
+  Must must;
+};
+
+using enum Must;
+
+constexpr std::array wheel_rows{
+    NumberRow{"wheel_separation", number},
+    NumberRow{"wheelSeparation", number},
+    NumberRow{"wheel_track", number},
+    NumberRow{"kingpin_width", number},
+    NumberRow{"wheel_base", number},
+    NumberRow{"wheelbase", number},
+    NumberRow{"wheel_radius", number},
+    NumberRow{"wheelRadius", number},
+    NumberRow{"wheel_diameter", number},
+    NumberRow{"wheelDiameter", number},
+    NumberRow{"actuatedWheelDiameter", number},
+    NumberRow{"actuated_wheel_diameter", number},
+    NumberRow{"encoderWheelDiameter", number},
+    NumberRow{"encoder_wheel_diameter", number},
+    NumberRow{"encoderWheelSeparation", number},
+    NumberRow{"encoder_wheel_separation", number},
+    NumberRow{"tracks_separation", number},
+    NumberRow{"steering_efficiency", number},
+    NumberRow{"max_wheel_torque", positive},
+    NumberRow{"wheelTorque", positive},
+    NumberRow{"wheel_torque", positive},
+    NumberRow{"torque", positive},
+    NumberRow{"max_force", positive},
+    NumberRow{"MaxForce", positive},
+    NumberRow{"steering_limit", positive},
+    NumberRow{"max_steer", positive},
+    NumberRow{"steer_p_gain", positive},
+    NumberRow{"max_wheel_speed", not_negative},
+    NumberRow{"wheelAcceleration", not_negative},
+    NumberRow{"wheel_acceleration", not_negative},
+    NumberRow{"max_wheel_acceleration", not_negative},
+    NumberRow{"max_turnrate", not_negative},
+    NumberRow{"maxSpeed", not_negative},
+    NumberRow{"max_linear_speed", positive},
+    NumberRow{"max_angular_speed", positive},
+    NumberRow{"track_orientation", vector},
+};
+
+// Limits and rates that drives have in common.
+constexpr std::array drive_rows{
+    NumberRow{"max_velocity", not_negative},
+    NumberRow{"max_speed", not_negative},
+    NumberRow{"max_linear_velocity", not_negative},
+    NumberRow{"max_angular_velocity", not_negative},
+    NumberRow{"max_yaw_rate", not_negative},
+    NumberRow{"max_acceleration", not_negative},
+    NumberRow{"max_linear_acceleration", not_negative},
+    NumberRow{"max_angular_acceleration", not_negative},
+    NumberRow{"max_yaw_acceleration", not_negative},
+    NumberRow{"min_velocity", not_positive},
+    NumberRow{"min_acceleration", not_positive},
+    NumberRow{"odom_publish_frequency", not_negative},
+    NumberRow{"odometry_publish_frequency", not_negative},
+    NumberRow{"update_rate", not_negative},
+    NumberRow{"updateRate", not_negative},
+    NumberRow{"gaussian_noise", not_negative},
+    NumberRow{"dimensions", positive},
+    NumberRow{"xyz_offset", vector},
+    NumberRow{"rpy_offset", vector},
+    NumberRow{"initial_linear", vector},
+    NumberRow{"initial_angular", vector},
+};
+
+constexpr std::array path_rows{
+    NumberRow{"speed", number},  NumberRow{"velocity", number}, NumberRow{"turn_rate", number},           NumberRow{"delay_start", number},
+    NumberRow{"radius", number}, NumberRow{"length", number},   NumberRow{"corner_radius", not_negative},
+};
+
+constexpr std::array propeller_rows{
+    NumberRow{"propeller_diameter", positive},
+    NumberRow{"fluid_density", positive},
+    NumberRow{"thrust_coefficient", not_zero},
+    NumberRow{"alpha_1", number},
+    NumberRow{"alpha_2", number},
+    NumberRow{"wake_fraction", number},
+    NumberRow{"max_thrust_cmd", number},
+    NumberRow{"min_thrust_cmd", number},
+    NumberRow{"deadband", not_negative},
+    NumberRow{"p_gain", number},
+    NumberRow{"i_gain", number},
+    NumberRow{"d_gain", number},
+    NumberRow{"motorConstant", positive},
+    NumberRow{"momentConstant", not_negative},
+    NumberRow{"rotorDragCoefficient", not_negative},
+    NumberRow{"rollingMomentCoefficient", not_negative},
+    NumberRow{"timeConstantUp", not_negative},
+    NumberRow{"timeConstantDown", not_negative},
+    NumberRow{"rotorVelocitySlowdownSim", positive},
+    NumberRow{"maxRotVelocity", positive},
+};
+
+constexpr std::array multicopter_rows{
+    NumberRow{"velocityGain", vector_not_negative},
+    NumberRow{"attitudeGain", vector_not_negative},
+    NumberRow{"angularRateGain", vector_not_negative},
+    NumberRow{"maximumLinearAcceleration", vector_not_negative},
+    NumberRow{"maximumLinearVelocity", vector_not_negative},
+    NumberRow{"maximumAngularVelocity", vector_not_negative},
+    NumberRow{"forceConstant", positive},
+    NumberRow{"momentConstant", not_negative},
+    NumberRow{"direction", one_or_minus_one},
+};
+
+constexpr std::array wing_rows{
+    NumberRow{"a0", number},     NumberRow{"alpha_stall", number},   NumberRow{"cla", number},
+    NumberRow{"cda", number},    NumberRow{"cla_stall", number},     NumberRow{"cda_stall", number},
+    NumberRow{"area", positive}, NumberRow{"air_density", positive}, NumberRow{"control_joint_rad_to_cl", number},
+    NumberRow{"cp", vector},     NumberRow{"forward", vector},       NumberRow{"upward", vector},
+};
+
+constexpr std::array water_rows{
+    NumberRow{"uniform_fluid_density", not_negative},
+    NumberRow{"fluid_density", not_negative},
+    NumberRow{"default_density", not_negative},
+    NumberRow{"density", not_negative},
+    NumberRow{"above_depth", number},
+};
+// Its coefficients are checked by their reader.
+constexpr std::array current_rows{NumberRow{"default_current", vector}};
+constexpr std::array wrench_rows{NumberRow{"force", vector}, NumberRow{"torque", vector}};
+constexpr std::array slip_rows{
+    NumberRow{"slip_compliance_lateral", not_negative},
+    NumberRow{"slip_compliance_longitudinal", not_negative},
+};
+
+std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
+  if (is_wheel_drive(kind)) return {wheel_rows, drive_rows};
+  switch (kind) {
+    case PluginKind::velocity_control:
+    case PluginKind::odometry_publisher:
+    case PluginKind::joint_state_publisher:
+      return {drive_rows};
+    case PluginKind::trajectory_follower:
+      return {path_rows, drive_rows};
+    case PluginKind::thruster:
+    case PluginKind::rotor:
+      return {propeller_rows};
+    case PluginKind::multicopter_control:
+      return {multicopter_rows};
+    case PluginKind::lift_drag:
+      return {wing_rows};
+    case PluginKind::hydrodynamics:
+      return {current_rows};
+    case PluginKind::buoyancy:
+      return {water_rows};
+    case PluginKind::link_wrench:
+      return {wrench_rows};
+    case PluginKind::wheel_slip:
+      return {slip_rows};
+    default:
+      return {};
+  }
+}
+
+// What was expected; empty: the text is good.
+std::string_view expectation_failed(Must must, const std::string& text) {
+  if (must == vector || must == vector_not_negative) {
+    const auto numbers = parse_numbers(text);
+    const bool is_good = numbers && numbers->size() == 3 &&
+                         std::ranges::all_of(*numbers, [&](double one) { return std::isfinite(one) && (must == vector || one >= 0); });
+    return is_good ? "" : must == vector ? "three numbers" : "three numbers of 0 or more";
+  }
+  const auto numbers = parse_numbers(text);
+  // A limit may be infinite, which is its default.
+  const bool is_number = numbers && numbers->size() == 1 && !std::isnan(numbers->front()) &&
+                         (must == not_negative || must == not_positive || std::isfinite(numbers->front()));
+  const double value = is_number ? numbers->front() : 0;
+  switch (must) {
+    case positive:
+      return is_number && value > 0 ? "" : "a positive number";
+    case not_negative:
+      return is_number && value >= 0 ? "" : "a number of 0 or more";
+    case not_positive:
+      return is_number && value <= 0 ? "" : "a number of 0 or less";
+    case not_zero:
+      return is_number && value != 0 ? "" : "a number other than 0";
+    case one_or_minus_one:
+      return is_number && std::abs(value) == 1 ? "" : "1 or -1";
+    default:
+      return is_number ? "" : "a number";
+  }
+}
+
+class NumberChecks {
+ public:
+  NumberChecks(PluginKind kind, std::string about, Complaints& complaints)
+      : rows_(rows_of(kind)), about_(std::move(about)), complaints_(complaints) {}
+
+  // The elements of the two are the same, in the same order.
+  void check(pugi::xml_node node, ParameterNode& parameters) {
+    std::vector<ParameterNode> kept;
+    auto next = parameters.children.begin();
+    for (pugi::xml_node element : node.children()) {
+      if (element.type() != pugi::node_element) continue;
+      ParameterNode& parameter = *next++;
+      if (!parameter.children.empty()) {
+        check(element, parameter);
+      } else if (is_impossible(element, parameter)) {
+        continue;
+      }
+      kept.push_back(std::move(parameter));
+    }
+    parameters.children = std::move(kept);
+  }
+
+ private:
+  bool is_impossible(pugi::xml_node element, const ParameterNode& parameter) {
+    std::string_view expected;
+    for (const auto rows : rows_) {
+      const auto row = std::ranges::find(rows, parameter.name, &NumberRow::element);
+      if (row != rows.end() && expected.empty()) expected = expectation_failed(row->must, parameter.text);
+    }
+    const std::string lower = base::to_lower(parameter.text);
+    if (expected.empty() && (lower == "nan" || lower == "-nan" || lower == "+nan")) expected = "a number";
+    if (expected.empty()) return false;
+    complaints_.warn(element, "<" + parameter.name + "> of " + about_ + " must be " + std::string(expected) + ", got " +
+                                  base::in_quotes(parameter.text) + "; its default is taken");
+    return true;
+  }
+
+  std::array<std::span<const NumberRow>, 2> rows_;
+  std::string about_;
+  Complaints& complaints_;
+};
+
+}  // namespace
+
+void check_numbers(pugi::xml_node node, PluginDef& plugin, Complaints& complaints) {
+  NumberChecks(kind_of(plugin), describe_in_context(node), complaints).check(node, plugin.parameters);
+}
+
+}  // namespace sim
