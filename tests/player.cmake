@@ -21,7 +21,7 @@ foreach(case position heading cars flight)
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case seen identity configure power estimates settings meters_and_depths storm actarray limb gripper ptz joints_by_name)
+foreach(case seen identity configure power estimates settings meters_and_depths storm actarray limb gripper ptz joints_by_name map_tiles)
   add_test(NAME player.${case}
     COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)

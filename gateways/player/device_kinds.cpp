@@ -10,6 +10,7 @@
 #include "estimate_devices.h"
 #include "joint_devices.h"
 #include "limb_device.h"
+#include "map_device.h"
 #include "point_cloud_device.h"
 #include "power_device.h"
 #include "range_devices.h"
@@ -54,6 +55,7 @@ constexpr std::array kinds{
     row<Fiducial>(fiducial),
     row<Blobfinder>(blobfinder),
     row<Simulation>(simulation),
+    row<Map>(map),
 };
 
 std::string names_of(std::span<const shm::IfaceType> types) {

@@ -351,7 +351,9 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
     PortPlan plan{port.port, base::join(port.robots, " "), {}};
     for (const ConfiguredDevice& device : port.devices) {
       const ListedIface* found = find_iface(device, ifaces);
-      if (found != nullptr) {
+      if (device.iface == simulation_iface && device.address.interface == player::Interface::map) {
+        plan.devices.push_back({device.address, shm::IfaceType::simulation, device.iface, {}});  // which is in no list
+      } else if (found != nullptr) {
         plan.devices.push_back({device.address, found->type, found->name, device.magnetometer, group_of(device, *found)});
         if (!device.magnetometer.empty() && !is_magnetometer(device.magnetometer, ifaces))
           missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no magnetometer " +

@@ -8,6 +8,7 @@
 
 #include "camera_device.h"
 #include "device_kinds.h"
+#include "map_device.h"
 #include "point_cloud_device.h"
 #include "scan_settings.h"
 #include "support/paths.h"
@@ -177,6 +178,20 @@ TEST(ToPoints, frames_that_are_none_or_too_short_have_no_places) {
   EXPECT_TRUE(to_points(head_of(shm::Format::rgb8, 2, 2), {}, std::as_bytes(std::span(values)), 100).empty());
   EXPECT_TRUE(to_points(head_of(shm::Format::points_float, 5, 1), {}, std::as_bytes(std::span(values)), 100).empty());
   EXPECT_TRUE(to_points(head_of(shm::Format::points_float, 0, 1), {}, std::as_bytes(std::span(values)), 100).empty());
+}
+
+// ---- map ----
+
+TEST(Map, tiles_begin_at_the_lowest_row_and_are_wholly_in_the_map) {
+  shm::WorldMap map;
+  map.area.width = 3;
+  map.area.height = 2;
+  map.pixels = {0, 205, 254, 254, 254, 0};
+  EXPECT_EQ(map_cells(map, {0, 0, 3, 2}), std::string("\xff\xff\1\1\0\xff", 6));
+  EXPECT_EQ(map_cells(map, {1, 1, 2, 1}), std::string("\0\xff", 2));
+  EXPECT_EQ(map_cells(map, {1, 0, 3, 1}), "");
+  EXPECT_EQ(map_cells(map, {0, 0, 3, 0xffffffff}), "");
+  EXPECT_EQ(map_cells(map, {0, 0, 0, 0}), "");
 }
 
 // ---- what is served ----

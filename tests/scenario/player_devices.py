@@ -2,6 +2,7 @@
 import math
 import random
 import struct
+import zlib
 
 from player_rig import *
 
@@ -514,6 +515,33 @@ def estimates():
         assert len(Fields(client.read_until(AIO)).many("f")) == 2
 
 
+# The occupancy map, on the port that names it: a box of 1 m at (2, 3) fills 400 cells, and a row on each side at most.
+def map_tiles():
+    with Rig() as rig:
+        with open(f"{rig.work}/map.sdf", "w") as file:
+            file.write("""<sdf version="1.9"><world name="w"><model name="box"><static>true</static><pose>2 3 0.5 0 0 0</pose><link name="l"><collision name="c">
+<geometry><box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>""")
+        with open(f"{rig.work}/map.yaml", "w") as file:
+            file.write("ports:\n  - port: 0\n    devices: {'map:0': world}\n")
+        rig.sim(world=f"{rig.work}/map.sdf")
+        client = Client(rig.gateway("--config", f"{rig.work}/map.yaml", robots=1)[0])
+        client.subscribe(MAP)
+        request = lambda column, row, width, height: struct.pack(">4I3I", column, row, width, height, 0, 0, 0)
+        client.refused(MAP, 0, 2, request(0, 0, 1, 1))  # no map was made yet
+        scale, width, height, x, y, angle = struct.unpack(">fIIddd", client.demand(MAP, 0, 1))
+        assert abs(scale - 0.05) < 1e-6 and width == height == 40 and abs(x - 1) < 0.06 and abs(y - 2) < 0.06 and angle == 0, (scale, width, height, x, y)
+        fields = Fields(client.demand(MAP, 0, 2, request(0, 0, width, height)))
+        assert fields.take("4I") == (0, 0, width, height)
+        count, reach, length = fields.take("3I")
+        packed = fields.payload[fields.at : fields.at + length]
+        assert count == length and reach == 1 and len(fields.payload) == fields.at + length + -length % 4
+        cells = zlib.decompress(packed)
+        assert len(cells) == width * height and 400 <= cells.count(1) <= 22 * 22 and cells[20 * width + 20] == 1 and cells[0] != 1, cells.count(1)
+        client.refused(MAP, 0, 2, request(1, 0, width, 1))
+        client.refused(MAP, 0, 2, b"")
+        client.refused(MAP, 0, 3)
+
+
 # Resets of an imu's orientation, JPEG of a camera, and what can be set of the world.
 def settings():
     with started_with(meters.replace('type="depth_camera"', 'type="camera"')) as rig:
@@ -575,4 +603,4 @@ def seen():
         assert abs(ball[3] - (320 + 467.7 * 0.6 / 2.6)) < 6 and abs(ball[4] - (240 + 467.7 * 0.7 / 2.6)) < 10, ball
 
 
-run(seen, identity, configure, power, estimates, settings, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name)
+run(seen, identity, configure, power, estimates, settings, meters_and_depths, storm, actarray, limb, gripper, ptz, joints_by_name, map_tiles)

@@ -25,6 +25,7 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::position3d, "position3d"},
     {Interface::simulation, "simulation"},
     {Interface::camera, "camera"},
+    {Interface::map, "map"},
     {Interface::actarray, "actarray"},
     {Interface::limb, "limb"},
     {Interface::rfid, "rfid"},
@@ -35,27 +36,14 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::blobfinder, "blobfinder"},
 });
 
-constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>({{9, "audio"},
-                                                                                        {12, "speech"},
-                                                                                        {20, "dio"},
-                                                                                        {22, "ir"},
-                                                                                        {26, "mcom"},
-                                                                                        {33, "blinkenlight"},
-                                                                                        {42, "map"},
-                                                                                        {44, "planner"},
-                                                                                        {45, "log"},
-                                                                                        {49, "joystick"},
-                                                                                        {50, "speech_recognition"},
-                                                                                        {51, "opaque"},
-                                                                                        {52, "position1d"},
-                                                                                        {55, "graphics2d"},
-                                                                                        {57, "wsn"},
-                                                                                        {58, "graphics3d"},
-                                                                                        {59, "health"},
-                                                                                        {63, "vectormap"},
-                                                                                        {64, "blackboard"},
-                                                                                        {65, "stereo"},
-                                                                                        {66, "coopobject"}});
+constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>(
+    {{9, "audio"},       {12, "speech"},       {20, "dio"},        {22, "ir"},
+     {26, "mcom"},       {33, "blinkenlight"},
+
+     {44, "planner"},    {45, "log"},          {49, "joystick"},   {50, "speech_recognition"},
+     {51, "opaque"},     {52, "position1d"},   {55, "graphics2d"}, {57, "wsn"},
+     {58, "graphics3d"}, {59, "health"},       {63, "vectormap"},  {64, "blackboard"},
+     {65, "stereo"},     {66, "coopobject"}});
 
 }  // namespace
 

@@ -34,6 +34,7 @@ enum class Interface : std::uint16_t {
   position3d = 30,
   simulation = 31,
   camera = 40,
+  map = 42,
   actarray = 53,
   limb = 54,
   rfid = 56,

@@ -312,6 +312,16 @@ struct Hypothesis {
 std::string encode_hypotheses(double time, const std::vector<Hypothesis>& hypotheses);
 std::string encode_particles(const std::vector<Hypothesis>& hypotheses);
 
+// ---- map ----
+struct MapTile {
+  std::uint32_t column = 0, row = 0, width = 0, height = 0;  // [cell]
+};
+// `origin`: the corner of cell (0, 0).
+std::string encode_map_info(double scale, std::uint32_t width, std::uint32_t height, const Pose2d& origin);
+std::optional<MapTile> decode_map_tile(std::string_view payload);
+// `packed`: the cells as a stream of zlib.
+std::string encode_map_tile(const MapTile& tile, std::string_view packed);
+
 // ---- bumper ----
 std::string encode_bumpers(const std::vector<bool>& pressed);
 struct BumperShape {

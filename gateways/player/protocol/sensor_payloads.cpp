@@ -236,6 +236,33 @@ std::string encode_particles(const std::vector<Hypothesis>& hypotheses) {
   });
 }
 
+std::string encode_map_info(double scale, std::uint32_t width, std::uint32_t height, const Pose2d& origin) {
+  return written([&](XdrWriter& out) {
+    out.f32(static_cast<float>(scale));
+    out.u32(width);
+    out.u32(height);
+    put(out, origin);
+  });
+}
+
+std::optional<MapTile> decode_map_tile(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    MapTile tile;
+    for (std::uint32_t* value : {&tile.column, &tile.row, &tile.width, &tile.height}) *value = in.u32();
+    for (int i = 0; i < 3; ++i) in.u32();  // cells and their range, which a request does not have
+    return tile;
+  });
+}
+
+std::string encode_map_tile(const MapTile& tile, std::string_view packed) {
+  constexpr std::uint32_t range = 1;
+  const auto size = static_cast<std::uint32_t>(packed.size());
+  return written([&](XdrWriter& out) {
+    for (const std::uint32_t value : {tile.column, tile.row, tile.width, tile.height, size, range, size}) out.u32(value);
+    out.raw(packed);
+  });
+}
+
 std::string encode_bumpers(const std::vector<bool>& pressed) {
   std::string bytes;
   for (const bool one : pressed) bytes += one ? '\1' : '\0';
