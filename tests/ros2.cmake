@@ -7,7 +7,7 @@ if(RTMSIM_ROS2)
   target_link_libraries(ros2_peer PRIVATE ${CYCLONEDDS_LIBRARY} rtmsim_settings)
   add_executable(ros2_fast_client ros2/fast_client.cpp)
   target_link_libraries(ros2_fast_client PRIVATE ros2_gateway rtmsim_settings)
-  foreach(case thin_line sensors joints stamped graph families services paused gateway_ends crash slow_subscriber lockstep demo)
+  foreach(case thin_line sensors joints stamped graph families services paused gateway_ends crash slow_subscriber lockstep demo ports)
     add_test(NAME ros2.${case}
       COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/ros2/ros2_gateway.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(ros2.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -500,4 +500,38 @@ def demo():
     assert states[0] == states[1], states
 
 
+# A component alone: its InPort reads a topic and its OutPort writes one, each wired to ROS 2 by one port. Bad values get a line.
+def ports():
+    with Rig() as rig:
+        rig.naming()
+        host = rig.rtcd("-o", "manager.modules.preload:ROS2Transport.so", "-o", f"ros2.domain.id:{rig.domain}", "-o", "ros2.network:loopback",
+                        "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:filter", "Filter")
+        rig.until("the component", lambda: rig.rtse("act", "Filter0") is not None)
+        twist = ("-p", "interface_type=ros2", "-p", "marshaling_type=ros2:geometry_msgs/Twist")
+        rig.rtse("con", "Filter0:in", *twist, "-p", "ros2.topic=/raw")
+        rig.rtse("con", "Filter0:out", "-p", "interface_type=fast-rtps", "-p", "marshaling_type=ros2:geometry_msgs/TwistStamped",
+                 "-p", "fast-rtps.topic=smooth")
+        peer = rig.peer()
+        peer.subscribe("/smooth", "geometry_msgs/TwistStamped")
+        peer.advertise("/raw", "geometry_msgs/Twist")
+        peer.await_matched("/raw")
+        peer.await_matched("/smooth")
+
+        def passes():
+            peer.put("/raw", "geometry_msgs/Twist", wire.twist(0.25, -0.5))
+            return peer.messages("/smooth", "geometry_msgs/TwistStamped")
+
+        rig.until("a twist through the component", passes, 0.1)
+        moved = peer.message("/smooth", "geometry_msgs/TwistStamped", lambda m: m["twist"]["linear"]["x"] != 0)
+        assert moved["twist"]["linear"]["x"] > 0 > moved["twist"]["angular"]["z"], moved
+        for wrong, words in ((("-p", "ros2.topic=/a//b"), "ros2.topic"), ((), "ros2.topic is missing"),
+                             (("-p", "ros2.topic=/a", "-p", "ros2.writer_qos.history.depth=0"), "history.depth must be")):
+            assert rig.try_rtse("con", "Filter0:out", *twist, *wrong).returncode != 0, wrong
+            assert words in rig.log(host), rig.log(host)
+        alone = rig.try_rtse("con", "Filter0:out")
+        assert alone.returncode != 0 and "expected a second port" in alone.stderr, alone.stderr
+        rig.rtse("dis", "Filter0:in")
+        assert host.poll() is None
+
+
 globals()[case]()

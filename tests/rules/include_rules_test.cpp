@@ -55,7 +55,7 @@ const std::vector<Layer> layers = {
     {"iface-components", {"rtm", "coil", "arms", "shm", "base", "stubs"}, {"Eigen"}},
     {"gateways/common", {"common", "shm", "base"}},
     {"gateways/ros2/dds", {"dds", "base"}, {"FastDDS"}},
-    {"gateways/ros2", {"dds", "common", "ros", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
+    {"gateways/ros2", {"dds", "common", "ros", "rtm", "coil", "stubs", "shm", "base"}, {"JSON", "YAML", "spdlog"}},
     {"gateways/player/protocol", {"protocol", "base"}},
     {"gateways/player", {"protocol", "common", "arms", "shm", "base"}, {"Eigen", "JSON", "YAML", "spdlog", "zlib"}},
     {"tools/system", {"system", "corba", "shm", "base", "stubs"}, {"omniORB", "pugixml", "JSON", "YAML"}},

@@ -31,7 +31,11 @@ Result<void> check_data_ports(const std::vector<const PortView*>& ports, const P
   const auto count = [&](const char* type) {
     return std::count_if(ports.begin(), ports.end(), [&](const auto* port) { return port->port_type() == type; });
   };
-  if (count("DataInPort") == 0 || count("DataOutPort") == 0) {
+  const auto interface = property(properties, "dataport.interface_type");
+  if (ports.size() == 1 &&
+      (interface == "corba_cdr" || interface == "data_service" || interface == "direct" || interface == "shared_memory"))
+    return Error{"port " + ports[0]->full_name + ": expected a second port, or a transport of topics as in -p interface_type=ros2"};
+  if (ports.size() > 1 && (count("DataInPort") == 0 || count("DataOutPort") == 0)) {
     return Error{"ports " + ports[0]->full_name + " and " + ports[1]->full_name + ": are both " + ports[0]->port_type() +
                  ", expected an OutPort and an InPort"};
   }
@@ -54,6 +58,7 @@ Result<void> check_data_ports(const std::vector<const PortView*>& ports, const P
 
 Result<void> check_ports(const std::vector<const PortView*>& ports, const Properties& properties) {
   const bool data = ports.front()->is_data_port();
+  if (ports.size() == 1 && !data) return Error{"port " + ports[0]->full_name + ": expected a second port"};
   for (const auto* port : ports) {
     if (port->is_data_port() != data) {
       return Error{"ports " + ports.front()->full_name + " (" + ports.front()->port_type() + ") and " + port->full_name + " (" +

@@ -52,7 +52,7 @@ void connect(const Session& session, Console& console, const ConnectOptions& opt
   }
   std::vector<const PortView*> ports;
   for (const auto& port : found) ports.push_back(&port.port);
-  if (options.no_duplicates && are_connected(*ports[0], *ports[1])) return;
+  if (options.no_duplicates && ports.size() > 1 && are_connected(*ports[0], *ports[1])) return;
   auto properties = parse_properties(options.properties, ports.front()->is_data_port());
   if (!properties) return console.fail(properties.error());
   if (const auto wrong = corba::misunderstood_values(*properties); !wrong.empty())
@@ -161,7 +161,9 @@ void disconnect(const Session& session, Console& console, const std::vector<std:
 void add_connect(base::Command& app, Chosen& chosen) {
   auto* con = app.add_subcommand("con", "Connect ports");
   auto options = std::make_shared<ConnectOptions>();
-  con->add_option("PORT", options->ports, "COMPONENT:PORT, two or more")->required()->expected(2, 64);
+  con->add_option("PORT", options->ports, "COMPONENT:PORT, two or more; one with a transport of topics (interface_type=ros2)")
+      ->required()
+      ->expected(1, 64);
   con->add_option("-i,--id", options->id, "Connector ID (default: a new one)");
   con->add_option("-n,--name", options->name, "Name of the connection");
   con->add_option("-p,--property", options->properties, "KEY=VALUE, e.g. subscription_type=new")->allow_extra_args(false);
