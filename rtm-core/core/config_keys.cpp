@@ -135,6 +135,8 @@ constexpr ConfigKey keys[] = {
     {"sdo.service.consumer.enabled_services", "ALL"},
     {"sdo.service.consumer.available_services", ""},
     {"sdo.service.*", ""},
+    {"ros2.*", ""},  // of the module ROS2Transport
+    {"fast-rtps.*", ""},
     {"port.*", ""},
     {"conf.*", ""},
     {"configuration.*", ""},

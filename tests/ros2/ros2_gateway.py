@@ -531,7 +531,7 @@ def ports():
         alone = rig.try_rtse("con", "Filter0:out")
         assert alone.returncode != 0 and "expected a second port" in alone.stderr, alone.stderr
         rig.rtse("dis", "Filter0:in")
-        assert host.poll() is None
+        assert host.poll() is None and "unknown key" not in rig.log(host), rig.log(host)
 
 
 globals()[case]()
