@@ -47,6 +47,24 @@ struct VelocityAndStampedTwist {
   }
 };
 
+struct Int32 {
+  static constexpr std::string_view name = "std_msgs/msg/Int32";
+  std::int32_t data = 0;
+  static void fields(auto& m, auto& visit) { visit("data", m.data); }
+};
+
+// A number with time, and one without.
+template <class Timed, ros::Message T>
+struct NumberAndNumber {
+  using Data = Timed;
+  using Message = T;
+  static Message to_ros(const Data& data) { return {data.data}; }
+  static void from_ros(const Message& message, Data& data) {
+    data.tm = {};
+    data.data = message.data;
+  }
+};
+
 // ---- the settings of a connection ----
 
 constexpr std::array interface_names{"ros2", "fast-rtps", "cyclone-dds"};
@@ -207,6 +225,8 @@ void add_end() {
 extern "C" void ROS2TransportInit(RTC::Manager*) {
   ros2::add_mapping<ros2::VelocityAndTwist>();
   ros2::add_mapping<ros2::VelocityAndStampedTwist>();
+  ros2::add_mapping<ros2::NumberAndNumber<RTC::TimedDouble, ros::Float64>>();
+  ros2::add_mapping<ros2::NumberAndNumber<RTC::TimedLong, ros2::Int32>>();
   ros2::add_end<RTC::InPortConsumer, ros2::TopicWriter>();
   ros2::add_end<RTC::InPortProvider, ros2::TopicReader>();
 }

@@ -505,7 +505,7 @@ def ports():
     with Rig() as rig:
         rig.naming()
         host = rig.rtcd("-o", "manager.modules.preload:ROS2Transport.so", "-o", f"ros2.domain.id:{rig.domain}", "-o", "ros2.network:loopback",
-                        "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:filter", "Filter")
+                        "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:filter", "Filter", "Relay")
         rig.until("the component", lambda: rig.rtse("act", "Filter0") is not None)
         twist = ("-p", "interface_type=ros2", "-p", "marshaling_type=ros2:geometry_msgs/Twist")
         rig.rtse("con", "Filter0:in", *twist, "-p", "ros2.topic=/raw")
@@ -524,6 +524,19 @@ def ports():
         rig.until("a twist through the component", passes, 0.1)
         moved = peer.message("/smooth", "geometry_msgs/TwistStamped", lambda m: m["twist"]["linear"]["x"] != 0)
         assert moved["twist"]["linear"]["x"] > 0 > moved["twist"]["angular"]["z"], moved
+        numbers = ("-p", "interface_type=ros2", "-p", "marshaling_type=ros2:std_msgs/Int32")
+        rig.rtse("act", "Relay0")
+        rig.rtse("con", "Relay0:in", *numbers, "-p", "ros2.topic=/number")
+        rig.rtse("con", "Relay0:out", *numbers, "-p", "ros2.topic=/relayed")
+        peer.subscribe("/relayed", "std_msgs/Int32")
+        peer.advertise("/number", "std_msgs/Int32")
+        peer.await_matched("/number")
+        peer.await_matched("/relayed")
+        peer.put("/number", "std_msgs/Int32", {"data": -7})
+        peer.message("/relayed", "std_msgs/Int32", lambda m: m["data"] == -7)
+        rig.rtse("con", "Relay0:number", "-p", "interface_type=ros2", "-p", "marshaling_type=ros2:std_msgs/Float64", "-p", "ros2.topic=/one")
+        peer.subscribe("/one", "std_msgs/Float64")
+        assert peer.message("/one", "std_msgs/Float64") == {"data": 1.0}
         for wrong, words in ((("-p", "ros2.topic=/a//b"), "ros2.topic"), ((), "ros2.topic is missing"),
                              (("-p", "ros2.topic=/a", "-p", "ros2.writer_qos.history.depth=0"), "history.depth must be")):
             assert rig.try_rtse("con", "Filter0:out", *twist, *wrong).returncode != 0, wrong

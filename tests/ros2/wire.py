@@ -8,6 +8,7 @@ builtin_interfaces/Duration: i32 sec, u32 nanosec
 std_msgs/Header: builtin_interfaces/Time stamp, str frame_id
 std_msgs/String: str data
 std_msgs/UInt32: u32 data
+std_msgs/Int32: i32 data
 std_msgs/Float64: f64 data
 std_msgs/MultiArrayDimension: str label, u32 size, u32 stride
 std_msgs/MultiArrayLayout: std_msgs/MultiArrayDimension[] dim, u32 data_offset
