@@ -9,7 +9,7 @@
 
 namespace gateway {
 
-// The map is made anew when a client asks for its size; tiles are those of the map that was made last.
+// Each request for the size makes the map again; tiles are of the last map.
 class Map final : public Device {
  public:
   using Device::Device;

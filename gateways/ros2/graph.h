@@ -21,6 +21,13 @@ namespace ros2 {
 
 enum class Family { humble, jazzy };  // jazzy: Iron and all later ones, too
 
+// By its name here; nothing for other names.
+inline std::optional<Family> family_of(std::string_view name) {
+  if (name == "humble") return Family::humble;
+  if (name == "jazzy") return Family::jazzy;
+  return std::nullopt;
+}
+
 struct NodeName {
   std::string space = "/", name;
   std::string full() const { return (space == "/" ? "" : space) + "/" + name; }

@@ -97,10 +97,8 @@ base::Result<void> complete(ros2::Options& options, const Typed& typed, bool is_
     if (options.service_prefix.front() != '/') options.service_prefix = "/" + options.service_prefix;
     if (const auto problem = ros2::problem_of_name(options.service_prefix)) return base::Error{"--service-prefix " + *problem};
   }
-  options.dds.network = typed.network == "lan"        ? ros2::Network::lan
-                        : typed.network == "loopback" ? ros2::Network::loopback
-                                                      : ros2::Network::host;
-  if (typed.distro != "auto") options.family = typed.distro == "humble" ? ros2::Family::humble : ros2::Family::jazzy;
+  options.dds.network = ros2::network_of(typed.network).value_or(ros2::Network::host);
+  options.family = ros2::family_of(typed.distro);
   options.on_timeout = typed.on_timeout == "hold"   ? ros2::OnTimeout::hold
                        : typed.on_timeout == "stop" ? ros2::OnTimeout::stop
                                                     : ros2::OnTimeout::fail;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -23,19 +24,19 @@ class Sink {
  public:
   explicit Sink(OnBytes receiver) : receiver_(std::move(receiver)) {}
   void give(std::span<const std::uint8_t> bytes) {
-    const auto mine = turn_.take(patience);
+    const auto mine = turn_.take(timeout);
     if (mine && !is_closed_) receiver_(bytes);
   }
   void close() {
-    const auto mine = turn_.take(patience);
+    const auto mine = turn_.take(timeout);  // a running call of the receiver ends first
     if (!mine) base::log(base::Level::error, "ros2", "a receiver of a topic has not returned for 10 s");
     is_closed_ = true;
   }
 
  private:
-  static constexpr std::chrono::seconds patience{10};
+  static constexpr std::chrono::seconds timeout{10};
   base::UsersTurn turn_;
-  bool is_closed_ = false;
+  std::atomic<bool> is_closed_ = false;  // also set without the turn, when a receiver does not return
   const OnBytes receiver_;
 };
 

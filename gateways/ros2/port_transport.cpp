@@ -141,14 +141,13 @@ base::Result<PortDomainSettings> settings_of_process() {
   if (!number || *number < 0 || *number > 232) return base::Error{"ros2.domain.id must be from 0 to 232, got " + base::in_quotes(domain)};
   settings.dds.domain = static_cast<std::uint32_t>(*number);
   const std::string network = setting_of_process("ros2.network");
-  if (!network.empty() && network != "host" && network != "lan" && network != "loopback")
-    return base::Error{"ros2.network must be host, lan or loopback, got " + base::in_quotes(network)};
-  settings.dds.network = network == "lan" ? Network::lan : network == "loopback" ? Network::loopback : Network::host;
+  const auto reach = network_of(network.empty() ? "host" : network);
+  if (!reach) return base::Error{"ros2.network must be host, lan or loopback, got " + base::in_quotes(network)};
+  settings.dds.network = *reach;
   const std::string distro = setting_of_process("ros2.distro");
-  if (!distro.empty() && distro != "auto" && distro != "humble" && distro != "jazzy")
+  settings.family = family_of(distro);
+  if (!settings.family && !distro.empty() && distro != "auto")
     return base::Error{"ros2.distro must be auto, humble or jazzy, got " + base::in_quotes(distro)};
-  if (distro == "humble") settings.family = Family::humble;
-  if (distro == "jazzy") settings.family = Family::jazzy;
   const std::string node = setting_of_process("ros2.node.name");
   settings.node.name = token(node.empty() ? "rtm_" + std::to_string(::getpid()) : node);
   return settings;
@@ -193,13 +192,16 @@ class TopicReader final : public RTC::InPortProvider {
     setInterfaceType(text_of_one_side(connection_, false, "interface_type").c_str());
   }
   bool publishInterface(SDOPackage::NVList&) override {
-    const auto settings = settings_of_process();
+    auto settings = settings_of_process();
     if (!settings) return complain(settings.error());
-    const auto endpoint = endpoint_of(connection_, false);
-    return endpoint ? true : complain(endpoint.error());
+    auto endpoint = endpoint_of(connection_, false);
+    if (!endpoint) return complain(endpoint.error());
+    settings_ = std::move(*settings);
+    topic_ = std::move(*endpoint);
+    return true;
   }
   void setConnector(RTC::InPortConnector* connector) override {
-    auto made = subscribe_port(*settings_of_process(), *endpoint_of(connection_, false), [connector](std::span<const std::uint8_t> bytes) {
+    auto made = subscribe_port(settings_, topic_, [connector](std::span<const std::uint8_t> bytes) {
       RTC::ByteData data(bytes.data(), bytes.size());
       connector->write(data);
     });
@@ -209,6 +211,8 @@ class TopicReader final : public RTC::InPortProvider {
 
  private:
   coil::Properties connection_;
+  PortDomainSettings settings_;
+  EndpointSettings topic_;
   std::unique_ptr<Subscription> subscription_;
 };
 

@@ -263,9 +263,11 @@ TEST(Rotor, a_negative_command_has_one_line_with_its_range) {
 
 // --- thrusters
 
+const std::string uneven_torpedo =
+    weightless + torpedo("auv", torpedo_thruster + "<max_thrust_cmd>30</max_thrust_cmd><min_thrust_cmd>-10</min_thrust_cmd>");
+
 TEST(Thruster, an_uneven_range_is_named_as_it_is) {
-  SimulationFixture f(world_of_text(
-      weightless + torpedo("auv", torpedo_thruster + "<max_thrust_cmd>30</max_thrust_cmd><min_thrust_cmd>-10</min_thrust_cmd>")));
+  SimulationFixture f(world_of_text(uneven_torpedo));
   Joints joints(f, "auv");
   testing::internal::CaptureStderr();
   joints.command(0, RTMSIM_JOINT_EFFORT, -20);
@@ -298,8 +300,7 @@ TEST(Thruster, at_sixty_radians_a_second_drives_a_torpedo_at_two_metres_a_second
 }
 
 TEST(Thruster, takes_a_thrust_as_effort_within_its_limits) {
-  SimulationFixture f(world_of_text(
-      weightless + torpedo("auv", torpedo_thruster + "<max_thrust_cmd>30</max_thrust_cmd><min_thrust_cmd>-10</min_thrust_cmd>")));
+  SimulationFixture f(world_of_text(uneven_torpedo));
   Joints joints(f, "auv");
   joints.command(0, RTMSIM_JOINT_EFFORT, 25.47);
   f.run(0.1);

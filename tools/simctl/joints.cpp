@@ -136,7 +136,10 @@ void command(Control& control, shm::Iface& iface, const JointOptions& options) {
   constexpr std::int64_t taken = 50'000'000;  // [ns] after which the simulator has taken the command
   while (!is_interrupted()) {
     if (options.seconds > 0 && now() >= end) break;
-    if (options.seconds <= 0 && options.mode == "brake" && now() > begin && iface.read() && have_braked(iface, *values)) break;
+    // Somebody else may command the joint at once: then no sample shows the brake.
+    if (options.seconds <= 0 && options.mode == "brake" && now() > begin &&
+        (now() >= begin + taken || (iface.read() && have_braked(iface, *values))))
+      break;
     if (options.seconds <= 0 && options.mode == "position" && now() >= begin + taken && iface.read() && have_arrived(iface, *values)) break;
     if (simulation->wait(simulation->sequence(), std::chrono::milliseconds(100)) == shm::Wait::closed)
       return control.fail("the simulator has exited");

@@ -1,11 +1,17 @@
 #include "system/connections.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/text.h"
 #include "corba/ports/connection_values.h"
 
 namespace editor {
+
+bool is_own_transport(std::string_view interface_type) {
+  constexpr std::array<std::string_view, 4> ours{"corba_cdr", "data_service", "direct", "shared_memory"};
+  return std::ranges::find(ours, interface_type) != ours.end();
+}
 namespace {
 
 constexpr std::chrono::milliseconds connect_limit{10'000};
@@ -32,8 +38,7 @@ Result<void> check_data_ports(const std::vector<const PortView*>& ports, const P
     return std::count_if(ports.begin(), ports.end(), [&](const auto* port) { return port->port_type() == type; });
   };
   const auto interface = property(properties, "dataport.interface_type");
-  if (ports.size() == 1 &&
-      (interface == "corba_cdr" || interface == "data_service" || interface == "direct" || interface == "shared_memory"))
+  if (ports.size() == 1 && is_own_transport(interface))
     return Error{"port " + ports[0]->full_name + ": expected a second port, or a transport of topics as in -p interface_type=ros2"};
   if (ports.size() > 1 && (count("DataInPort") == 0 || count("DataOutPort") == 0)) {
     return Error{"ports " + ports[0]->full_name + " and " + ports[1]->full_name + ": are both " + ports[0]->port_type() +

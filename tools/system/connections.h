@@ -2,11 +2,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "system/component_view.h"
 
 namespace editor {
+
+// Of the runtime itself, all of which connect two ports; other interface types are of modules.
+bool is_own_transport(std::string_view interface_type);
 
 // Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,

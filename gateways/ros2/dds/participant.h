@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -27,6 +28,14 @@ enum class Network {
   lan,       // multicast on all interfaces, for one hop
   loopback,  // only those that use 127.0.0.1
 };
+
+// By its name here; nothing for other names.
+inline std::optional<Network> network_of(std::string_view name) {
+  if (name == "host") return Network::host;
+  if (name == "lan") return Network::lan;
+  if (name == "loopback") return Network::loopback;
+  return std::nullopt;
+}
 
 struct ParticipantSettings {
   std::uint32_t domain = 0;  // 0..232

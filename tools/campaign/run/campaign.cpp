@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "campaign/run/iface_faults.h"
 #include "campaign/run/subject_checks.h"
+#include "system/connections.h"
 #include "system/profile/system_template.h"
 
 namespace campaign {
@@ -97,8 +98,8 @@ constexpr std::array connector_keys = {"allow_dup_connection",
 
 // Transports of others read what they like.
 bool is_known_key(const SavedConnector& connector, std::string key) {
-  constexpr std::array ours = {"", "corba_cdr", "data_service", "shared_memory", "direct"};
-  if (!connector.is_data || std::ranges::find(ours, connector.interface_type) == ours.end()) return true;
+  const std::string& type = connector.interface_type;
+  if (!connector.is_data || !(type.empty() || editor::is_own_transport(type))) return true;
   key = key.substr(std::string("dataport.").size());
   for (const char* end : {"inport.", "outport."}) {
     if (key.starts_with(end)) key.erase(0, std::string(end).size());
