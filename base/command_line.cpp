@@ -70,6 +70,28 @@ void keep_standard_files() {
   }
 }
 
+void append_option_names(std::vector<std::string>& names, const CLI::App& app) {
+  for (const auto* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  }
+}
+
+// The line for a word that the chosen command does not take. Of several, the first of the command line that looks like an option.
+std::string unexpected_word(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto left = app.remaining(true);
+  const auto is_left = [&](const std::string& word) { return std::find(left.begin(), left.end(), word) != left.end(); };
+  auto at = std::find_if(words.begin(), words.end(), [&](const std::string& word) { return word.starts_with("-") && is_left(word); });
+  if (at == words.end()) at = std::find_if(words.begin(), words.end(), is_left);
+  if (at == words.end()) return "unexpected arguments";
+  if (!at->starts_with("--")) return (at->starts_with("-") ? "unknown option " : "unexpected argument ") + in_quotes(*at);
+  std::vector<std::string> known;
+  const CLI::App* command = &app;
+  append_option_names(known, *command);
+  while (!command->get_subcommands().empty()) append_option_names(known, *(command = command->get_subcommands().front()));
+  const std::string name = at->substr(0, at->find('='));
+  return "unknown option " + in_quotes(name) + suggestion(name, known);
+}
+
 }  // namespace
 
 std::string manual_page(const Command& program, const std::string& name, const std::string& version) {
@@ -139,6 +161,9 @@ std::optional<int> parse_command_line(Command& program, const std::string& name,
     return 0;
   } catch (const BadFile& e) {
     std::cerr << name << ": " << e.message << '\n';
+    return 2;
+  } catch (const CLI::ExtrasError&) {
+    std::cerr << name << ": " << unexpected_word(program.inner(), {argv + 1, argv + argc}) << "; see " << name << " --help\n";
     return 2;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.inner().exit(e);

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/command_line.h"
+
 namespace base {
 namespace {
 
@@ -34,6 +36,27 @@ struct Program {
   std::string server, state, file;
   std::vector<std::string> paths;
 };
+
+// The line that a program prints for arguments that it does not take.
+std::string refusal(std::vector<std::string> words) {
+  Program program;
+  words.insert(words.begin(), "tool");
+  std::vector<const char*> arguments;
+  for (const auto& word : words) arguments.push_back(word.c_str());
+  testing::internal::CaptureStderr();
+  const auto code = parse_command_line(program.app, "tool", static_cast<int>(arguments.size()), arguments.data());
+  EXPECT_EQ(code, 2);
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(CommandLine, names_the_argument_that_is_not_known_and_the_option_that_is_near_it) {
+  EXPECT_EQ(refusal({"list", "--sate", "on"}), "tool: unknown option \"--sate\"; did you mean --state?; see tool --help\n");
+  EXPECT_EQ(refusal({"list", "--sate=on"}), "tool: unknown option \"--sate\"; did you mean --state?; see tool --help\n");
+  EXPECT_EQ(refusal({"list", "--jsn", "--frobnicate"}), "tool: unknown option \"--jsn\"; did you mean --json?; see tool --help\n");
+  EXPECT_EQ(refusal({"load", "--state", "on"}), "tool: unknown option \"--state\"; see tool --help\n") << "an option of another command";
+  EXPECT_EQ(refusal({"load", "-q"}), "tool: unknown option \"-q\"; see tool --help\n");
+  EXPECT_EQ(refusal({"load", "it"}), "tool: unexpected argument \"it\"; see tool --help\n");
+}
 
 TEST(Completion, offers_commands_and_options_where_they_can_stand) {
   const Program program;
