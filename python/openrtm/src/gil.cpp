@@ -26,10 +26,13 @@ class Own {
 };
 thread_local Own own;
 
+// Only the thread that finalizes the interpreter, the main one, can still take the lock then: destructors of what Python lets go need it.
+bool comes_too_late() { return _Py_IsFinalizing() && gettid() != getpid(); }
+
 }  // namespace
 
 Locked::Locked() {
-  while (_Py_IsFinalizing()) pause();
+  while (comes_too_late()) pause();
   PyThreadState* const state = own.get();
   is_nested_ = _PyThreadState_UncheckedGet() == state;
   if (!is_nested_) PyEval_RestoreThread(state);

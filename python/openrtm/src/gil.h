@@ -5,7 +5,7 @@
 // no thread takes it while it holds a lock of the runtime. A thread of the runtime gets one thread state, kept until it ends, because
 // making one costs 7 us. Failure cases: a thread that keeps the lock for ever stops all others that want it; the end of the process does
 // not want it (manager/end.cpp ends the process within its time limit). After the interpreter has begun to finalize, entering blocks for
-// ever: the process ends in that moment.
+// ever, except for the main thread, which finalizes it: the process ends in that moment.
 #pragma once
 
 #include <Python.h>
