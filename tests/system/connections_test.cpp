@@ -52,6 +52,11 @@ TEST_F(ConnectionsTest, ports_of_different_types_are_connected_with_an_encoding_
   EXPECT_EQ(error({{"dataport.marshaling_type", "json"}}), "");
 }
 
+TEST_F(ConnectionsTest, a_port_of_events_takes_every_type) {
+  in_view_.properties["dataport.data_type"] = "Any";
+  EXPECT_EQ(error(), "");
+}
+
 TEST_F(ConnectionsTest, a_property_that_a_port_does_not_offer_is_an_error) {
   in_view_.properties["dataport.interface_type"] = "corba_cdr, shared_memory";
   EXPECT_EQ(error({{"dataport.interface_type", "carrier_pigeon"}}),

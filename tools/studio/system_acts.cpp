@@ -259,8 +259,7 @@ std::string misfit(const std::vector<const editor::PortView*>& ports) {
   if (!a.is_data_port()) return "";
   const auto& b = *ports.back();
   if (a.port_type() == b.port_type()) return "both are " + a.port_type() + ", expected an OutPort and an InPort";
-  if (!a.data_type().empty() && !b.data_type().empty() && a.data_type() != b.data_type())
-    return "they carry different types, " + a.data_type() + " and " + b.data_type();
+  if (editor::carry_different_types(a, b)) return "they carry different types, " + a.data_type() + " and " + b.data_type();
   return "";
 }
 

@@ -45,8 +45,7 @@ Result<void> check_data_ports(const std::vector<const PortView*>& ports, const P
                  ", expected an OutPort and an InPort"};
   }
   for (const auto* port : ports) {
-    const bool are_known = !port->data_type().empty() && !ports[0]->data_type().empty();
-    if (are_known && port->data_type() != ports[0]->data_type() && !is_converted(properties)) {
+    if (carry_different_types(*port, *ports[0]) && !is_converted(properties)) {
       return Error{"ports " + ports[0]->full_name + " and " + port->full_name + ": carry different types, " + ports[0]->data_type() +
                    " and " + port->data_type()};
     }
@@ -104,6 +103,11 @@ bool is_in_use(const std::vector<const PortView*>& ports, const std::string& id)
 }
 
 }  // namespace
+
+bool carry_different_types(const PortView& a, const PortView& b) {
+  const auto fits_all = [](const std::string& type) { return type.empty() || base::equal_ignoring_case(type, "any"); };
+  return !fits_all(a.data_type()) && !fits_all(b.data_type()) && a.data_type() != b.data_type();
+}
 
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& given) {

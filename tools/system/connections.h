@@ -15,6 +15,8 @@ bool is_own_transport(std::string_view interface_type);
 // Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& properties);
+// Whether the types of two data ports are known and differ. "Any", as of ports of events, fits all.
+bool carry_different_types(const PortView& a, const PortView& b);
 // One that the port has dropped by itself since it was looked at counts as ended.
 Result<void> disconnect_connector(const PortView& port, const std::string& id);
 
