@@ -312,7 +312,7 @@ void add_names(py::class_<Component, Holder>& cls) {
 
 void add_ports_of_components(py::class_<Component, Holder>& cls) {
   cls.def("_add_in_port", [](Component& self, const std::string& name,
-                             InPort& port) { return unlocked([&] { return self.addInPort(name.c_str(), port); }); })
+                             RTC::InPortBase& port) { return unlocked([&] { return self.addInPort(name.c_str(), port); }); })
       .def("_add_out_port", [](Component& self, const std::string& name,
                                OutPort& port) { return unlocked([&] { return self.addOutPort(name.c_str(), port); }); })
       .def("_add_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.addPort(port); }); })

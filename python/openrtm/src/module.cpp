@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include "calls.h"
+#include "channel.h"
 #include "component.h"
 #include "manager.h"
 #include "ports.h"
@@ -12,6 +13,7 @@ PYBIND11_MODULE(_openrtm_core, module) {
   python::add_properties(module);
   python::add_ports(module);
   python::add_services(module);
+  python::add_channels(module);
   python::add_components(module);
   python::add_calls(module);
   python::add_manager(module);

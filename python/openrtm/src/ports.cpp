@@ -1,12 +1,13 @@
 #include "ports.h"
 
-#include <rtm/Serializers.h>
+#include <rtm/EventPort.h>
 
 #include <cstring>
 #include <map>
 
 #include "listeners.h"
 #include "references.h"
+#include "serializers.h"
 
 namespace py = pybind11;
 
@@ -98,29 +99,10 @@ const RTC::detail::DataType& data_type_of(const Type& type) {
   return *made;
 }
 
-namespace {
-
-// Plain CDR alone.
-class OnlyCdr final : public RTC::detail::Serializers {
- public:
-  std::vector<std::string> names() const override { return {"cdr"}; }
-  RTC::ByteDataStreamBase* create(const std::string&) const override { return nullptr; }
-  void destroy(RTC::ByteDataStreamBase*) const override {}
-  bool serialize(RTC::ByteDataStreamBase&, const void*) const override { return false; }
-  bool deserialize(RTC::ByteDataStreamBase&, void*) const override { return false; }
-};
-
-const RTC::detail::Serializers& no_serializers() {
-  static const OnlyCdr only;
-  return only;
-}
-
-}  // namespace
-
 InPort::InPort(const std::string& name, py::object value) : InPort(name, value, checked_type(value)) {}
 
 InPort::InPort(const std::string& name, py::object value, const Type& type)
-    : InPortBase(name.c_str(), data_type_of(type), no_serializers()), last(std::move(value)), type_(type) {}
+    : InPortBase(name.c_str(), data_type_of(type), serializers_of(type)), last(std::move(value)), type_(type) {}
 
 bool InPort::read(std::string name) {
   const Locked locked;
@@ -133,6 +115,8 @@ bool InPort::read(std::string name) {
     throw Raised(take_error());
   }
 }
+
+EventPort::EventPort(const std::string& name) : InPortBase(name.c_str(), RTC::detail::DataType::any(), RTC::detail::any_serializers()) {}
 
 bool InPort::is_new(py::object names) {
   if (names.is_none()) return unlocked([&] { return isNew(); });
@@ -164,7 +148,7 @@ py::object InPort::read_value(const std::string& name) {
 OutPort::OutPort(const std::string& name, py::object value) : OutPort(name, value, checked_type(value)) {}
 
 OutPort::OutPort(const std::string& name, py::object value, const Type& type)
-    : OutPortBase(name.c_str(), data_type_of(type), no_serializers()), bound(std::move(value)), type_(type) {}
+    : OutPortBase(name.c_str(), data_type_of(type), serializers_of(type)), bound(std::move(value)), type_(type) {}
 
 bool OutPort::write() {
   const Locked locked;
@@ -250,18 +234,25 @@ void add_ports(py::module_& module) {
            [](PortBase& port, const std::string& id) { return static_cast<int>(unlocked([&] { return port.disconnect(id.c_str()); })); })
       .def("_disconnect_all", [](PortBase& port) { return static_cast<int>(unlocked([&] { return port.disconnect_all(); })); });
 
-  py::class_<InPort, PortBase, std::shared_ptr<InPort>>(module, "InPort")
+  using RTC::InPortBase;
+  py::class_<InPortBase, PortBase, std::shared_ptr<InPortBase>>(module, "InPortBase")
+      .def("_add_data_listener", &add_data_listener<InPortBase>)
+      .def("_add_listener", &add_listener<InPortBase>)
+      .def("_connectors", &connectors_of<InPortBase>);
+  py::class_<InPort, InPortBase, std::shared_ptr<InPort>>(module, "InPort")
       .def(py::init(&made<InPort>), py::arg("name"), py::arg("value"))
       .def("isNew", &InPort::is_new, py::arg("names") = py::none())
       .def("_read", &InPort::read_value)
       .def("_read_default", [](InPort& port) { return port.read_value({}); })
       .def("_type_id", [](InPort& port) { return port.type().id; })
       .def("_descriptor", [](InPort& port) { return py::reinterpret_borrow<py::object>(port.type().descriptor); })
-      .def("_add_data_listener", &add_data_listener<InPort>)
-      .def("_add_listener", &add_listener<InPort>)
-      .def("_connectors", &connectors_of<InPort>)
       .def("setConnectionLimit", &InPort::setConnectionLimit)
       .def_readwrite("_value", &InPort::last);
+  py::class_<EventPort, InPortBase, std::shared_ptr<EventPort>>(module, "EventPort")
+      .def(py::init([](const std::string& name) {
+        return std::shared_ptr<EventPort>(new EventPort(name), [](EventPort* port) { unlocked([&] { delete port; }); });
+      }))
+      .def("setConnectionLimit", &EventPort::setConnectionLimit);
   py::class_<OutPort, PortBase, std::shared_ptr<OutPort>>(module, "OutPort")
       .def(py::init(&made<OutPort>), py::arg("name"), py::arg("value"))
       .def("_write", &OutPort::write_value)

@@ -42,6 +42,16 @@ class InPort final : public RTC::InPortBase {
   const Type& type_;
 };
 
+// Samples of any type, which its listeners take.
+class EventPort final : public RTC::InPortBase {
+ public:
+  explicit EventPort(const std::string& name);
+  ~EventPort() override { retire(); }
+  bool read(std::string) override { return true; }
+
+  using PortBase::setConnectionLimit;
+};
+
 class OutPort final : public RTC::OutPortBase {
  public:
   OutPort(const std::string& name, pybind11::object value);

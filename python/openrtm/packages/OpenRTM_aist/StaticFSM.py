@@ -56,7 +56,7 @@ class Link:
         self._machine.change(state)
 
     def dispatch(self, event):
-        self._machine.enqueue(event)
+        self._machine.dispatch(event)
 
     def data(self, state_class=None):
         return self._machine.data_of(state_class or type(self))
@@ -96,11 +96,15 @@ class Machine:
         self._top = top
         self._states, self._data, self._last = {}, {}, {}
         self._waiting = collections.deque()
+        self._dispatched = collections.deque()
+        self._is_handling = True
         self._lock = threading.Lock()
         self._next = None
         self._current = top
         self._enter_from(None, top)
         self._settle()
+        self._is_handling = False
+        self._handle_dispatched()
 
     # --- for states
 
@@ -129,19 +133,47 @@ class Machine:
                 if not self._waiting:
                     return
                 event = self._waiting.popleft()
-            self.handle(event)
+            self.dispatch(event)
 
-    def handle(self, event):
-        method = getattr(self._state(self._current), event.name)
-        method(*event.args)
-        self._settle()
+    def dispatch(self, event):
+        """Handle the event now, and those that states dispatch meanwhile. From a state: after the event that it handles."""
+        self._dispatched.append(event)
+        if not self._is_handling:
+            self._handle_dispatched()
 
-    dispatch = enqueue
+    handle = dispatch
+
+    def shutdown(self):
+        """Leave all states; events are ignored from now on."""
+        if self._current is None:
+            return
+        for cls in reversed(self._path(self._current)):
+            self._state(cls).onExit()
+        self._current = None
 
     def current(self):
         return self._current
 
     # --- the inside
+
+    def _handle_dispatched(self):
+        self._is_handling = True
+        try:
+            while self._dispatched:
+                self._handle(self._dispatched.popleft())
+        finally:
+            self._is_handling = False
+            self._dispatched.clear()
+
+    # The nearest state of the path that has such a method handles it; the others ignore it.
+    def _handle(self, event):
+        if self._current is None:
+            return
+        for cls in reversed(self._path(self._current)):
+            if hasattr(cls, event.name):
+                getattr(self._state(cls), event.name)(*event.args)
+                self._settle()
+                return
 
     def _state(self, cls):
         if cls not in self._states:

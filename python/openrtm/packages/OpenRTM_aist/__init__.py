@@ -21,12 +21,17 @@ from .utility import uuid1  # noqa: F401
 
 # Loaded when they are first used.
 _LATER = {
-    "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "StaticFSM": ("StaticFSM", None), "Macho": ("StaticFSM", None),
+    "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "StaticFSM": ("StaticFSM", None), "Macho": ("Macho", None),
     "CorbaNaming": ("naming", "CorbaNaming"),
-    "uuid": ("utility", None),
+    "uuid": ("utility", None), "EventPort": ("EventPort", None), "CSPEventPort": ("CSPEventPort", None),
+    "CSPMachine": ("CSPMachine", None),
 }
 for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):
     _LATER.setdefault(_name, ("StaticFSM", _name))
+for _name in ("CSPInPort", "CSPOutPort", "CSPManager"):
+    _LATER[_name] = ("csp", _name)
+for _name in ("ByteDataStreamBase", "CORBA_CdrMemoryStream", "SerializerFactories", "SerializerFactory"):
+    _LATER[_name] = ("serializers", _name)
 del _name
 
 

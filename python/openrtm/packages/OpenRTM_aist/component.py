@@ -152,14 +152,14 @@ class DataFlowComponentBase(_core.Component):
     # --- ports
 
     def addInPort(self, name, port):
-        added = self._add_in_port(name, port)
+        added = self._add_in_port(name, port) if isinstance(port, _core.InPortBase) else self._add_channel(port)
         if added:
             self._ports.append(port)
             self._inports.append(port)
         return added
 
     def addOutPort(self, name, port):
-        added = self._add_out_port(name, port)
+        added = self._add_out_port(name, port) if isinstance(port, _core.OutPort) else self._add_channel(port)
         if added:
             self._ports.append(port)
             self._outports.append(port)
@@ -170,6 +170,13 @@ class DataFlowComponentBase(_core.Component):
         if added:
             self._ports.append(port)
         return added
+
+    # A CSP port, whose settings are those of the component's port.
+    def _add_channel(self, port):
+        kind = "inport" if hasattr(port, "readData") else "outport"
+        for key in ("port." + kind, "port.%s.%s" % (kind, port.name())):
+            port.init(self._properties_of().getNode(key))
+        return self._add_port(port)
 
     registerInPort = addInPort
     registerOutPort = addOutPort

@@ -10,7 +10,7 @@ __all__ = ["ConnectorInfo", "ConnectorListenerStatus", "ConnectorDataListener", 
            "PreFsmActionListenerType", "PostFsmActionListenerType", "PreComponentActionListener", "PostComponentActionListener",
            "PortActionListener", "ExecutionContextActionListener", "PortConnectListener", "PortConnectRetListener",
            "ConfigurationParamListener", "ConfigurationSetListener", "ConfigurationSetNameListener", "PreFsmActionListener",
-           "PostFsmActionListener", "ConnectorListenerHolder", "ConnectorDataListenerHolder"]
+           "PostFsmActionListener", "ConnectorListenerHolder", "ConnectorDataListenerHolder", "PortType"]
 
 
 class ConnectorInfo:
@@ -36,7 +36,7 @@ class ConnectorDataListenerT(ConnectorDataListener):
     """__call__(info, value): may return None, a status, or (status, value)."""
 
     # Sources for 1.2 decode by this call: the value has been decoded already.
-    def __call__(self, info, cdrdata, data=None):
+    def __call__(self, info, cdrdata, data=None, porttype=None):
         if isinstance(cdrdata, (bytes, bytearray)) and data is not None:
             endian = info.properties.getProperty("serializer.cdr.endian", "little") if info is not None else "little"
             return omniORB.cdrUnmarshal(_tc.TypeCode(data._NP_RepositoryId), bytes(cdrdata), endian.split(",")[0].strip() != "big")
@@ -48,6 +48,10 @@ class ConnectorListener(ConnectorListenerStatus):
 
     def __call__(self, info):
         pass
+
+
+class PortType:
+    OutPortType, InPortType = range(2)
 
 
 class ConnectorListenerHolder:
