@@ -118,3 +118,90 @@ def test_a_csp_port_without_a_partner_does_not_write_and_another_interface_is_re
     system.rtse("act", "ChannelWriter0")
     assert "Error" not in system.rtse("ls", "-l")
     assert "sent" not in system.log(sending)
+
+
+def test_a_console_reads_its_terminal_and_hears_all_its_connections(system):
+    console = program(system, "Console.py", input=subprocess.PIPE)
+    system.rtse("con", "-n", "loop", "Console0:out", "Console0:in")
+    system.rtse("act", "Console0")
+    types(console, "12", "13")
+    log = says(system, console, "data=12)", "[ns]")
+    for name in ("ON_BUFFER_WRITE", "ON_BUFFER_READ", "ON_SEND", "ON_RECEIVED"):
+        assert f"Listener: {name} loop 12" in log
+    assert "Listener: ON_CONNECT loop" in log
+    types(console, "14")
+    system.rtse("dis", "Console0:out", "Console0:in")
+    says(system, console, "Listener: ON_DISCONNECT loop")
+
+
+def test_input_that_is_no_number_ends_in_the_error_state(system):
+    console = program(system, "Console.py", input=subprocess.PIPE)
+    system.rtse("act", "Console0")
+    types(console, "x")
+    says(system, console, "ValueError: invalid literal for int()")
+    await_("error state", lambda: "rror" in system.rtse("ls", "-l"))
+
+
+def test_a_script_ticks_a_context_that_is_triggered_from_outside(system):
+    ticked = program(system, "Ticked.py", "-o", "exec_cxt.periodic.type:ExtTrigExecutionContext")
+    script = system.start(python, "-B", str(sources / "ticks.py"), system.names, input=subprocess.PIPE)
+    says(system, script, "connect RTC_OK")
+    assert "cycle" not in system.log(ticked)
+    for number in (1, 2, 3):
+        types(script, "")
+        says(system, ticked, f"cycle {number} ")
+    assert "cycle 4" not in system.log(ticked)
+    script.stdin.close()
+    assert script.wait(60) == 0, system.log(script)
+
+
+def test_values_of_ten_types_come_back_as_they_were_sent(system):
+    process = program(system, "Sequences.py")
+    for name in ("Octet", "Short", "Long", "Float", "Double"):
+        for kind in (name, name + "Seq"):
+            system.rtse("con", f"Sequences0:{kind}", f"Sequences0:{kind}In")
+    system.rtse("act", "Sequences0")
+    assert "differs" not in says(system, process, "fifty rounds")
+
+
+def test_parameters_of_all_kinds_follow_their_configuration_set(system):
+    process = program(system, "Parameters.py")
+    system.rtse("act", "Parameters0")
+    says(system, process, "parameters 0 0.11 hoge [0.0, 1.0, 2.0, 3.0, 4.0]")
+    system.rtse("conf", "Parameters0", "set", "vector_param0", "5,6")
+    says(system, process, "parameters 0 0.11 hoge [5.0, 6.0]", "heard set Properties")
+    system.rtse("conf", "Parameters0", "act", "fast")
+    says(system, process, "parameters 7 ", "heard activate fast", "heard parameter fast int_param0")
+
+
+def test_a_component_that_measures_leaves_by_itself(system):
+    process = program(system, "Throughput.py", "-o", "manager.shutdown_on_nortcs:YES")
+    system.rtse("con", "Throughput0:out", "Throughput0:in")
+    system.rtse("act", "Throughput0")
+    log = says(system, process, "connections 1 received 10 True")
+    assert "connected corba_cdr True" in log
+    await_("no name", lambda: "Throughput0" not in system.rtse("ls"))
+
+
+def test_a_composite_of_components_of_python_runs_them_in_one_context(system):
+    host = system.start(python, "-B", str(sources / "composite_host.py"), "-o", f"corba.nameservers:{system.names}",
+                        "-o", "naming.formats:%n.rtc", "-o", "manager.shutdown_auto:NO", "-o", f"manager.modules.load_path:{sources}",
+                        "-o", "manager.modules.preload:Sensing.py", "-o",
+                        "manager.components.precreate:Sensing,Sensing,PeriodicECSharedComposite?instance_name=Whole&"
+                        "conf.default.members=Sensing0|Sensing1")
+    await_("all", lambda: "Whole" in system.rtse("ls"))
+    system.rtse("con", "Sensing0:out", "Sensing1:in")
+    system.rtse("act", "Whole")
+    # One sample may come before the context runs.
+    await_("both", lambda: "Sensing1 42" in system.log(host) or system.try_rtse("inject", "Sensing0:in", "RTC.TimedLong({time}, 40)") is None)
+    assert "Sensing0 41" in system.log(host)
+
+
+def test_a_window_runs_in_the_main_thread_beside_the_manager(system):
+    process = program(system, "Slider.py")
+    system.rtse("con", "Slider0:slider", "Slider0:angle")
+    system.rtse("act", "Slider0")
+    says(system, process, "moved [0.0, 0.0]")
+    system.rtse("exit", "Slider0")
+    assert process.wait(60) == 0
+    assert "window closed" in system.log(process)

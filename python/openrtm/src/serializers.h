@@ -1,5 +1,5 @@
-// Serializers of authors, written in Python: classes with init(properties), isLittleEndian(bool), serialize(value) -> (code, octets) and
-// deserialize(octets, type) -> (code, value). Registered by OpenRTM_aist.SerializerFactories, which keeps the classes; looked up there by
+// Serializers of authors, written in Python: classes with init(properties), isLittleEndian(bool), serialize(value) -> (code, bytes) and
+// deserialize(bytes, type) -> (code, value). Registered by OpenRTM_aist.SerializerFactories, which keeps the classes; looked up there by
 // the names of connections.
 //
 // Rights: their methods are called with the interpreter's lock, by one thread at a time each. Failure cases: a method that raises, returns
