@@ -290,3 +290,100 @@ def test_a_script_finds_connects_and_activates_components_by_their_references(sy
     assert "parameter 1" in said and "set True" in said
     says(system, printer, "connected connector0 push")
     await_("the new step", lambda: any(int(line.split()[1]) > 2000 for line in system.log(printer).splitlines() if line.startswith("received")))
+
+
+@pytest.mark.parametrize("body", [
+    "threading.Thread(target=lambda: [0 for _ in iter(int, 1)]).start()",  # computes for ever, not a daemon
+    "threading.Thread(target=threading.Event().wait).start()",
+    "[threading.Thread(target=threading.Event().wait).start() for _ in range(50)]",
+])
+def test_threads_of_an_author_that_never_end_do_not_keep_the_process_from_its_end(system, tmp_path, body):
+    file = written(tmp_path, "Threads", f"""
+    def onActivated(self, ec_id):
+        {body}
+        print("started", flush=True)
+        return RTC.RTC_OK
+""", extra="import threading")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Threads0")
+    system.rtse("act", "Threads0")
+    says(system, process, "started")
+    process.terminate()
+    process.wait(50)
+
+
+def test_a_list_that_does_not_fit_into_memory_ends_in_the_error_state(system, tmp_path):
+    file = written(tmp_path, "Huge", """
+    def onExecute(self, ec_id):
+        resource.setrlimit(resource.RLIMIT_AS, (1 << 31, resource.RLIM_INFINITY))
+        self.numbers = [0] * (10 << 30)
+        return RTC.RTC_OK
+""", extra="import resource")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Huge0")
+    system.try_rtse("act", "Huge0")
+    says(system, process, "MemoryError")
+    await_("error state", lambda: "rror" in system.rtse("ls", "-l"))
+    process.terminate()
+    assert process.wait(50) == 0
+
+
+@pytest.mark.parametrize("call", ["shutdown()", "terminate()"])
+def test_a_component_that_ends_the_manager_in_its_callback_ends_the_process(system, tmp_path, call):
+    file = written(tmp_path, "Ender", f"""
+    def onExecute(self, ec_id):
+        manager = OpenRTM_aist.Manager.instance()
+        manager.{call}
+        return RTC.RTC_OK
+""")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Ender0")
+    system.try_rtse("act", "Ender0")
+    process.wait(60)
+    await_("no name", lambda: "Ender0" not in system.rtse("ls"))
+
+
+def test_a_component_that_deletes_itself_and_the_manager_object_leaves_the_others_running(system, tmp_path):
+    file = written(tmp_path, "Suicide", """
+    def onExecute(self, ec_id):
+        del self._manager
+        OpenRTM_aist.Manager._instance = None
+        self.exit()
+        return RTC.RTC_OK
+""")
+    host = system.rtcd("-o", "naming.formats:%n.rtc", str(tmp_path / file), str(sources / "Counter.py"))
+    seen(system, "Suicide0")
+    seen(system, "Counter0")
+    system.try_rtse("act", "Suicide0")
+    await_("no name", lambda: "Suicide0" not in system.rtse("ls"))
+    system.rtse("act", "Counter0")
+    says(system, host, "parameters: [1]")
+    host.terminate()
+    assert host.wait(50) == 0
+
+
+@pytest.mark.parametrize("statement", ["while True: pass", "os._exit(7)", "sys.exit(1)", "self.no_such_thing()"])
+def test_a_run_names_the_component_that_does_not_go_on(tmp_path, statement):
+    import rtmsim
+    written(tmp_path, "Hostile", f"""
+    def onInitialize(self):
+        self._in = OpenRTM_aist.InPort("range", OpenRTM_aist.instantiateDataType(RTC.RangeData))
+        self.addInPort("range", self._in)
+        self._out = OpenRTM_aist.OutPort("velocity", OpenRTM_aist.instantiateDataType(RTC.TimedVelocity2D))
+        self.addOutPort("velocity", self._out)
+        return RTC.RTC_OK
+
+    def onExecute(self, ec_id):
+        {statement}
+        return RTC.RTC_OK
+""", extra="import os")
+    root = here.parents[1] / "worlds"
+    text = (root / "systems" / "obstacle_avoidance.xml").read_text()
+    start = text.index("<rts:ConfigurationSets", text.index(":LaserObstacleAvoid:"))
+    end = text.index("</rts:ConfigurationSets>", start) + len("</rts:ConfigurationSets>")
+    profile = tmp_path / "hostile.xml"
+    profile.write_text((text[:start] + text[end:]).replace("LaserObstacleAvoid", "Hostile"))
+    result = rtmsim.run(str(profile), str(root / "obstacle_course.sdf"), duration=1,
+                        options=["--module-path", str(tmp_path), "--module-path", lib_dir])
+    assert not result.passed
+    assert "Hostile0" in result.why
