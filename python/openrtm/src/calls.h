@@ -9,10 +9,12 @@
 #include <pybind11/pybind11.h>
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "gil.h"
+#include "references.h"
 #include "types.h"
 
 namespace python {
@@ -48,6 +50,27 @@ class UserRaised final : public CORBA::UserException {
 // Sets the Python exception that stands for one of the ORB.
 void set_python_exception(const CORBA::SystemException& problem);
 
+// Sets the Python exception for one of an IDL file and throws; the operation knows the ones of C++.
+[[noreturn]] void raise_user(const CORBA::UserException& problem, const Operation* operation);
+
+// Runs a call of the ORB without the lock; its exceptions become those of Python.
+template <class Call>
+auto asked(Call call, const Operation* operation = nullptr) {
+  try {
+    return unlocked(call);
+  } catch (const CORBA::SystemException& problem) {
+    set_python_exception(problem);
+  } catch (const CORBA::UserException& problem) {
+    raise_user(problem, operation);
+  } catch (const omniORB::fatalException& problem) {
+    PyErr_SetString(PyExc_RuntimeError, problem.errmsg());
+  }
+  throw pybind11::error_already_set();
+}
+
+// The result of an operation of a reference; throws error_already_set.
+pybind11::object invoke(const ObjRef& self, const std::string& name, const pybind11::object& descriptor, const pybind11::tuple& arguments);
+
 class Servant final : public PortableServer::ServantBase {
  public:
   Servant(const pybind11::object& self, const pybind11::dict& operations, std::vector<std::string> ids);
@@ -71,7 +94,5 @@ class Servant final : public PortableServer::ServantBase {
   const std::vector<std::string> ids_;
   std::map<std::string, const Operation*> operations_;
 };
-
-void add_calls(pybind11::module_& module);
 
 }  // namespace python

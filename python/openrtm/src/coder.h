@@ -39,5 +39,6 @@ PyObject* decode(const Type& type, cdrStream& stream);
 // text_coding has been set to "utf-8" or "latin-1".
 enum class TextCoding { automatic, utf8, latin1 };
 void set_text_coding(TextCoding coding);
+TextCoding text_coding();
 
 }  // namespace python

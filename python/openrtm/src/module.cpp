@@ -1,10 +1,10 @@
 // The extension module _openrtm_core: the runtime for components of Python (packages/OpenRTM_aist) and the ORB (packages/omniORB).
 #include <pybind11/pybind11.h>
 
-#include "calls.h"
 #include "channel.h"
 #include "component.h"
 #include "manager.h"
+#include "orb.h"
 #include "ports.h"
 #include "properties.h"
 #include "services.h"
@@ -15,6 +15,6 @@ PYBIND11_MODULE(_openrtm_core, module) {
   python::add_services(module);
   python::add_channels(module);
   python::add_components(module);
-  python::add_calls(module);
+  python::add_orb(module);
   python::add_manager(module);
 }

@@ -8,6 +8,11 @@
 
 namespace python {
 
+// The attribute _obj of a stub.
+struct ObjRef {
+  CORBA::Object_var object;
+};
+
 // The reference of a stub or of a servant's _this(), nil for None; nothing for any other object.
 std::optional<CORBA::Object_var> reference_in(PyObject* stub);
 // A stub: of the most derived interface whose stubs are loaded, else of the one with that id. None for nil. A new reference; nullptr with a
