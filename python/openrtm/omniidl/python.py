@@ -136,6 +136,9 @@ def _write_package(options, name, stub, is_poa):
             line = "from . import " + other.rpartition(".")[2]
             if line not in subs:
                 subs.append(line)
+    # Names are made when the module is imported: type checkers do not see them.
+    with open(file + "i", "w") as out:
+        out.write("from typing import Any\n\ndef __getattr__(name: str) -> Any: ...\n")
     with open(file, "w") as out:
         out.write(_PACKAGE.format(name=options.modules + full, stubs="\n".join(stubs), subs="\n".join(subs)))
 
