@@ -229,7 +229,8 @@ class _Receiver(_ChannelPort):
     def __init__(self, name, type_name, manager):
         _ChannelPort.__init__(self, name, type_name, "DataInPort")
         self._items = collections.deque()
-        self._filled = 0  # places that are kept for a value that is offered: it is older than one that is put
+        # While it asks senders nobody puts a value: it would be older than the one that a sender offers then, or newer, who knows.
+        self._is_asking = self._has_refused = False
         self._wanted = 0  # readers that wait, and promises of the manager
         self._selected = []
         self._on_read = self._on_read_convert = None
@@ -279,8 +280,12 @@ class _Receiver(_ChannelPort):
     def _limit(self):
         return int(self._settings["buffer.length"])
 
+    # Under the condition.
     def _is_free(self):
-        return len(self._items) + self._filled < max(self._limit(), self._wanted)
+        if self._is_asking:
+            self._has_refused = True
+            return False
+        return len(self._items) < max(self._limit(), self._wanted)
 
     def _has_room(self):
         with self._channel:
@@ -293,15 +298,14 @@ class _Receiver(_ChannelPort):
         return False
 
     def _put(self, connection, octets):
-        with self._channel:
-            if not self._is_free():
-                return OpenRTM.BUFFER_FULL
         try:
             item = self._item(connection, octets)
         except _CORBA.SystemException as problem:
             self._log.RTC_ERROR("port %s: a value of the connection %s cannot be decoded: %s", (self._name, connection.name, problem))
             return OpenRTM.PORT_ERROR
         with self._channel:
+            if not self._is_free():
+                return OpenRTM.BUFFER_FULL
             self._items.append(item)
             self._channel.notify_all()
         if self._limit() > 0 and self._manager is not None:
@@ -310,21 +314,34 @@ class _Receiver(_ChannelPort):
 
     # --- the reader calls
 
-    # From the buffer, else from a sender that offers something.
+    # From the buffer, which then takes what a sender offers; else from a sender.
     def _pull(self):
         with self._channel:
             is_from_buffer = len(self._items) > 0
-            if is_from_buffer:
-                item = self._items.popleft()
-                self._filled = 1
-        if not is_from_buffer:
-            return self._fetch()
-        found, more = self._fetch() if self._limit() > 0 else (False, None)
-        with self._channel:
-            if found:
-                self._items.append(more)
-            self._filled = 0
-        return True, item
+            item = self._items.popleft() if is_from_buffer else None
+            asks = not is_from_buffer or self._limit() > 0
+            self._is_asking = asks
+        found, offered = self._ask_senders(is_from_buffer) if asks else (False, None)
+        return (True, item) if is_from_buffer else (found, offered)
+
+    # With _is_asking set, which it ends. A sender that was refused meanwhile has an offer now, so it is asked again.
+    def _ask_senders(self, fills_buffer):
+        end = time.monotonic() + self._settings["channel_timeout"]
+        try:
+            while True:
+                found, item = self._fetch()
+                with self._channel:
+                    if not found and self._has_refused and time.monotonic() < end:
+                        self._has_refused = False
+                        continue
+                    if found and fills_buffer:
+                        self._items.append(item)
+                    self._is_asking = self._has_refused = False
+                    return found, item
+        except BaseException:
+            with self._channel:
+                self._is_asking = False
+            raise
 
     def _fetch(self):
         for connection in list(self._connections.values()):
@@ -332,15 +349,23 @@ class _Receiver(_ChannelPort):
                 continue
             code, octets = self._ask(connection, "get", (), (None, None))
             if code == OpenRTM.PORT_OK:
-                return True, self._item(connection, octets)
+                try:
+                    return True, self._item(connection, octets)
+                except _CORBA.SystemException as problem:
+                    self._log.RTC_ERROR("port %s: a value of the connection %s cannot be decoded: %s", (self._name, connection.name, problem))
         return False, None
 
     # Waits for an item: says so first, then asks once more.
     def _take(self, promised):
-        with self._channel:
-            if not promised:
+        found, item = False, None
+        if not promised:
+            with self._channel:
                 self._wanted += 1
-        found, item = (False, None) if promised else self._fetch()
+                if self._items:
+                    found, item = True, self._items.popleft()
+                self._is_asking = not found
+            if not found:
+                found, item = self._ask_senders(False)
         with self._channel:
             try:
                 if found:
