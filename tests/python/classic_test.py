@@ -98,6 +98,7 @@ def test_every_value_of_a_csp_port_arrives_once_and_in_order(system, sender, rec
     system.rtse("con", f"{sender}0:out1", f"{receiver}0:in1", *channel)
     system.rtse("act", f"{sender}0", f"{receiver}0")
     await_("20 values", lambda: len(numbers(system.log(receiving), "got")) >= 20)
+    await_("20 acknowledged", lambda: len(numbers(system.log(sending), "sent")) >= 20)  # a sender says so after the receiver has taken it
     assert numbers(system.log(receiving), "got") == list(range(20)) == numbers(system.log(sending), "sent")
 
 
