@@ -81,7 +81,7 @@ export class WorldView {
       if (this.dirty && now >= this.next_draw) {
         this.set_share(this.moving_share);
         this.draw();
-        this.next_draw = now + (this.cost > 40 ? 2 : 1) * this.cost;
+        this.next_draw = now + this.cost;
         this.rests_at = now + rest_after;
       } else if (!this.dirty && this.share < 1 && now >= this.rests_at) {
         this.set_share(1);
@@ -372,6 +372,8 @@ export class WorldView {
     this.hands.show_gizmo(!this.is_past && (this.eye.mode === 'orbit' || this.eye.mode === 'follow' || this.eye.mode === 'top'));
     const spots = this.axes.draw(this.world, selected_model());
     this.daylight.look_from(camera, this.eye.mode !== 'top');
+    const is_measured = this.frames > 1 && this.frames % 16 === 2; // the first ones are dear everywhere: shaders are compiled
+    if (is_measured) this.wait_for_picture(); // what the browser draws meanwhile is not the cost of this one
     const began = performance.now();
     if (this.shadows_dirty && began - this.shadows_at >= 4 * this.cost) {
       this.renderer.shadowMap.needsUpdate = true;
@@ -379,16 +381,20 @@ export class WorldView {
       this.shadows_at = began;
     }
     this.renderer.render(this.scene, camera);
-    if (this.frames > 1 && (this.frames % 16 === 2 || this.cost > 30)) this.measure_cost(began); // the first ones are dear everywhere: shaders are compiled
+    if (is_measured) this.measure_cost(began);
     if (this.shadows_dirty) setTimeout(() => this.redraw(), 4 * this.cost);
     this.labels.draw(this.movers(), spots, camera, width, height);
     this.frames += 1;
     if (this.frames === 1) performance.mark('first-picture');
   }
 
-  private measure_cost(began: number): void {
+  private wait_for_picture(): void {
     const gl = this.renderer!.getContext();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the picture
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  private measure_cost(began: number): void {
+    this.wait_for_picture();
     const cost = performance.now() - began;
     this.full_cost = cost / this.share ** 2;
     const wanted = Math.sqrt(wanted_cost / this.full_cost);
