@@ -1,5 +1,5 @@
 // The light that casts shadows, and the sky behind all.
-import { Box3, Camera, DirectionalLight, Mesh, PlaneGeometry, Scene, ShaderMaterial, Sphere, Vector3 } from 'three';
+import { Box3, Camera, DirectionalLight, Mesh, Object3D, PlaneGeometry, Scene, ShaderMaterial, Sphere, Vector3 } from 'three';
 import type { WorldScene } from './glb';
 import { place_lights, sky_material, suns_of } from './material';
 
@@ -39,6 +39,11 @@ export class Daylight {
     this.sun.shadow.bias = -0.0002;
     this.sun.shadow.radius = 1.5;
     this.renew_shadows();
+  }
+
+  // What hangs in the scene for it.
+  parts(): Object3D[] {
+    return this.sky ? [this.sun, this.sky.mesh] : [this.sun];
   }
 
   // Fine shadows cost more than all else where there is no GPU. The next picture needs new ones.

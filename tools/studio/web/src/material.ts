@@ -106,7 +106,6 @@ uniform vec4 shine;
 uniform vec3 ambient_light;
 uniform vec3 fog_tint;
 uniform vec3 fog_reach;
-uniform vec3 highlight;
 uniform sampler2D color_map, bump_map, glow_map;
 #if SUNS
 uniform vec3 sun_direction[SUNS], sun_color[SUNS], sun_specular[SUNS];
@@ -219,7 +218,6 @@ void main() {
   #endif
   light = mix(light, fog_tint, f);
 #endif
-  light = mix(light, highlight, any(greaterThan(highlight, vec3(0.0))) ? 0.35 : 0.0);
   gl_FragColor = vec4(clamp(light, 0.0, 1.0), base.a);
   #include <colorspace_fragment>
 }`;
@@ -248,7 +246,6 @@ export function make_material(gltf: any, has_grid: boolean, textures: (Texture |
       shine: { value: new Vector4(...(gltf.extras?.specular ?? [0, 0, 0]), gltf.extras?.shininess ?? 0) },
       repeat: { value: { x: scale[0], y: scale[1] } },
       color_map: { value: map(used[0]) }, bump_map: { value: map(used[1]) }, glow_map: { value: map(used[2]) },
-      highlight: { value: new Vector3() },
       receiveShadow: { value: true },
     },
     side: gltf.doubleSided ? DoubleSide : FrontSide,

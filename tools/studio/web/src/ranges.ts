@@ -88,7 +88,7 @@ export class Ranges {
     const sensors = world.sensors.filter((s) => s.iface === name);
     if (sensors.length === 0 || (type === 'laser' && sensors.length > 1)) return;
     const topic = store.signals.find((s) => s.kind === 'iface' && s.type.includes(type) && s.topic.endsWith('/' + name.replaceAll('::', '/')))?.topic ?? `/sim/${type}/${name.replaceAll('::', '/')}`;
-    const fill = new MeshBasicMaterial({ color, transparent: true, opacity: type === 'sonar' ? 0.1 : 0.16, side: DoubleSide, depthWrite: false });
+    const fill = new MeshBasicMaterial({ color, transparent: true, opacity: type === 'sonar' ? 0.1 : 0.16, side: DoubleSide, forceSinglePass: true, depthWrite: false });
     const fan: Fan = { parts: [], iface: name, sensors, stop: () => {}, measured: this.kept.get(`${type}:${name}`) ?? [], now: null, draw: (values) => (type === 'sonar' ? this.ring(fan, values) : this.scan(fan, values)) };
     if (type === 'sonar') fan.parts = sensors.map(() => new Mesh(cone, fill));
     else fan.parts = [new Mesh(new BufferGeometry(), fill), new Line(new BufferGeometry(), new LineBasicMaterial({ color, transparent: true, opacity: 0.85 }))];

@@ -1,5 +1,6 @@
 // The world: drawn here from one export of the simulator, moved by streamed poses.
-import { Box3, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, SkinnedMesh, Vector3, WebGLRenderer } from 'three';
+import { Box3, type Camera, Mesh, PCFSoftShadowMap, Scene, ShaderMaterial, SkinnedMesh, Vector3, WebGLRenderer } from 'three';
+import { Backdrop } from './backdrop';
 import { Contacts } from './contacts';
 import { Daylight } from './daylight';
 import { Frames } from './frames';
@@ -12,6 +13,7 @@ import { Latecomers } from './latecomers';
 import { Marker } from './marker';
 import { linear, place_lights } from './material';
 import { Eye, EyeState, to_ours } from './orbit';
+import { Pace } from './pace';
 import { Ranges } from './ranges';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
@@ -19,7 +21,6 @@ import { type Mover, Trails } from './trails';
 import type { Poses } from './wire';
 import { fetch_data } from './token';
 
-const wanted_cost = 10, least_share = 0.375; // [ms] of a picture while things move; the fewest pixels across
 const rest_after = 300; // [ms] without a change
 
 export class WorldView {
@@ -47,13 +48,14 @@ export class WorldView {
   private failed_version = -1;
   private bounds = new Box3();
   private restored = false;
-  // Of a picture with every pixel [ms], by a look now and then. Where it is dear (no GPU), pictures get fewer and shadows older, and the page stays quick.
-  private full_cost = 0;
+  // Where a picture is dear (no GPU), pictures get fewer and shadows older, and the page stays quick.
+  readonly pace = new Pace();
+  private readonly backdrop = new Backdrop(this.scene);
   private next_draw = 0;
   private shadows_at = 0;
   // Pixels of a picture across, as a share of all: fewer, and coarse shadows, while things move where a picture is dear; all once they rest.
-  private share = least_share; // until the first picture was measured
-  private moving_share = least_share;
+  private share = this.pace.share;
+  private is_rough = true; // less than all pixels and shadows
   private rests_at = 0;
 
   constructor() {
@@ -79,13 +81,11 @@ export class WorldView {
       const now = performance.now();
       if (this.element.offsetParent === null) return;
       if (this.dirty && now >= this.next_draw) {
-        this.set_share(this.moving_share);
         this.draw();
         this.next_draw = now + this.cost;
         this.rests_at = now + rest_after;
-      } else if (!this.dirty && this.share < 1 && now >= this.rests_at) {
-        this.set_share(1);
-        this.draw();
+      } else if (!this.dirty && this.is_rough && now >= this.rests_at) {
+        this.draw(true);
       }
     };
     requestAnimationFrame(loop);
@@ -174,6 +174,7 @@ export class WorldView {
     this.scene.background = linear(world.look.background);
     this.measure();
     this.daylight.set(world, this.bounds);
+    this.backdrop.set(world, this.daylight.parts());
     this.latecomers.begin(world);
     this.show_late();
     this.apply_all();
@@ -190,6 +191,7 @@ export class WorldView {
   private show_late(): void {
     if (!this.world || store.late?.version !== this.world.version) return;
     this.latecomers.show(this.world, store.late);
+    this.backdrop.forget();
     this.shadows_dirty = true;
     this.redraw();
   }
@@ -285,6 +287,7 @@ export class WorldView {
     links.forEach((link, i) => {
       link.position.fromArray(shown, 7 * i);
       link.quaternion.fromArray(shown, 7 * i + 3);
+      this.backdrop.see(link);
     });
     this.shadows_dirty = true;
     this.redraw();
@@ -300,6 +303,7 @@ export class WorldView {
     }
     link.position.set(view.getFloat32(at + 4, true), view.getFloat32(at + 8, true), view.getFloat32(at + 12, true));
     link.quaternion.set(view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)).normalize();
+    this.backdrop.see(link);
   }
 
   private after_places(): void {
@@ -356,10 +360,6 @@ export class WorldView {
   // At once; `is_whole`: with shadows as they are now, and every pixel.
   draw(is_whole = false): void {
     this.dirty = false;
-    if (is_whole) {
-      this.shadows_at = -1e9;
-      this.set_share(1);
-    }
     if (!this.renderer || !this.world) return;
     const { clientWidth: width, clientHeight: height } = this.element;
     this.world.root.updateMatrixWorld();
@@ -372,20 +372,36 @@ export class WorldView {
     this.hands.show_gizmo(!this.is_past && (this.eye.mode === 'orbit' || this.eye.mode === 'follow' || this.eye.mode === 'top'));
     const spots = this.axes.draw(this.world, selected_model());
     this.daylight.look_from(camera, this.eye.mode !== 'top');
-    const is_measured = this.frames > 1 && this.frames % 16 === 2; // the first ones are dear everywhere: shaders are compiled
-    if (is_measured) this.wait_for_picture(); // what the browser draws meanwhile is not the cost of this one
-    const began = performance.now();
-    if (this.shadows_dirty && began - this.shadows_at >= 4 * this.cost) {
-      this.renderer.shadowMap.needsUpdate = true;
-      this.shadows_dirty = false;
-      this.shadows_at = began;
-    }
-    this.renderer.render(this.scene, camera);
-    if (is_measured) this.measure_cost(began);
-    if (this.shadows_dirty) setTimeout(() => this.redraw(), 4 * this.cost);
+    this.draw_scene(camera, is_whole);
     this.labels.draw(this.movers(), spots, camera, width, height);
     this.frames += 1;
     if (this.frames === 1) performance.mark('first-picture');
+  }
+
+  private draw_scene(camera: Camera, is_whole: boolean): void {
+    const has_backdrop = this.backdrop.stands(camera) && !is_whole && this.pace.is_dear;
+    this.pace.begin(has_backdrop);
+    this.set_share(is_whole ? 1 : this.pace.share);
+    this.is_rough = has_backdrop || this.share < 1;
+    if (has_backdrop && this.backdrop.renew(this.renderer!, camera)) this.shadows_at = -1e9; // of what stands still alone
+    const is_measured = this.pace.is_measured(is_whole);
+    if (is_measured) this.wait_for_picture(); // what the browser draws meanwhile is not the cost of this one
+    const began = performance.now();
+    if (has_backdrop) this.backdrop.draw(this.renderer!, camera);
+    else this.draw_all(camera, began, is_whole);
+    if (!is_measured) return;
+    this.wait_for_picture();
+    this.pace.take(performance.now() - began, this.share);
+  }
+
+  private draw_all(camera: Camera, now: number, is_whole: boolean): void {
+    if (is_whole || (this.shadows_dirty && now - this.shadows_at >= 4 * this.cost)) {
+      this.renderer!.shadowMap.needsUpdate = true;
+      this.shadows_dirty = false;
+      this.shadows_at = now;
+    }
+    this.renderer!.render(this.scene, camera);
+    if (this.shadows_dirty) setTimeout(() => this.redraw(), 4 * this.cost);
   }
 
   private wait_for_picture(): void {
@@ -393,17 +409,8 @@ export class WorldView {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  private measure_cost(began: number): void {
-    this.wait_for_picture();
-    const cost = performance.now() - began;
-    this.full_cost = cost / this.share ** 2;
-    const wanted = Math.sqrt(wanted_cost / this.full_cost);
-    this.moving_share = Math.min(1, Math.max(least_share, Math.round(wanted * 8) / 8));
-  }
-
   private get cost(): number {
-    const cost = this.full_cost * this.share ** 2;
-    return cost < 6 ? 0 : Math.min(cost, 500);
+    return this.pace.cost(this.share);
   }
 
   // The eye as `simctl screenshot` has it: place and orientation of one that looks along x with z up, and its angle or, from above, its width.
