@@ -19,7 +19,7 @@
 #include "errand.h"
 #include "geometry_service.h"
 #include "iface_component.h"
-#include "sim_clock.h"
+#include "simulated_time.h"
 
 namespace iface {
 

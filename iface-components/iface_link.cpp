@@ -2,7 +2,7 @@
 
 #include <base/waiting.h>
 
-#include "sim_clock.h"
+#include "simulated_time.h"
 
 namespace iface {
 namespace {

@@ -4,7 +4,7 @@
 #include <shm/request_board.h>
 
 #include "conversions.h"
-#include "sim_clock.h"
+#include "simulated_time.h"
 #include "specification.h"
 
 static const iface::Specification specification{

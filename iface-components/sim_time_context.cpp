@@ -3,6 +3,7 @@
 #include <base/chance.h>
 #include <base/hash64.h>
 #include <base/text.h>
+#include <component/context_clock.h>
 #include <rtm/ECFactory.h>
 
 #include <thread>
@@ -15,11 +16,13 @@ namespace {
 constexpr std::chrono::milliseconds longest_wait{100};
 constexpr std::chrono::milliseconds retry_period{100};
 constexpr std::int64_t highest_phase = 15, highest_turn = 9999;
-constexpr std::chrono::seconds usual_patience{1};
+constexpr std::chrono::seconds usual_member_timeout{1};
 
 }  // namespace
 
-SimTimeContext::SimTimeContext(const std::string& name) : RTC::PeriodicExecutionContext(name), server_id_(iface::default_server()) {}
+SimTimeContext::SimTimeContext(const std::string& name) : RTC::PeriodicExecutionContext(name), server_id_(iface::default_server()) {
+  RTC::set_clock(*this, clock_, simulator_time_);
+}
 
 SimTimeContext::~SimTimeContext() {
   stop();
@@ -49,7 +52,7 @@ void SimTimeContext::init(coil::Properties& properties) {
 void SimTimeContext::say_once(const std::string& line) {
   if (line == said_) return;
   said_ = line;
-  const base::ScopedClock clock(clock_);  // for the log
+  const base::ScopedClock clock(*clock_);  // for the log
   RTC_INFO(("%s: %s", participant_name().c_str(), line.c_str()));
 }
 
@@ -82,7 +85,7 @@ std::shared_ptr<shm::Participant> SimTimeContext::join() {
   is_waiting_ = false;
   const auto& world = simulation->info<shm::SimulationInfo>();
   const auto step = std::chrono::nanoseconds(world.step_ns);
-  if (waits_for_members_) setMemberTimeout(world.lockstep != 0 ? without_end : usual_patience);
+  if (waits_for_members_) setMemberTimeout(world.lockstep != 0 ? without_end : usual_member_timeout);
   simulator_time_->follow(std::move(*simulation));
   base::set_lock_step_clock(simulator_time_);
   say_once("ticking at " + base::format_number(getRate()) + " Hz of simulated time, phase " + std::to_string(phase_) + " of simulator " +
@@ -103,13 +106,12 @@ std::uint64_t SimTimeContext::hash_of_states() const {
 }
 
 void SimTimeContext::run_tick(const shm::Tick& tick) {
-  clock_.set(tick.now);
+  clock_->set(tick.now);
   tick_.begin(tick);
   const base::ScopedTick scope(tick_);
-  invokeWorkerPreDo();
-  invokeWorkerDo();
-  invokeWorkerPostDo();
-  const base::ScopedClock clock(clock_);  // for what is sent
+  stepTransitions();
+  stepExecution();
+  const base::ScopedClock clock(*clock_);  // for what is sent
   tick_.end([this] { return hash_of_states(); });
 }
 

@@ -24,6 +24,7 @@
 // Threads: the context's own thread joins the lock step, and ticks, or lets the group tick; everything else may be called from any thread.
 #pragma once
 
+#include <base/clock.h>
 #include <base/guarded.h>
 #include <rtm/Manager.h>
 #include <rtm/PeriodicExecutionContext.h>
@@ -32,7 +33,6 @@
 #include <memory>
 #include <string>
 
-#include "sim_clock.h"
 #include "sim_tick.h"
 #include "simulator_time.h"
 #include "tick_group.h"
@@ -48,8 +48,6 @@ class SimTimeContext : public RTC::PeriodicExecutionContext, private iface::Tick
  protected:
   RTC::ReturnCode_t onSetRate(double rate) override;
   void onWakeUp() override;
-  const base::Clock& contextClock() const override { return clock_; }
-  std::shared_ptr<const base::Clock> sharedClock() const override { return simulator_time_; }
 
  private:
   std::shared_ptr<shm::Participant> join();
@@ -63,7 +61,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext, private iface::Tick
   void say_once(const std::string& line);
   std::string participant_name() const;
 
-  iface::SimClock clock_;  // the time of the tick that runs
+  const std::shared_ptr<base::ManualClock> clock_ = std::make_shared<base::ManualClock>();  // the time of the tick that runs
   const std::shared_ptr<iface::SimulatorTime> simulator_time_ = std::make_shared<iface::SimulatorTime>();
   int server_id_ = 0;
   std::uint32_t phase_ = 1, turn_ = 0;

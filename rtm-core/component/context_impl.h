@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/clock.h"
 #include "base/guarded.h"
 #include "corba/members/remote_participant.h"
 #include "core/execution_context.h"
@@ -45,6 +46,10 @@ struct ExecutionContextBase::Impl {
   static constexpr std::size_t max_retired = 64;
   using Retired = std::deque<std::shared_ptr<RTC_impl::RTObjectStateMachine>>;
   static constexpr std::chrono::milliseconds default_timeout{500};
+  // Of a context with a clock of its own; see component/context_clock.h.
+  struct Clocks {
+    std::shared_ptr<const base::Clock> of_ticks, of_others;
+  };
   struct Data {
     std::vector<RTC::LightweightRTObject_var> joining{};  // asked to attach, no members yet
     RTC::ExecutionContextService_var reference{};
@@ -73,10 +78,13 @@ struct ExecutionContextBase::Impl {
   std::shared_ptr<corba::MemberWatch> member_watch();
   // Tells the component that it has left.
   static void detach(const Member& member, Logger& rtclog);
+  // The current clock of components while they are called.
+  const base::Clock& clock() const;
 
   const std::shared_ptr<corba::MemberPatience> patience = std::make_shared<corba::MemberPatience>();
   rt::ExecutionContext context;
   base::Guarded<Data, base::Rank::component> shared;
+  Clocks clocks{};                // written before anybody else knows the context
   RTC::RTCList component_list{};  // what getComponentList() has answered
 };
 

@@ -123,7 +123,7 @@ RTC::ReturnCode_t ExecutionContextBase::bindComponent(RTC::RTObject_impl* rtc) {
   return RTC::RTC_OK;
 }
 
-std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience) {
+std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds timeout) {
   std::optional<Impl::Member> leaving;
   std::size_t owners = 0;
   RTC::RTObject_var first;
@@ -135,7 +135,7 @@ std::size_t ExecutionContextBase::unbindComponent(RTC::RTObject_impl* rtc, std::
       first = RTC::RTObject::_unchecked_narrow(member.reference);
   }
   impl_->shared.lock()->owner = first;
-  if (leaving) impl_->remove(*leaving, patience);
+  if (leaving) impl_->remove(*leaving, timeout);
   return owners;
 }
 

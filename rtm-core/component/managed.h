@@ -49,7 +49,7 @@ class Managed {
   virtual ReturnCode_t initialize() = 0;
 
   virtual ReturnCode_t exit() = 0;
-  // The same with an end of its patience.
+  // The same with a deadline.
   virtual void exit_by(Deadline deadline) = 0;
   // Asks its contexts to calm it, and returns at once.
   virtual void ask_to_rest() = 0;

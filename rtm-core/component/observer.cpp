@@ -189,7 +189,7 @@ class SampleListener final : public ConnectorDataListener {
  public:
   SampleListener(std::shared_ptr<Link> link, std::string hint, std::chrono::nanoseconds interval)
       : link_(std::move(link)), hint_(std::move(hint)), interval_(interval) {}
-  ReturnCode notify(ConnectorInfo&, corba::EventData&) override {
+  ReturnCode notify(ConnectorInfo&, detail::SampleEvent&) override {
     link_->tell_of_sample(hint_, interval_);
     return NO_CHANGE;
   }

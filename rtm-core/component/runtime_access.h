@@ -52,8 +52,8 @@ class RuntimeAccess {
   // A context: what core knows of it, its members, its end.
   static rt::ExecutionContext& context(ExecutionContextBase& context) { return context.impl_->context; }
   static ExecutionContextBase::Impl& impl(ExecutionContextBase& context) { return *context.impl_; }
-  static const base::Clock& clock(const ExecutionContextBase& context) { return context.contextClock(); }
-  static std::shared_ptr<const base::Clock> shared_clock(const ExecutionContextBase& context) { return context.sharedClock(); }
+  static const base::Clock& clock(const ExecutionContextBase& context) { return context.impl_->clock(); }
+  static std::shared_ptr<const base::Clock> shared_clock(const ExecutionContextBase& context) { return context.impl_->clocks.of_others; }
   static void ask_to_rest(ExecutionContextBase& context, LightweightRTObject_ptr component) { context.askToRest(component); }
   static void calm(ExecutionContextBase& context, LightweightRTObject_ptr component, Deadline deadline) {
     context.calmComponent(component, deadline);
@@ -61,8 +61,8 @@ class RuntimeAccess {
   static void remove(ExecutionContextBase& context, LightweightRTObject_ptr component, Deadline deadline) {
     context.removeComponent(component, deadline);
   }
-  static void unbind(ExecutionContextBase& context, RTObject_impl* component, std::chrono::nanoseconds patience) {
-    context.unbindComponent(component, patience);
+  static void unbind(ExecutionContextBase& context, RTObject_impl* component, std::chrono::nanoseconds timeout) {
+    context.unbindComponent(component, timeout);
   }
   static void dismiss_members(ExecutionContextBase& context) { context.dismissMembers(); }
   static ReturnCode_t stop_by(ExecutionContextBase& context, Deadline deadline) { return context.stopBy(deadline); }

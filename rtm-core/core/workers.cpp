@@ -150,6 +150,8 @@ bool TriggeredWorker::resume() {
   return true;
 }
 
+bool TriggeredWorker::is_stopping() const { return shared_.lock()->stopping; }
+
 void TriggeredWorker::reset() {
   auto data = shared_.lock();
   *data = Data{.taken = data->taken, .over = data->taken};

@@ -30,6 +30,21 @@ class Steps {
   virtual void execute_and_update() = 0;
 };
 
+// What a thread runs to step a context. run() belongs to the thread; everything else may be called from any thread.
+class Worker {
+ public:
+  virtual ~Worker() = default;
+  // Until stop().
+  virtual void run() = 0;
+  virtual void stop() = 0;
+  // Takes stop() back for a thread that has not noticed; false when run() has returned or is about to.
+  virtual bool resume() = 0;
+  // Allows run() again after stop(). Forgets ticks that wait.
+  virtual void reset() = 0;
+  virtual void wake() = 0;
+  virtual bool is_stopping() const = 0;
+};
+
 // Wakes one sleeper. A condition variable would cost a cycle one system call more: it leaves the mutex marked as waited for, and the next
 // unlock looks for the waiter. Any thread; one waits.
 class Alarm {
@@ -51,21 +66,18 @@ class Alarm {
 // Absolute deadlines: a late cycle is followed at once by the next until the delay is made good; more than 10 whole periods are given up
 // and counted as missed. Time in which a callback waits (base/waiting.h) makes no cycle late. Sleeps while the context is idle. A request
 // wakes it: transitions do not wait for the period.
-class PeriodicWorker {
+class PeriodicWorker final : public Worker {
  public:
   static constexpr std::int64_t most_late_periods = 10;
 
   PeriodicWorker(ExecutionContext& context, Steps& steps, const SteadyTime& time = machine_time());
 
-  // Until stop().
-  void run();
-  void stop();
-  // Takes stop() back for a thread that has not noticed; false when run() has returned or is about to.
-  bool resume();
-  // Allows run() again after stop().
-  void reset();
-  void wake();
-  bool is_stopping() const;
+  void run() override;
+  void stop() override;
+  bool resume() override;
+  void reset() override;
+  void wake() override;
+  bool is_stopping() const override;
 
  private:
   struct Data {
@@ -88,20 +100,19 @@ class PeriodicWorker {
 };
 
 // As many cycles as ticks, in their order. A request is answered without a tick.
-class TriggeredWorker {
+class TriggeredWorker final : public Worker {
  public:
   // Ticks that wait; more of them are not taken and counted as missed.
   static constexpr std::size_t most_waiting = 100'000;
 
   TriggeredWorker(ExecutionContext& context, Steps& steps) : context_(context), steps_(steps) {}
 
-  void run();
-  void stop();
-  // Takes stop() back, as above.
-  bool resume();
-  // Forgets ticks that wait.
-  void reset();
-  void wake();
+  void run() override;
+  void stop() override;
+  bool resume() override;
+  void reset() override;
+  void wake() override;
+  bool is_stopping() const override;
   // Any thread, several at once. Ticks of a stopped context are forgotten.
   void tick(std::chrono::nanoseconds time = {});
   // The same, and returns when its cycle is over, or the worker stops. From within a cycle it returns at once.

@@ -24,8 +24,9 @@ class ListenerEvents final : public corba::ConnectorEvents {
   bool is_observed(corba::DataEvent event) const override { return !listeners_.connectorData_[static_cast<int>(event)].isEmpty(); }
   void on_data(corba::DataEvent event, corba::EventData& data) override {
     const auto current = RuntimeAccess::info(*connector_);
+    SampleEvent sample{data};
     bool info_changed = false;  // in place: it is the connection's own
-    listeners_.connectorData_[static_cast<int>(event)].notify(*current, data, info_changed);
+    listeners_.connectorData_[static_cast<int>(event)].notify(*current, sample, info_changed);
   }
   void on_event(corba::ConnectorEvent event) override {
     auto& holder = listeners_.connector_[static_cast<int>(event)];

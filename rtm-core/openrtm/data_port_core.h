@@ -10,12 +10,12 @@
 #include "base/clock.h"
 #include "base/guarded.h"
 #include "corba/ports/data_port.h"
-#include "corba/ports/port_servant.h"
+#include "openrtm/opaque_types.h"
 
 namespace RTC::detail {
 
 // The settings of a connection, with what the port has read in its profile to find them.
-struct DataPortTerms final : corba::ConnectionTerms {
+struct DataPortTerms final : PortTerms {
   rt::ConnectorSettingsOutcome outcome;
 };
 

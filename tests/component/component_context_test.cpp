@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "component/context_clock.h"
 #include "component/runtime_access.h"
 #include "support/component_fixture.h"
 #include "support/silence.h"
@@ -183,20 +184,21 @@ TEST_F(ComponentContextTest, tools_may_ask_while_a_component_ends) {
   }
 }
 
-// What authors of contexts write: a clock of their own, and a cycle when they want one.
+// A context with a clock of its own, and a cycle when it wants one.
 class ManualContext final : public RTC::ExecutionContextServant<POA_RTC::ExecutionContextService> {
  public:
-  ManualContext() : ExecutionContextServant("manual_ec") { setObjRef(RTC::ExecutionContextService_var(_this())); }
+  ManualContext() : ExecutionContextServant("manual_ec") {
+    setObjRef(RTC::ExecutionContextService_var(_this()));
+    RTC::set_clock(*this, now_, nullptr);
+  }
   void cycle() {
-    now.advance(10ms);
+    now_->advance(10ms);
     invokeWorkerPreDo();
     invokeWorkerDo();
     invokeWorkerPostDo();
   }
-  base::ManualClock now;
 
  protected:
-  const base::Clock& contextClock() const override { return now; }
   RTC::ReturnCode_t onWaitingActivated(RTC_impl::RTObjectStateMachine* comp, long int) override {
     EXPECT_TRUE(comp->isCurrentState(RTC::INACTIVE_STATE));
     EXPECT_TRUE(comp->isNextState(RTC::ACTIVE_STATE));
@@ -204,9 +206,12 @@ class ManualContext final : public RTC::ExecutionContextServant<POA_RTC::Executi
     cycle();
     return RTC::RTC_OK;
   }
+
+ private:
+  const std::shared_ptr<base::ManualClock> now_ = std::make_shared<base::ManualClock>();
 };
 
-TEST_F(ComponentContextTest, authors_may_bring_one_with_a_clock_of_its_own) {
+TEST_F(ComponentContextTest, may_have_a_clock_of_its_own) {
   RTC::ExecutionContextFactory::instance().addFactory("ManualContext", coil::Creator<RTC::ExecutionContextBase, ManualContext>,
                                                       coil::Destructor<RTC::ExecutionContextBase, ManualContext>);
   Owned<> simulated(nullptr, "Simulated0");

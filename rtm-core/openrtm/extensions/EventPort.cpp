@@ -2,7 +2,7 @@
 
 #include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
-#include "corba/transport/event_data.h"
+#include "openrtm/opaque_types.h"
 
 namespace RTC::detail {
 namespace {
@@ -27,8 +27,8 @@ bool is_event(const ConnectorInfo& info, const std::string& event) {
   return named.empty() ? info.name == event : named == event;
 }
 
-bool EventListenerBase::take(const ConnectorInfo& info, corba::EventData& data, const DataType& type, void* value) const {
-  return is_event(info, event_) && corba::decode(RuntimeAccess::ops(type), value, data.octets(), data.order());
+bool EventListenerBase::take(const ConnectorInfo& info, SampleEvent& sample, const DataType& type, void* value) const {
+  return is_event(info, event_) && corba::decode(RuntimeAccess::ops(type), value, sample.data.octets(), sample.data.order());
 }
 
 }  // namespace RTC::detail

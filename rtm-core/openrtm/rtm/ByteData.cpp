@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "corba/transport/event_data.h"
+#include "openrtm/opaque_types.h"
 #include "rtm/ByteDataStreamBase.h"
 
 namespace RTC {
@@ -18,7 +18,7 @@ std::vector<unsigned char>& spare() {
 
 }  // namespace
 
-ByteData::ByteData(corba::EventData& event) : event_(&event), is_little_(event.order() == rt::ByteOrder::little) {}
+ByteData::ByteData(detail::SampleEvent& event) : event_(&event), is_little_(event.data.order() == rt::ByteOrder::little) {}
 
 ByteData::~ByteData() {
   if (octets_.capacity() > spare().capacity() && octets_.capacity() <= most_kept) octets_.swap(spare());
@@ -43,8 +43,8 @@ ByteData& ByteData::operator=(const ByteDataStreamBase& stream) {
 void ByteData::own() {
   if (!event_) return;
   octets_.swap(spare());
-  octets_.resize(event_->size());
-  event_->copy_octets(reinterpret_cast<std::byte*>(octets_.data()));
+  octets_.resize(event_->data.size());
+  event_->data.copy_octets(reinterpret_cast<std::byte*>(octets_.data()));
   event_ = nullptr;
 }
 
@@ -54,10 +54,10 @@ unsigned char* ByteData::getBuffer() {
 }
 
 const unsigned char* ByteData::getBuffer() const {
-  return event_ ? reinterpret_cast<const unsigned char*>(event_->octets().data()) : octets_.data();
+  return event_ ? reinterpret_cast<const unsigned char*>(event_->data.octets().data()) : octets_.data();
 }
 
-unsigned long ByteData::getDataLength() const { return event_ ? event_->size() : octets_.size(); }
+unsigned long ByteData::getDataLength() const { return event_ ? event_->data.size() : octets_.size(); }
 
 void ByteData::setDataLength(unsigned long length) {
   own();

@@ -5,7 +5,7 @@
 #include "base/log.h"
 #include "component/runtime_access.h"
 #include "corba/transport/cdr.h"
-#include "corba/transport/event_data.h"
+#include "openrtm/opaque_types.h"
 #include "openrtm/type_names.h"
 
 namespace RTC {
@@ -61,14 +61,16 @@ ConnectorDataListener::ReturnCode ConnectorDataListener::operator()(ConnectorInf
   return NO_CHANGE;
 }
 
-ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
-  ByteData bytes(data);
+ConnectorDataListener::ReturnCode ConnectorDataListener::notify(ConnectorInfo& info, detail::SampleEvent& sample) {
+  auto& data = sample.data;
+  ByteData bytes(sample);
   const ReturnCode code = (*this)(info, bytes, data.ops().codec ? data.ops().codec->name() : "cdr");
   if (changes_data(code)) data.replace_octets(std::as_bytes(std::span(std::as_const(bytes).getBuffer(), bytes.getDataLength())));
   return code;
 }
 
-detail::TypedDataListener::ReturnCode detail::TypedDataListener::notify(ConnectorInfo& info, corba::EventData& data) {
+detail::TypedDataListener::ReturnCode detail::TypedDataListener::notify(ConnectorInfo& info, detail::SampleEvent& sample) {
+  auto& data = sample.data;
   const corba::TypeOps& own = RuntimeAccess::ops(type());
   if (*data.ops().type == *own.type) {
     void* value = data.value();
@@ -94,9 +96,9 @@ void ConnectorDataListenerHolder::removeListener(ConnectorDataListener* listener
   count_.store(ListenerSet::size(), std::memory_order_relaxed);
 }
 
-void ConnectorDataListenerHolder::notify(ConnectorInfo& info, corba::EventData& data, bool& info_changed) {
+void ConnectorDataListenerHolder::notify(ConnectorInfo& info, detail::SampleEvent& sample, bool& info_changed) {
   for (const auto& listener : snapshot()) {
-    const auto status = guarded([&] { return listener->notify(info, data); });
+    const auto status = guarded([&] { return listener->notify(info, sample); });
     info_changed |= changes_info(status);
   }
 }

@@ -8,8 +8,8 @@
 #include "corba/orb/nv_list.h"
 #include "corba/orb/object_names.h"
 #include "corba/ports/connector_keys.h"
-#include "corba/ports/port_servant.h"
 #include "corba/transport/transport.h"
+#include "openrtm/opaque_types.h"
 
 namespace RTC {
 namespace {
@@ -129,8 +129,8 @@ void CorbaPort::deactivateInterfaces() {
   }
 }
 
-std::shared_ptr<corba::ConnectionTerms> CorbaPort::read_terms(const ConnectorProfile& profile) {
-  auto terms = std::make_shared<corba::ConnectionTerms>();
+std::shared_ptr<detail::PortTerms> CorbaPort::read_terms(const ConnectorProfile& profile) {
+  auto terms = std::make_shared<detail::PortTerms>();
   const auto allowed = corba::find_text(profile.properties, "dataport.allow_dup_connection");
   terms->allows_duplicate = base::parse_bool(allowed.value_or(m_properties.getProperty("allow_dup_connection"))).value_or(false);
   return terms;

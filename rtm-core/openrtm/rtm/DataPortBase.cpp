@@ -9,7 +9,7 @@
 namespace RTC {
 
 namespace {
-const detail::DataPortTerms& of_data_port(const corba::ConnectionTerms& terms) { return static_cast<const detail::DataPortTerms&>(terms); }
+const detail::DataPortTerms& of_data_port(const detail::PortTerms& terms) { return static_cast<const detail::DataPortTerms&>(terms); }
 }  // namespace
 
 template <class Connector>
@@ -139,7 +139,7 @@ void DataPortBase<Connector>::complete_profile(ConnectorProfile& profile) {
 }
 
 template <class Connector>
-std::shared_ptr<corba::ConnectionTerms> DataPortBase<Connector>::read_terms(const ConnectorProfile& profile) {
+std::shared_ptr<detail::PortTerms> DataPortBase<Connector>::read_terms(const ConnectorProfile& profile) {
   auto terms = std::make_shared<detail::DataPortTerms>();
   terms->outcome = detail::settings_of(profile, m_properties, core_->side());
   terms->allows_duplicate = terms->outcome.settings.allows_duplicate;
@@ -147,18 +147,18 @@ std::shared_ptr<corba::ConnectionTerms> DataPortBase<Connector>::read_terms(cons
 }
 
 template <class Connector>
-ReturnCode_t DataPortBase<Connector>::prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+ReturnCode_t DataPortBase<Connector>::prepare(ConnectorProfile& profile, const detail::PortTerms& terms) {
   const auto& outcome = of_data_port(terms).outcome;
   return detail::check_connection(profile, outcome, core_->side(), {core_->type_id(), core_->serializers().names()}, rtclog);
 }
 
 template <class Connector>
-ReturnCode_t DataPortBase<Connector>::publish(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+ReturnCode_t DataPortBase<Connector>::publish(ConnectorProfile& profile, const detail::PortTerms& terms) {
   return core_->template open<Connector>(*this, m_properties, profile, of_data_port(terms).outcome.settings, true, rtclog);
 }
 
 template <class Connector>
-ReturnCode_t DataPortBase<Connector>::subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+ReturnCode_t DataPortBase<Connector>::subscribe(const ConnectorProfile& profile, const detail::PortTerms& terms) {
   ConnectorProfile copy = profile;
   return core_->template open<Connector>(*this, m_properties, copy, of_data_port(terms).outcome.settings, false, rtclog);
 }

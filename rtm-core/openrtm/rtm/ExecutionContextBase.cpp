@@ -2,7 +2,6 @@
 
 #include <coil/stringutil.h>
 #include <rtm/NVUtil.h>
-#include "component/context_impl.h"
 
 #include <algorithm>
 #include <exception>
@@ -10,6 +9,9 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "component/context_clock.h"
+#include "component/context_impl.h"
+#include "component/runtime_access.h"
 #include "corba/orb/call_context.h"
 #include "corba/orb/orb.h"
 #include "corba/orb/return_code.h"
@@ -100,7 +102,7 @@ RTC::ReturnCode_t ExecutionContextBase::start() {
   const Changing turn(*impl_);
   if (!turn || isRunning()) return RTC::PRECONDITION_NOT_MET;
   if (const auto code = onStarting(); code != RTC::RTC_OK) return code;
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   if (const auto code = impl_->context.start(); code != rt::ReturnCode::ok) return corba::to_wire(code);
   try {
     return onStarted();
@@ -122,7 +124,7 @@ RTC::ReturnCode_t ExecutionContextBase::stop() {
     impl_->context.resume();
     return code;
   }
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   if (const auto code = impl_->context.stop(callbackPatience()); code != rt::ReturnCode::ok) {
     complainAboutCallback("the context cannot stop");
     return corba::to_wire(code);
@@ -286,29 +288,34 @@ coil::Properties ExecutionContextBase::getProperties() const { return impl_->sha
 std::string ExecutionContextBase::getName() const { return getProperties().getProperty("name"); }
 std::string ExecutionContextBase::getTypeName() const { return getProperties().getProperty("type"); }
 
+void set_clock(ExecutionContextBase& context, std::shared_ptr<const base::Clock> of_ticks, std::shared_ptr<const base::Clock> of_others) {
+  RuntimeAccess::impl(context).clocks = {std::move(of_ticks), std::move(of_others)};
+}
+
 // Inside a tick that a context of another process gives, its time.
-const base::Clock& ExecutionContextBase::contextClock() const {
+const base::Clock& ExecutionContextBase::Impl::clock() const {
+  if (clocks.of_ticks) return *clocks.of_ticks;
   const auto* of_caller = corba::clock_of_caller();
   return of_caller ? *of_caller : system_clock();
 }
 
 void ExecutionContextBase::invokeWorker() {
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   impl_->context.step();
 }
 
 void ExecutionContextBase::invokeWorkerPreDo(std::size_t lane) {
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   impl_->context.transit(lane);
 }
 
 void ExecutionContextBase::invokeWorkerDo(std::size_t lane) {
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   impl_->context.execute(lane);
 }
 
 void ExecutionContextBase::invokeWorkerPostDo(std::size_t lane) {
-  const base::ScopedClock clock(contextClock());
+  const base::ScopedClock clock(impl_->clock());
   impl_->context.update(lane);
 }
 

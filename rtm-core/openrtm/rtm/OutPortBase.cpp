@@ -22,7 +22,7 @@ void OutPortBase::retire() {
 
 bool OutPortBase::writeValue(const void* value) { return core_->port().write(value); }
 
-ReturnCode_t OutPortBase::prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) {
+ReturnCode_t OutPortBase::prepare(ConnectorProfile& profile, const detail::PortTerms& terms) {
   detail::share_port_properties(profile, m_properties);
   const std::size_t most = static_cast<const detail::DataPortTerms&>(terms).outcome.settings.fan_out;
   if (core_->port().count() >= most) {

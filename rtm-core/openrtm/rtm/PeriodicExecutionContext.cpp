@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "component/runtime_access.h"
 #include "core/connector_settings.h"
-#include "core/workers.h"
 
 namespace RTC {
 
@@ -19,28 +18,7 @@ constexpr std::size_t largest_stack = std::size_t{256} << 20;  // [octets]
 
 }  // namespace
 
-class PeriodicExecutionContext::Steps final : public rt::Steps {
- public:
-  explicit Steps(PeriodicExecutionContext& context) : context_(context) {}
-  void transit() override { context_.stepTransitions(); }
-  void execute_and_update() override { context_.stepExecution(); }
-
- private:
-  PeriodicExecutionContext& context_;
-};
-
-class PeriodicExecutionContext::Worker final : public rt::PeriodicWorker {
- public:
-  using rt::PeriodicWorker::PeriodicWorker;
-};
-
-PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name)
-    : ExecutionContextServant(name),
-      steps_(std::make_unique<Steps>(*this)),
-      worker_(std::make_unique<Worker>(RuntimeAccess::context(*this), *steps_)) {
-  keepThread();  // what components keep for their thread outlasts stop() and start()
-  setObjRef(RTC::ExecutionContextService_var(_this()));
-  setKind(RTC::PERIODIC);
+PeriodicExecutionContext::PeriodicExecutionContext(const std::string& name) : ThreadedExecutionContext(name, Beat::period) {
   m_period = getPeriod();
 }
 
@@ -49,7 +27,7 @@ PeriodicExecutionContext::~PeriodicExecutionContext() { endThread(); }
 void PeriodicExecutionContext::endThread() {
   m_svc = false;
   RuntimeAccess::context(*this).halt();  // loops of authors ask isRunning()
-  worker_->stop();
+  haltThread();
   wakeLoop();
   coil::Task::wait();
   RuntimeAccess::context(*this).resume();  // for the next thread
@@ -80,41 +58,26 @@ void PeriodicExecutionContext::init(coil::Properties& props) {
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStarted() {
-  if (!isSteppingThread()) coil::Task::wait();  // a callback that has stopped its context starts it again: the thread goes on
-  worker_->reset();
+  if (!isSteppingThread()) coil::Task::wait();  // for the thread that m_svc has ended
   m_svc = true;
-  open(nullptr);
-  return RTC::RTC_OK;
+  return ThreadedExecutionContext::onStarted();
 }
 
 RTC::ReturnCode_t PeriodicExecutionContext::onStopping() {
   m_svc = false;
-  worker_->stop();
-  onWakeUp();  // also of derived classes, whose thread may wait for something else; from here on threadRunning() is false
-  if (isSteppingThread()) return RTC::RTC_OK;  // the thread ends after this cycle
-  if (!waitForCallbacks() && worker_->resume()) {
-    m_svc = true;
-    return RTC::RTC_ERROR;
-  }
-  coil::Task::wait();
-  return RTC::RTC_OK;
+  const RTC::ReturnCode_t code = ThreadedExecutionContext::onStopping();
+  if (code != RTC::RTC_OK) m_svc = true;
+  return code;
 }
 
 void PeriodicExecutionContext::onWakeUp() {
-  worker_->wake();
+  wakeThread();
   wakeLoop();
 }
 
 void PeriodicExecutionContext::wakeLoop() {
   m_worker.wake();
   m_workerthread.wake();
-}
-
-bool PeriodicExecutionContext::threadRunning() const { return !worker_->is_stopping(); }
-
-int PeriodicExecutionContext::open(void*) {
-  coil::Task::activate();
-  return 0;
 }
 
 int PeriodicExecutionContext::svc() {
@@ -129,11 +92,8 @@ int PeriodicExecutionContext::svc() {
     parameters.sched_priority = priority_;
     if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0) RTC_WARN(("no right to the real-time priority %d", priority_));
   }
-  worker_->run();
-  return 0;
+  return ThreadedExecutionContext::svc();
 }
-
-int PeriodicExecutionContext::close(unsigned long) { return 0; }
 
 }  // namespace RTC
 

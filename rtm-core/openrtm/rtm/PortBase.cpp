@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "corba/orb/nv_list.h"
 #include "corba/ports/port_servant.h"
+#include "openrtm/opaque_types.h"
 
 namespace RTC {
 
@@ -29,13 +30,16 @@ class PortBase::Servant final : public corba::PortServant {
  private:
   using Terms = corba::ConnectionTerms;
 
+  // All terms are of read_terms.
+  static const detail::PortTerms& own(const Terms& terms) { return static_cast<const detail::PortTerms&>(terms); }
+
   void complete_profile(ConnectorProfile& profile) override { port_.complete_profile(profile); }
   std::shared_ptr<Terms> read_terms(const ConnectorProfile& profile) override { return port_.read_terms(profile); }
-  ReturnCode_t prepare(ConnectorProfile& profile, const Terms& terms) override { return port_.prepare(profile, terms); }
-  ReturnCode_t publish(ConnectorProfile& profile, const Terms& terms) override { return port_.publish(profile, terms); }
+  ReturnCode_t prepare(ConnectorProfile& profile, const Terms& terms) override { return port_.prepare(profile, own(terms)); }
+  ReturnCode_t publish(ConnectorProfile& profile, const Terms& terms) override { return port_.publish(profile, own(terms)); }
   ReturnCode_t subscribe(const ConnectorProfile& profile, const Terms& terms) override {
     call(port_.m_onSubscribeInterfaces, profile);
-    return port_.subscribe(profile, terms);
+    return port_.subscribe(profile, own(terms));
   }
   void unsubscribe(const ConnectorProfile& profile, bool is_lost) override {
     if (is_lost) call(port_.m_onConnectionLost, profile);
@@ -78,7 +82,7 @@ ReturnCode_t PortBase::notify_disconnect(const char* connector_id) { return serv
 PortProfile PortBase::getPortProfile() const { return servant_->profile(); }
 PortService_ptr PortBase::getPortRef() { return servant_->reference(); }
 
-std::shared_ptr<corba::ConnectionTerms> PortBase::read_terms(const ConnectorProfile&) { return std::make_shared<corba::ConnectionTerms>(); }
+std::shared_ptr<detail::PortTerms> PortBase::read_terms(const ConnectorProfile&) { return std::make_shared<detail::PortTerms>(); }
 
 void PortBase::setName(const char* name) {
   name_ = name;

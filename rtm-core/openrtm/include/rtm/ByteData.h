@@ -4,11 +4,11 @@
 
 #include <vector>
 
-namespace corba {
-class EventData;
-}
-
 namespace RTC {
+
+namespace detail {
+struct SampleEvent;
+}
 
 class ByteDataStreamBase;
 
@@ -20,7 +20,7 @@ class ByteData {
   ByteData(const ByteDataStreamBase& stream) { *this = stream; }
   ByteData& operator=(const ByteDataStreamBase& stream);
   // Ports make these for listeners; the event must outlive it.
-  explicit ByteData(corba::EventData& event);
+  explicit ByteData(detail::SampleEvent& event);
   virtual ~ByteData();
   ByteData(const ByteData& other);
   ByteData& operator=(const ByteData& other);
@@ -42,7 +42,7 @@ class ByteData {
  private:
   void own();
 
-  corba::EventData* event_ = nullptr;  // shown as long as there is one
+  detail::SampleEvent* event_ = nullptr;  // shown as long as there is one
   std::vector<unsigned char> octets_;
   bool is_little_ = true;
 };

@@ -11,10 +11,6 @@
 #include "rtm/DataType.h"
 #include "rtm/PortConnectListener.h"
 
-namespace corba {
-class EventData;
-}
-
 namespace RTC {
 
 // Unscoped, so that both ConnectorDataListenerType::ON_SEND and plain ON_SEND compile.
@@ -70,7 +66,7 @@ class ConnectorDataListener : public ConnectorListenerStatus {
   // 1.1: nothing can be changed.
   virtual void operator()(const ConnectorInfo&, const cdrMemoryStream&) {}
   // What ports call.
-  virtual ReturnCode notify(ConnectorInfo& info, corba::EventData& data);
+  virtual ReturnCode notify(ConnectorInfo& info, detail::SampleEvent& sample);
   static const char* toString(ConnectorDataListenerType type);
 };
 
@@ -79,7 +75,7 @@ namespace detail {
 class TypedDataListener : public ConnectorDataListener {
  public:
   USE_CONNLISTENER_STATUS;
-  ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override;
+  ReturnCode notify(ConnectorInfo& info, detail::SampleEvent& sample) override;
 
  private:
   virtual const DataType& type() const = 0;
@@ -123,7 +119,7 @@ class ConnectorDataListenerHolder : private ListenerSet<ConnectorDataListener> {
   void removeListener(ConnectorDataListener* listener);
   std::size_t size() const { return ListenerSet::size(); }
   bool isEmpty() const { return count_.load(std::memory_order_relaxed) == 0; }
-  void notify(ConnectorInfo& info, corba::EventData& data, bool& info_changed);
+  void notify(ConnectorInfo& info, detail::SampleEvent& sample, bool& info_changed);
 
  private:
   std::atomic<std::size_t> count_{0};

@@ -31,7 +31,7 @@ class CorbaPort : public PortBase {
 
  protected:
   void complete_profile(ConnectorProfile& profile) override;
-  std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile) override;
+  std::shared_ptr<detail::PortTerms> read_terms(const ConnectorProfile& profile) override;
   ReturnCode_t publishInterfaces(ConnectorProfile& profile) override;
   ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) override;
   void unsubscribeInterfaces(const ConnectorProfile& profile) override;

@@ -82,10 +82,10 @@ class DataPortBase : public PortBase, public DataPortStatus {
   // Shows the serializers that are registered by now.
   void complete(PortProfile& profile) const override;
   void complete_profile(ConnectorProfile& profile) override;
-  std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile) override;
-  ReturnCode_t prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
-  ReturnCode_t publish(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
-  ReturnCode_t subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
+  std::shared_ptr<detail::PortTerms> read_terms(const ConnectorProfile& profile) override;
+  ReturnCode_t prepare(ConnectorProfile& profile, const detail::PortTerms& terms) override;
+  ReturnCode_t publish(ConnectorProfile& profile, const detail::PortTerms& terms) override;
+  ReturnCode_t subscribe(const ConnectorProfile& profile, const detail::PortTerms& terms) override;
   ReturnCode_t publishInterfaces(ConnectorProfile& profile) override;
   ReturnCode_t subscribeInterfaces(const ConnectorProfile& profile) override;
   void unsubscribeInterfaces(const ConnectorProfile& profile) override;

@@ -25,7 +25,7 @@ class EventListenerBase : public ConnectorDataListener {
  protected:
   explicit EventListenerBase(std::string event) : event_(std::move(event)) {}
   // False unless the sample is one of that event and fits the type.
-  bool take(const ConnectorInfo& info, corba::EventData& data, const DataType& type, void* value) const;
+  bool take(const ConnectorInfo& info, detail::SampleEvent& sample, const DataType& type, void* value) const;
 
   std::string event_;
 };
@@ -35,9 +35,9 @@ class EventListener final : public EventListenerBase {
  public:
   EventListener(std::string event, std::function<void(const Value&)> queue)
       : EventListenerBase(std::move(event)), queue_(std::move(queue)) {}
-  ReturnCode notify(ConnectorInfo& info, corba::EventData& data) override {
+  ReturnCode notify(ConnectorInfo& info, detail::SampleEvent& sample) override {
     Value value{};
-    if (take(info, data, data_type<Value>(), &value)) queue_(value);
+    if (take(info, sample, data_type<Value>(), &value)) queue_(value);
     return NO_CHANGE;
   }
 
@@ -48,7 +48,7 @@ class EventListener final : public EventListenerBase {
 class EventListener0 final : public EventListenerBase {
  public:
   EventListener0(std::string event, std::function<void()> queue) : EventListenerBase(std::move(event)), queue_(std::move(queue)) {}
-  ReturnCode notify(ConnectorInfo& info, corba::EventData&) override {
+  ReturnCode notify(ConnectorInfo& info, detail::SampleEvent&) override {
     if (is_event(info, event_)) queue_();
     return NO_CHANGE;
   }

@@ -16,10 +16,6 @@
 #include <string>
 #include <vector>
 
-namespace base {
-class Clock;
-}
-
 namespace RTC {
 
 class RTObject_impl;
@@ -86,10 +82,6 @@ class ExecutionContextBase {
   std::string getTypeName() const;
 
  protected:
-  // What time it is for the components now, for threads that the context does not run, such as those that receive data for them. It may
-  // outlive the context. Null: the time of the system.
-  virtual std::shared_ptr<const base::Clock> sharedClock() const { return nullptr; }
-
   // Called by the functions above at the moments their names say; a code other than RTC_OK ends the operation with it.
   virtual RTC::ReturnCode_t onStarting() { return RTC::RTC_OK; }
   virtual RTC::ReturnCode_t onStarted() { return RTC::RTC_OK; }
@@ -120,9 +112,6 @@ class ExecutionContextBase {
   // a period. Called without a lock.
   virtual void onWakeUp() {}
 
-  // Simulated contexts return their own; it is the current clock (base/clock.h) of components while they are called.
-  virtual const base::Clock& contextClock() const;
-
   // One cycle: transitions, onExecute (onError), onStateUpdate. Nothing happens while the context is stopped.
   void invokeWorker();
   void invokeWorkerPreDo(std::size_t lane = 0);
@@ -136,6 +125,8 @@ class ExecutionContextBase {
   // For onStopping, before the thread is joined: waits for the callback that runs, as long as stop() may. False, and a log line, when it
   // does not return.
   bool waitForCallbacks();
+  // A log line names the component whose callback runs and what follows from that. Later waits for this call fail at once.
+  void complainAboutCallback(const char* consequence);
   // How long a member of another process may take for a callback before it counts as lost: option member_timeout [s], default 1.
   // Without end one that hangs holds up the context; one that is dead does not, and a log line names who has taken more than a second.
   static constexpr std::chrono::nanoseconds without_end = std::chrono::nanoseconds::max();
@@ -155,12 +146,12 @@ class ExecutionContextBase {
   class Changing;
   struct Transition;
   RTC::ReturnCode_t make(const Transition& transition, RTC::LightweightRTObject_ptr comp);
-  // Ends the membership of an owner: after return the context does not call it any more, but a callback that outlasts `patience` still
+  // Ends the membership of an owner: after return the context does not call it any more, but a callback that outlasts `timeout` still
   // runs. Returns how many owners are left.
-  std::size_t unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds patience = default_callback_timeout);
+  std::size_t unbindComponent(RTC::RTObject_impl* rtc, std::chrono::nanoseconds timeout = default_callback_timeout);
   // Ends all memberships at once, without waiting for callbacks: for a context that ends.
   void dismissMembers();
-  // stop() with another end of its patience.
+  // stop() with another deadline.
   RTC::ReturnCode_t stopBy(std::chrono::steady_clock::time_point deadline);
   // How long whoever ends something waits for callbacks of components: option callback_timeout [s].
   std::chrono::nanoseconds callbackTimeout() const;
@@ -173,8 +164,6 @@ class ExecutionContextBase {
   // Waits until no callback of a member runs on another thread; false on time-out.
   bool waitForQuiet(std::chrono::nanoseconds timeout);
   std::chrono::nanoseconds callbackPatience() const;
-  // About the one that runs; nobody waits for it any more.
-  void complainAboutCallback(const char* consequence);
   std::unique_ptr<Impl> impl_;
 };
 

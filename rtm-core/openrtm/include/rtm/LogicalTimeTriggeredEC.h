@@ -3,21 +3,16 @@
 // without a tick.
 #pragma once
 
-#include <coil/Task.h>
-#include <rtm/ExecutionContextServant.h>
+#include <rtm/ContextThread.h>
 #include <rtm/idl/LogicalTimeTriggeredECSkel.h>
 
 #include <memory>
-
-namespace base {
-class Clock;
-}
 
 namespace RTC {
 
 class Manager;
 
-class LogicalTimeTriggeredEC : public ExecutionContextServant<POA_OpenRTM::LogicalTimeTriggeredEC>, public coil::Task {
+class LogicalTimeTriggeredEC : public ThreadedExecutionContext<POA_OpenRTM::LogicalTimeTriggeredEC> {
  public:
   LogicalTimeTriggeredEC();
   ~LogicalTimeTriggeredEC() override;
@@ -28,28 +23,12 @@ class LogicalTimeTriggeredEC : public ExecutionContextServant<POA_OpenRTM::Logic
   // The time of the cycle that runs or ran last; 0 before the first.
   void get_time(CORBA::ULong& sec, CORBA::ULong& usec) override;
 
-  int open(void* args) override;
-  int svc() override;
-  int close(unsigned long flags) override;
-
-  // Both bases have operations of these names; components call the context's.
-  RTC::ReturnCode_t start() override { return ExecutionContextBase::start(); }
-  RTC::ReturnCode_t stop() override { return ExecutionContextBase::stop(); }
-
  protected:
-  RTC::ReturnCode_t onStarted() override;
-  RTC::ReturnCode_t onStopping() override;
-  void onWakeUp() override;
-  const base::Clock& contextClock() const override;
-  std::shared_ptr<const base::Clock> sharedClock() const override;
+  void beginTick(std::chrono::nanoseconds time) override;
 
  private:
-  class Steps;
   struct Time;
-  const std::shared_ptr<Time> clock_;
-  std::unique_ptr<Steps> steps_;
-  class Worker;
-  std::unique_ptr<Worker> worker_;
+  const std::shared_ptr<Time> time_;
 };
 
 }  // namespace RTC

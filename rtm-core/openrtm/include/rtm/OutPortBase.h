@@ -18,7 +18,7 @@ class OutPortBase : public DataPortBase<OutPortConnector> {
   void retire();
   bool writeValue(const void* value);
 
-  ReturnCode_t prepare(ConnectorProfile& profile, const corba::ConnectionTerms& terms) override;
+  ReturnCode_t prepare(ConnectorProfile& profile, const detail::PortTerms& terms) override;
 };
 
 }  // namespace RTC

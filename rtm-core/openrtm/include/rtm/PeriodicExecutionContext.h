@@ -4,20 +4,18 @@
 
 #include <coil/Guard.h>
 #include <coil/Mutex.h>
-#include <coil/Task.h>
 #include <coil/TimeValue.h>
-#include <rtm/ExecutionContextServant.h>
+#include <rtm/ContextThread.h>
 #include <rtm/PeriodicLoop.h>
 
 #include <atomic>
-#include <memory>
 #include <vector>
 
 namespace RTC {
 
 class Manager;
 
-class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::ExecutionContextService>, public coil::Task {
+class PeriodicExecutionContext : public ThreadedExecutionContext<POA_RTC::ExecutionContextService> {
  public:
   explicit PeriodicExecutionContext(const std::string& name = "periodic_ec");
   ~PeriodicExecutionContext() override;
@@ -25,13 +23,7 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   // Also takes cpu_affinity (a comma list of processor numbers), priority (1-99: real-time scheduling) and stack_size (like 256k).
   void init(coil::Properties& props) override;
 
-  int open(void* args) override;
   int svc() override;
-  int close(unsigned long flags) override;
-
-  // Both bases have operations of these names; components call the context's.
-  RTC::ReturnCode_t start() override { return ExecutionContextBase::start(); }
-  RTC::ReturnCode_t stop() override { return ExecutionContextBase::stop(); }
 
  protected:
   RTC::ReturnCode_t onStarted() override;
@@ -39,14 +31,6 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
   void onWakeUp() override;
   // For destructors of derived classes whose members the thread uses: ends it and waits for that.
   void endThread();
-  // The two halves of a cycle, on the context's thread.
-  virtual void stepTransitions() { invokeWorkerPreDo(); }
-  virtual void stepExecution() {
-    invokeWorkerDo();
-    invokeWorkerPostDo();
-  }
-  // True while the thread is to go on.
-  bool threadRunning() const;
 
   // What svc() of sources of 1.x and 2.x reads; a loop may as well call threadRunning, getPeriod, invokeWorkerPreDo, Do and PostDo, or step
   // its members one by one. Nobody here makes running_ false; who asks for a transition, and the end of the thread, make it true.
@@ -74,10 +58,6 @@ class PeriodicExecutionContext : public ExecutionContextServant<POA_RTC::Executi
  private:
   void wakeLoop();
 
-  class Steps;
-  std::unique_ptr<Steps> steps_;
-  class Worker;
-  std::unique_ptr<Worker> worker_;
   std::vector<unsigned> processors_;
   int priority_ = 0;
 };

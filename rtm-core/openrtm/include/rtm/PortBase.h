@@ -18,11 +18,11 @@
 #include "rtm/SystemLogger.h"
 #include "rtm/idl/RTCSkel.h"
 
-namespace corba {
-struct ConnectionTerms;
-}
-
 namespace RTC {
+
+namespace detail {
+struct PortTerms;  // of a connection
+}
 
 class ConnectionCallback;
 
@@ -93,10 +93,10 @@ class PortBase {
   // For the ports of this library, in the order in which a connection calls them (corba/ports/port_servant.h). The terms are what
   // read_terms has found in the profile when the port heard of the connection.
   virtual void complete_profile(ConnectorProfile&) {}
-  virtual std::shared_ptr<corba::ConnectionTerms> read_terms(const ConnectorProfile& profile);
-  virtual ReturnCode_t prepare(ConnectorProfile&, const corba::ConnectionTerms&) { return RTC_OK; }
-  virtual ReturnCode_t publish(ConnectorProfile& profile, const corba::ConnectionTerms&) { return publishInterfaces(profile); }
-  virtual ReturnCode_t subscribe(const ConnectorProfile& profile, const corba::ConnectionTerms&) { return subscribeInterfaces(profile); }
+  virtual std::shared_ptr<detail::PortTerms> read_terms(const ConnectorProfile& profile);
+  virtual ReturnCode_t prepare(ConnectorProfile&, const detail::PortTerms&) { return RTC_OK; }
+  virtual ReturnCode_t publish(ConnectorProfile& profile, const detail::PortTerms&) { return publishInterfaces(profile); }
+  virtual ReturnCode_t subscribe(const ConnectorProfile& profile, const detail::PortTerms&) { return subscribeInterfaces(profile); }
   // Adds to the PortProfile what may change while the port is there.
   virtual void complete(PortProfile&) const {}
   // No call from outside is running or accepted when it returns; connections stay. Classes that end the line of derivation call it first in

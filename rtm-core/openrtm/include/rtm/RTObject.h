@@ -336,7 +336,7 @@ class RTObject_impl : public virtual POA_OpenRTM::DataFlowComponent, public virt
     return listener;
   }
 
-  // exit() with another end of its patience.
+  // exit() with another deadline.
   ReturnCode_t exitBy(std::chrono::steady_clock::time_point deadline);
   // Returns its number. A listener may be called a little longer than until it is removed.
   using StatusListener = std::function<void(Status, const std::string&)>;
