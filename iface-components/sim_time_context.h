@@ -56,6 +56,7 @@ class SimTimeContext : public RTC::PeriodicExecutionContext, private iface::Tick
   shm::Participant::State run_in_group(const std::shared_ptr<shm::Participant>& participant);
   void run_tick(const shm::Tick& tick) override;
   void run_requests() override;
+  void report_long_call() override;
   std::uint64_t hash_of_states() const;
   void interrupt();
   void say_once(const std::string& line);

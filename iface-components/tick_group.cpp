@@ -17,7 +17,7 @@ using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds longest_wait_of_group = 100ms;  // for a tick, before all participants are looked at
-constexpr std::chrono::milliseconds group_patience = 20ms;          // with a call, before another thread goes on
+constexpr std::chrono::milliseconds longest_alone = 20ms;           // of a call, before another thread goes on
 constexpr nanoseconds worth_sharing = 500us;                        // calls of a tick
 constexpr int quiet_looks = 50;                                     // of a thread that helps, before it sleeps until it is called
 constexpr std::size_t most_group_threads = 64;
@@ -186,7 +186,7 @@ void TickGroup::Impl::rest(Shared::Lock& data) {
   while (true) {
     const auto seen = data->calls;
     ++data->resting;
-    const bool is_called = data.wait_for(work, group_patience, is_needed);
+    const bool is_called = data.wait_for(work, longest_alone, is_needed);
     --data->resting;
     if (is_called) break;
     if (!data->awaited && data->calls == seen && (data->next < data->due.size() || waitable(*data))) {
@@ -281,11 +281,20 @@ TickGroup::Place::Place(const Key& key, std::shared_ptr<shm::Participant> partic
 }
 
 TickGroup::Place::~Place() {
-  auto data = group_->impl_->shared.lock();
-  node_->is_removed = true;
-  std::erase(data->nodes, node_);
-  if (data->awaited == node_) node_->participant->interrupt();
-  data.wait(node_->changed, [&] { return !node_->is_called && data->awaited != node_; });
+  auto& shared = group_->impl_->shared;
+  const auto is_free_within = [&](std::chrono::nanoseconds timeout) {
+    auto data = shared.lock();
+    return data.wait_for(node_->changed, timeout, [&] { return !node_->is_called && data->awaited != node_; });
+  };
+  {
+    auto data = shared.lock();
+    node_->is_removed = true;
+    std::erase(data->nodes, node_);
+    if (data->awaited == node_) node_->participant->interrupt();
+  }
+  if (is_free_within(long_wait)) return;
+  node_->ticked.report_long_call();
+  while (!is_free_within(long_wait)) continue;
 }
 
 shm::Participant::State TickGroup::Place::wait() {

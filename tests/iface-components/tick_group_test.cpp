@@ -36,6 +36,20 @@ class TickedContext final : public TickGroup::Ticked {
     ++requests_;
     changed_.notify_all();
   }
+  void report_long_call() override {
+    const std::lock_guard lock(mutex_);
+    ++reports_;
+    changed_.notify_all();
+  }
+  // That a call of it has not returned while its place is to end.
+  bool await_report() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 60s, [&] { return reports_ > 0; });
+  }
+  int reports() {
+    const std::lock_guard lock(mutex_);
+    return reports_;
+  }
   bool await_requests(int count) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, 60s, [&] { return requests_ >= count; });
@@ -50,7 +64,7 @@ class TickedContext final : public TickGroup::Ticked {
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  int requests_ = 0;
+  int requests_ = 0, reports_ = 0;
   std::shared_ptr<Participant> participant_;
   std::unique_ptr<TickGroup::Place> place_;
 };
@@ -108,6 +122,28 @@ TEST(TickGroup, a_context_that_hangs_keeps_no_other_one_from_its_tick) {
   may_go_on = true;
   server.join();
   EXPECT_EQ(hanging.ticks, std::vector<std::int64_t>{0});
+}
+
+TEST(TickGroup, a_context_whose_call_hangs_while_its_place_ends_reports_that_once_and_the_place_ends_when_the_call_returns) {
+  BarrierFixture f;
+  std::atomic<bool> may_go_on{false}, is_called{false}, has_ended{false};
+  TickedContext hanging(f, "hanging");
+  hanging.at_tick = [&] {
+    is_called = true;
+    while (!may_go_on) std::this_thread::yield();
+  };
+  std::thread server([&] { f.barrier->tick(0ms, 0); });
+  while (!is_called) std::this_thread::yield();
+  std::thread ender([&] {
+    hanging.end();
+    has_ended = true;
+  });
+  EXPECT_TRUE(hanging.await_report());
+  EXPECT_FALSE(has_ended);
+  may_go_on = true;
+  ender.join();
+  server.join();
+  EXPECT_EQ(hanging.reports(), 1);
 }
 
 TEST(TickGroup, one_that_leaves_is_no_longer_waited_for_and_the_others_go_on) {
