@@ -14,6 +14,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/file_handle.h"
 #include "base/guarded.h"
 
 namespace base {
@@ -66,20 +67,6 @@ std::optional<uid_t> owner(uid_t account, std::uint64_t inode) { return inode !=
 struct Found {
   bool is_there = false;
   std::optional<uid_t> account;
-};
-
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int value() const { return value_; }
-
- private:
-  int value_;
 };
 
 bool is_question_sent(int netlink, const End& local, const End& remote) {
@@ -154,11 +141,11 @@ std::optional<uid_t> look_up(const End& local, const End& remote) {
 std::optional<uid_t> account_of(const End& theirs, const End& ours) {
   expect_no_data_held();
   if (theirs.family != ours.family) return std::nullopt;
-  const Descriptor netlink(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
-  if (netlink.value() >= 0) {
-    if (const Found found = ask_kernel(netlink.value(), theirs, ours); found.is_there) return found.account;
+  const FileHandle netlink(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_SOCK_DIAG));
+  if (netlink.get() >= 0) {
+    if (const Found found = ask_kernel(netlink.get(), theirs, ours); found.is_there) return found.account;
     // A kernel that can be asked at all knows our own end: then the other one is not here.
-    if (ask_kernel(netlink.value(), ours, theirs).is_there) return std::nullopt;
+    if (ask_kernel(netlink.get(), ours, theirs).is_there) return std::nullopt;
   }
   return look_up(theirs, ours);
 }

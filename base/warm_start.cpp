@@ -22,6 +22,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/packet.h"
+
 namespace base {
 namespace {
 
@@ -39,32 +41,18 @@ bool has_one_thread() {
   return !error && std::distance(begin(threads), end(threads)) == 1;
 }
 
-void take_descriptors(msghdr& message, Order& order) {
-  for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
-    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS || part->cmsg_len != CMSG_LEN(2 * sizeof(int))) continue;
-    std::array<int, 2> both{};
-    std::memcpy(both.data(), CMSG_DATA(part), sizeof both);
-    order.output = both[0];
-    order.watcher = both[1];
-  }
-}
-
 // Nothing: nobody will ask any more.
 std::optional<Order> next_order() {
   static std::vector<char> buffer(longest_request);
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(2 * sizeof(int))> control{};
-  iovec data{buffer.data(), buffer.size()};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control.data();
-  message.msg_controllen = control.size();
-  const ssize_t size = recvmsg(orders, &message, MSG_CMSG_CLOEXEC);
-  if (size <= 0) return std::nullopt;
+  auto packet = receive_packet(orders, std::as_writable_bytes(std::span(buffer)));
+  if (!packet) return std::nullopt;
   Order order;
-  take_descriptors(message, order);
+  if (packet->files.size() == 2) {
+    order.output = packet->files[0].release();
+    order.watcher = packet->files[1].release();
+  }
   auto* list = &order.words;
-  for (const char *at = buffer.data(), *end = at + size; at < end; at += std::strlen(at) + 1) {
+  for (const char *at = buffer.data(), *end = at + packet->size; at < end; at += std::strlen(at) + 1) {
     if (*at == '\0' && list == &order.words) {
       list = &order.environment;
     } else {

@@ -108,7 +108,7 @@ bool is_alive(const ProcessMark& mark) {
 ProcessLife::ProcessLife(const ProcessMark& mark) : mark_(mark) {
   const bool is_here = mark.pid > 0 && mark.start_time != 0 && mark.pid_namespace == own_namespace();
   if (!is_here) return;
-  FileHandle pidfd(static_cast<int>(::syscall(SYS_pidfd_open, mark.pid, 0)));
+  base::FileHandle pidfd(static_cast<int>(::syscall(SYS_pidfd_open, mark.pid, 0)));
   if (pidfd.get() >= 0 && shm::is_alive(mark)) pidfd_ = std::move(pidfd);
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <tuple>
 
-#include "shm/file_handle.h"
+#include "base/file_handle.h"
 #include "shm/layout.h"
 
 namespace shm {
@@ -39,7 +39,7 @@ class ProcessLife {
 
  private:
   ProcessMark mark_;
-  FileHandle pidfd_;  // none: the kernel would not give one, or the process can't be judged
+  base::FileHandle pidfd_;  // none: the kernel would not give one, or the process can't be judged
 };
 
 // (pid << 32) | number; the number is unique in this process. Never 0.

@@ -11,8 +11,8 @@
 #include <map>
 #include <system_error>
 
+#include "base/file_handle.h"
 #include "base/text.h"
-#include "shm/file_handle.h"
 #include "shm/process.h"
 
 namespace shm {
@@ -20,7 +20,7 @@ namespace {
 
 struct Entry {
   std::shared_ptr<Watched> watched;
-  FileHandle pidfd;
+  base::FileHandle pidfd;
   std::uint64_t number = 0;
 };
 
@@ -29,7 +29,7 @@ constexpr std::size_t purge_size = 256;
 }  // namespace
 
 struct ProcessWatch::State {
-  FileHandle epoll, stop;
+  base::FileHandle epoll, stop;
   struct Table {
     std::map<ProcessKey, Entry> entries;
     std::uint64_t next_number = 1;  // 0 is the stop event
@@ -49,8 +49,8 @@ ProcessWatch::ProcessWatch() : state_(std::make_unique<State>()) {}
 
 base::Result<std::unique_ptr<ProcessWatch>> ProcessWatch::start() {
   std::unique_ptr<ProcessWatch> watch(new ProcessWatch());
-  watch->state_->epoll = FileHandle(epoll_create1(EPOLL_CLOEXEC));
-  watch->state_->stop = FileHandle(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  watch->state_->epoll = base::FileHandle(epoll_create1(EPOLL_CLOEXEC));
+  watch->state_->stop = base::FileHandle(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (watch->state_->epoll.get() < 0 || watch->state_->stop.get() < 0) {
     return base::Error{std::string("process watch can't start: ") + std::strerror(errno)};
   }
@@ -86,7 +86,7 @@ std::shared_ptr<const Watched> ProcessWatch::watch(const ProcessMark& mark) {
     std::erase_if(table->entries, [](const auto& entry) { return entry.second.watched.use_count() == 1; });
   }
   auto watched = std::make_shared<Watched>(mark);
-  FileHandle pidfd(mark.pid > 0 ? static_cast<int>(syscall(SYS_pidfd_open, mark.pid, 0)) : -1);
+  base::FileHandle pidfd(mark.pid > 0 ? static_cast<int>(syscall(SYS_pidfd_open, mark.pid, 0)) : -1);
   // The pid may belong to another process by now, so it is asked only after the pidfd holds it.
   if (!is_alive(mark)) {
     watched->dead_.store(true, std::memory_order_release);

@@ -17,10 +17,10 @@
 #include <utility>
 
 #include "base/cut_guard.h"
+#include "base/file_handle.h"
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "shm/file_handle.h"
 #include "shm/futex.h"
 #include "shm/process.h"
 #include "shm/segment_place.h"
@@ -156,7 +156,7 @@ base::Result<Eviction> evict(const SegmentName& name, const std::string& path) {
     if (::unlink(path.c_str()) == 0) return Eviction{Judgement::removed, 0};
     return Eviction{errno == ENOENT ? Judgement::gone : Judgement::of_another, 0};
   }
-  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  base::FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) {
     if (errno == ENOENT) return Eviction{Judgement::gone, 0};
     return base::Error{"shared memory " + name.text() + " exists and can't be opened: " + reason()};
@@ -204,8 +204,8 @@ std::string check_header(const Header& header, const SegmentName& name, std::uin
   if (header.layout_version != layout_version) {
     return "has layout version " + std::to_string(header.layout_version) + ", expected " + std::to_string(layout_version);
   }
-  if (header.type != static_cast<std::uint32_t>(name.type)) return "has a type other than its name says";
-  if (header.total_size > file_size || header.total_size > max_segment) return "is shorter than its header says";
+  if (header.type != static_cast<std::uint32_t>(name.type)) return "has another type than its name";
+  if (header.total_size > file_size || header.total_size > max_segment) return "is shorter than its header requires";
   for (const Area& area : header.areas) {
     const bool is_inside = area.offset <= header.total_size && area.size <= header.total_size - area.offset;
     const bool is_consistent =
@@ -285,7 +285,7 @@ base::Result<Segment> Segment::create(const SegmentName& name, const Geometry& g
   if (size > max_segment) return base::Error{"shared memory " + name.text() + " would need " + std::to_string(size) + " bytes"};
   auto made = make_file(name, size, access);
   if (!made) return made.error();
-  FileHandle file(*made);
+  base::FileHandle file(*made);
   std::shared_ptr<void> base = map_file(file.get(), size).base;
   if (!base) return base::Error{"shared memory " + name.text() + " can't be mapped: " + reason()};
 
@@ -347,7 +347,7 @@ base::Result<void> Segment::take_name(int file) {
     path = *refuge + "/" + name_.text();
     base::log(base::Level::warn, "shm", "shared memory {} is taken by another user; ours is in {}", name_.text(), *refuge);
   }
-  return base::Error{"shared memory " + name_.text() + " is taken again and again by others"};
+  return base::Error{"shared memory " + name_.text() + " is taken repeatedly by other processes"};
 }
 
 base::Result<Segment> Segment::open(const SegmentName& name) {
@@ -357,7 +357,7 @@ base::Result<Segment> Segment::open(const SegmentName& name) {
 
 base::Result<Segment> Segment::open_at(const SegmentName& name, const std::string& path) {
   base::expect_no_data_held();
-  FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  base::FileHandle file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (file.get() < 0) return base::Error{"shared memory " + name.text() + " can't be opened: " + reason()};
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) return base::Error{"shared memory " + name.text() + " can't be read: " + reason()};

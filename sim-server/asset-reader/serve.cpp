@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "asset-reader/jobs.h"
+#include "base/packet.h"
 #include "reader/protocol.h"
 
 namespace sim {
@@ -67,26 +68,15 @@ std::jthread end_with_server() {
 
 struct Request {
   std::string words;
-  int content = -1;
+  base::FileHandle content;
 };
 
 bool receive(Request& request) {
   request.words.resize(most_request_bytes);
-  iovec part{request.words.data(), request.words.size()};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  ssize_t count = 0;
-  do count = ::recvmsg(reader_socket, &message, MSG_CMSG_CLOEXEC);
-  while (count < 0 && errno == EINTR);
-  if (count <= 0) return false;
-  request.words.resize(static_cast<std::size_t>(count));
-  request.content = -1;
-  if (const cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr && head->cmsg_type == SCM_RIGHTS)
-    std::memcpy(&request.content, CMSG_DATA(head), sizeof(int));
+  auto packet = base::receive_packet(reader_socket, std::as_writable_bytes(std::span(request.words)));
+  if (!packet) return false;
+  request.words.resize(packet->size);
+  request.content = packet->files.empty() ? base::FileHandle() : std::move(packet->files.front());
   return true;
 }
 
@@ -105,22 +95,6 @@ std::string all_of(int file) {
   return bytes;
 }
 
-bool send(const AnswerHead& head, int memory) {
-  iovec part{const_cast<AnswerHead*>(&head), sizeof head};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  cmsghdr* rights = CMSG_FIRSTHDR(&message);
-  rights->cmsg_level = SOL_SOCKET;
-  rights->cmsg_type = SCM_RIGHTS;
-  rights->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(rights), &memory, sizeof(int));
-  return ::sendmsg(reader_socket, &message, MSG_NOSIGNAL) == sizeof head;
-}
-
 // False: the server has gone, or there is no memory for an answer.
 bool answer(const Request& request) {
   ArrayReader in(std::as_bytes(std::span(request.words)));
@@ -130,8 +104,9 @@ bool answer(const Request& request) {
   FileLog files;
   const std::string path = in.text(most_path);
   const bool has_content = in.number<std::uint64_t>() != 0;
-  const std::string content = has_content && request.content >= 0 ? all_of(request.content) : std::string();
-  const int memory = ::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  const std::string content = has_content && request.content.get() >= 0 ? all_of(request.content.get()) : std::string();
+  const base::FileHandle made(::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  const int memory = made.get();
   if (memory < 0) return false;
   ArrayWriter out(memory);
   Job job{path, in, has_content, {reinterpret_cast<const std::uint8_t*>(content.data()), content.size()}, files, out};
@@ -147,11 +122,8 @@ bool answer(const Request& request) {
     if (::write(memory, padded.data(), padded.size()) != static_cast<ssize_t>(padded.size())) return false;
   }
   put(rest, files.stamps());
-  const bool is_sent =
-      rest.finish() && ::fcntl(memory, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0 && send(result, memory);
-  ::close(memory);
-  if (request.content >= 0) ::close(request.content);
-  return is_sent;
+  return rest.finish() && ::fcntl(memory, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0 &&
+         base::send_packet(reader_socket, std::as_bytes(std::span(&result, 1)), std::span(&memory, 1));
 }
 
 }  // namespace

@@ -18,6 +18,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/file_handle.h"
+#include "base/packet.h"
 #include "base/text.h"
 
 namespace sim {
@@ -27,24 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds stop_period{200};  // after which stop() is noticed
 
-class Descriptor {
- public:
-  explicit Descriptor(int file = -1) : file_(file) {}
-  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (file_ >= 0) ::close(file_);
-  }
-  int get() const { return file_; }
-  int release() { return std::exchange(file_, -1); }
-
- private:
-  int file_;
-};
-
 std::optional<Clock::time_point>& thread_deadline() {
   thread_local std::optional<Clock::time_point> when;
   return when;
@@ -52,68 +36,29 @@ std::optional<Clock::time_point>& thread_deadline() {
 
 base::Error broken(const char* what, int code) { return {std::string(what) + ": " + std::generic_category().message(code)}; }
 
-// One packet with at most one descriptor.
-bool send_packet(int socket, const std::string& bytes, int file) {
-  iovec part{const_cast<char*>(bytes.data()), bytes.size()};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  if (file >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    cmsghdr* head = CMSG_FIRSTHDR(&message);
-    head->cmsg_level = SOL_SOCKET;
-    head->cmsg_type = SCM_RIGHTS;
-    head->cmsg_len = CMSG_LEN(sizeof(int));
-    std::memcpy(CMSG_DATA(head), &file, sizeof(int));
-  }
-  ssize_t count = 0;
-  do count = ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
-  while (count < 0 && errno == EINTR);
-  return count == static_cast<ssize_t>(bytes.size());
-}
-
-// The head and its descriptor; -1 when something else came. Any further descriptors are closed.
+// The head and its descriptor; none when something else came.
 struct Packet {
   bool is_end = false;
   AnswerHead head;
-  Descriptor file;
+  base::FileHandle file;
 };
-Packet receive_packet(int socket) {
+Packet receive_answer(int socket) {
   Packet packet;
-  iovec part{&packet.head, sizeof packet.head};
-  alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  ssize_t count = 0;
-  do count = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
-  while (count < 0 && errno == EINTR);
-  packet.is_end = count <= 0;
-  std::vector<Descriptor> files;
-  for (cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr; head = CMSG_NXTHDR(&message, head)) {
-    if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SCM_RIGHTS) continue;
-    for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= head->cmsg_len; at += sizeof(int)) {
-      int file = -1;
-      std::memcpy(&file, reinterpret_cast<const char*>(head) + at, sizeof file);
-      files.emplace_back(file);
-    }
-  }
-  if (count == sizeof packet.head && packet.head.magic == asset_magic && files.size() == 1) packet.file = std::move(files.front());
+  auto received = base::receive_packet(socket, std::as_writable_bytes(std::span(&packet.head, 1)), MSG_DONTWAIT);
+  packet.is_end = !received;
+  if (received && received->size == sizeof packet.head && packet.head.magic == asset_magic && received->files.size() == 1)
+    packet.file = std::move(received->files.front());
   return packet;
 }
 
 // The content of a picture, for the reader to see and nobody to change.
-Descriptor memory_with(std::span<const std::uint8_t> content) {
-  Descriptor memory(::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+base::FileHandle memory_with(std::span<const std::uint8_t> content) {
+  base::FileHandle memory(::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   std::size_t done = 0;
   while (memory.get() >= 0 && done < content.size()) {
     const ssize_t count = ::write(memory.get(), content.data() + done, content.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return Descriptor();
+    if (count <= 0) return base::FileHandle();
     done += static_cast<std::size_t>(count);
   }
   return memory;
@@ -169,7 +114,7 @@ ReadDeadline::ReadDeadline(std::chrono::steady_clock::time_point when) : before_
 ReadDeadline::~ReadDeadline() { thread_deadline() = before_; }
 
 std::shared_ptr<const SealedMemory> SealedMemory::map(int file, std::uint64_t most) {
-  const Descriptor memory(file);
+  const base::FileHandle memory(file);
   errno = 0;
   constexpr int needed = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
   const int seals = ::fcntl(file, F_GET_SEALS);
@@ -187,7 +132,7 @@ SealedMemory::~SealedMemory() { ::munmap(const_cast<std::byte*>(data_), size_); 
 // A reader that was started and has not been waited for.
 struct AssetReader::Child {
   pid_t pid = 0;
-  Descriptor socket;
+  base::FileHandle socket;
 
   static base::Result<std::unique_ptr<Child>> start(const Starter& starter);
   ~Child() { static_cast<void>(end()); }
@@ -200,7 +145,7 @@ struct AssetReader::Child {
       while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
       }
       status_ = status;
-      socket = Descriptor();
+      socket = base::FileHandle();
     }
     return *status_;
   }
@@ -213,9 +158,9 @@ base::Result<std::unique_ptr<AssetReader::Child>> AssetReader::Child::start(cons
   int ends[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return broken("no socket for the reader of files", errno);
   auto child = std::make_unique<Child>();
-  child->socket = Descriptor(ends[0]);
+  child->socket = base::FileHandle(ends[0]);
   // Above the number that it gets: a descriptor that is put in its own place would stay closed on exec.
-  const Descriptor theirs(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10));
+  const base::FileHandle theirs(::fcntl(ends[1], F_DUPFD_CLOEXEC, 10));
   ::close(ends[1]);
   const auto pid = starter ? starter(theirs.get()) : run_program(theirs.get());
   if (!pid) {
@@ -253,6 +198,16 @@ struct AssetReader::State {
     started.fetch_add(1, std::memory_order_relaxed);
     return child.get();
   }
+  // False: no answer by the deadline, or the simulator ends.
+  bool await_answer(int socket, Clock::time_point deadline) const {
+    pollfd waiting{socket, POLLIN, 0};
+    while (true) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      const int ready = left > left.zero() ? ::poll(&waiting, 1, static_cast<int>(std::min(left, stop_period).count())) : 0;
+      const bool stops = is_stopped.load(std::memory_order_acquire);  // pairs with the release in stop
+      if (stops || !((ready < 0 && errno == EINTR) || (ready == 0 && Clock::now() < deadline))) return ready > 0;
+    }
+  }
   int end_reader() {
     const int status = child->end();
     child.reset();
@@ -289,6 +244,37 @@ std::optional<FileStamps> AssetReader::unchanged(const FileStamps& files) {
   return all;
 }
 
+namespace {
+
+std::string words_of(const AssetReader::Question& question, const ReadLimits& limits) {
+  ArrayWriter packet;
+  packet.number(RequestHead{asset_magic, question.kind, static_cast<std::uint64_t>(limits.cpu.count())});
+  packet.text(question.path);
+  packet.number<std::uint64_t>(question.content.data() == nullptr ? 0 : 1);
+  return packet.bytes() + question.details;
+}
+
+// What a reader that answered made of the file; an error when its answer is damaged.
+base::Result<AssetReader::Answer> result_of(Packet& answer, const FileStamp& stamp) {
+  errno = 0;
+  const auto memory = answer.file.get() >= 0 ? SealedMemory::map(answer.file.release(), most_answer_bytes) : nullptr;
+  const bool is_short = !memory && errno == ENOMEM;
+  const std::size_t padded = memory ? (static_cast<std::size_t>(answer.head.result_bytes) + 7) / 8 * 8 : 0;
+  if (!memory || answer.head.result_bytes > memory->bytes().size() || padded > memory->bytes().size())
+    return base::Error{is_short ? "is too large for the memory" : "is damaged: its reader sent no result"};
+  ArrayReader rest(memory->bytes().subspan(padded));
+  FileStamps files = take_stamps(rest);
+  if (!rest.ok()) files = {stamp};
+  const auto result = memory->bytes().first(static_cast<std::size_t>(answer.head.result_bytes));
+  if (answer.head.is_error == 0) return AssetReader::Answer{std::nullopt, memory, result, std::move(files)};
+  std::string why(reinterpret_cast<const char*>(result.data()), std::min<std::size_t>(result.size(), 1000));
+  // One line of printable characters, whatever the reader made of the file.
+  for (char& c : why) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
+  return AssetReader::Answer{base::Error{why}, nullptr, {}, std::move(files)};
+}
+
+}  // namespace
+
 AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits& limits) {
   base::expect_no_data_held();
   const auto mine = state_->turn.take();
@@ -301,17 +287,15 @@ AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits&
     state_->deadly.erase(known);
   }
 
-  ArrayWriter packet;
-  packet.number(RequestHead{asset_magic, question.kind, static_cast<std::uint64_t>(limits.cpu.count())});
-  packet.text(question.path);
-  packet.number<std::uint64_t>(is_file ? 0 : 1);
-  const std::string words = packet.bytes() + question.details;
+  const std::string words = words_of(question, limits);
   if (words.size() > most_request_bytes || question.path.size() > most_path || question.path.find('\0') != std::string::npos)
     return fail("has too long a name", {});
-  Descriptor content;
+  base::FileHandle content;
+  std::vector<int> sent;
   if (!is_file) {
     content = memory_with(question.content);
     if (content.get() < 0) return fail("the memory is not enough to read it", {});
+    sent.push_back(content.get());
   }
 
   const auto own_deadline = Clock::now() + limits.wall;
@@ -325,17 +309,9 @@ AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits&
     if (!reader) return fail(reader.error().message, {});
     Packet answer;
     bool is_late = false;
-    if (send_packet((*reader)->socket.get(), words, content.get())) {
-      pollfd waiting{(*reader)->socket.get(), POLLIN, 0};
-      while (true) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-        const int ready = left > left.zero() ? ::poll(&waiting, 1, static_cast<int>(std::min(left, stop_period).count())) : 0;
-        const bool is_stopped = state_->is_stopped.load(std::memory_order_acquire);  // pairs with the release in stop
-        if (!is_stopped && ((ready < 0 && errno == EINTR) || (ready == 0 && Clock::now() < deadline))) continue;
-        is_late = ready <= 0;
-        break;
-      }
-      if (!is_late) answer = receive_packet((*reader)->socket.get());
+    if (base::send_packet((*reader)->socket.get(), std::as_bytes(std::span(words)), sent, MSG_DONTWAIT)) {
+      is_late = !state_->await_answer((*reader)->socket.get(), deadline);
+      if (!is_late) answer = receive_answer((*reader)->socket.get());
     } else {
       answer.is_end = true;
     }
@@ -354,23 +330,11 @@ AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits&
       if (is_file && is_by_file) state_->remember(question.path, stamp, reason);
       return fail(reason, is_by_file && is_file ? FileStamps{stamp} : FileStamps{});
     }
-    errno = 0;
-    const auto memory = answer.file.get() >= 0 ? SealedMemory::map(answer.file.release(), most_answer_bytes) : nullptr;
-    const bool is_short = !memory && errno == ENOMEM;
-    const std::size_t padded = memory ? (static_cast<std::size_t>(answer.head.result_bytes) + 7) / 8 * 8 : 0;
-    if (!memory || answer.head.result_bytes > memory->bytes().size() || padded > memory->bytes().size()) {
-      state_->end_reader();
-      return fail(is_short ? "is too large for the memory" : "is damaged: its reader sent no result", {stamp});
-    }
-    ArrayReader rest(memory->bytes().subspan(padded));
-    FileStamps files = take_stamps(rest);
-    if (!rest.ok()) files = {stamp};
-    const auto result = memory->bytes().first(static_cast<std::size_t>(answer.head.result_bytes));
-    if (answer.head.is_error == 0) return {std::nullopt, memory, result, std::move(files)};
-    std::string why(reinterpret_cast<const char*>(result.data()), std::min<std::size_t>(result.size(), 1000));
-    // One line of printable characters, whatever the reader made of the file.
-    for (char& c : why) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
-    return fail(why, std::move(files));
+    auto result = result_of(answer, stamp);
+    if (!result) state_->end_reader();
+    if (!result || result->error)
+      return fail(result ? result->error->message : result.error().message, result ? result->files : FileStamps{stamp});
+    return *result;
   }
 }
 

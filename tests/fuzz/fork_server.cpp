@@ -13,46 +13,12 @@
 #include <system_error>
 
 #include "asset-reader/serve.h"
+#include "base/packet.h"
 #include "fuzz/memory_budget.h"
 #include "reader/protocol.h"
 
 namespace fuzz {
 namespace {
-
-// A byte and the descriptor.
-bool send_descriptor(int control, int file) {
-  char byte = 0;
-  iovec part{&byte, 1};
-  alignas(cmsghdr) char space[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = space;
-  message.msg_controllen = sizeof space;
-  cmsghdr* head = CMSG_FIRSTHDR(&message);
-  head->cmsg_level = SOL_SOCKET;
-  head->cmsg_type = SCM_RIGHTS;
-  head->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(head), &file, sizeof(int));
-  return ::sendmsg(control, &message, MSG_NOSIGNAL) == 1;
-}
-
-// -1: the other end is closed.
-int receive_descriptor(int control) {
-  char byte = 0;
-  iovec part{&byte, 1};
-  alignas(cmsghdr) char space[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = space;
-  message.msg_controllen = sizeof space;
-  int file = -1;
-  if (::recvmsg(control, &message, MSG_CMSG_CLOEXEC) != 1) return file;
-  if (const cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr && head->cmsg_type == SCM_RIGHTS)
-    std::memcpy(&file, CMSG_DATA(head), sizeof(int));
-  return file;
-}
 
 [[noreturn]] void be_reader(int socket, std::size_t memory) {
   ::dup2(socket, sim::reader_socket);
@@ -69,18 +35,19 @@ int receive_descriptor(int control) {
 [[noreturn]] void serve(int control, std::size_t memory) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   auto* reader = static_cast<pid_t*>(::mmap(nullptr, sizeof(pid_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  for (int socket = receive_descriptor(control); socket >= 0 && reader != MAP_FAILED; socket = receive_descriptor(control)) {
+  for (std::byte space{}; reader != MAP_FAILED;) {
+    const auto packet = base::receive_packet(control, std::span(&space, 1));
+    if (!packet || packet->files.empty()) break;
     *reader = -1;
     const pid_t between = ::fork();
     if (between == 0) {
       const pid_t pid = ::fork();
-      if (pid == 0) be_reader(socket, memory);
+      if (pid == 0) be_reader(packet->files.front().get(), memory);
       *reader = pid;
       ::_exit(0);
     }
     while (between > 0 && ::waitpid(between, nullptr, 0) < 0 && errno == EINTR) {
     }
-    ::close(socket);
     if (::send(control, reader, sizeof *reader, MSG_NOSIGNAL) != sizeof *reader) break;
   }
   ::_exit(0);
@@ -108,7 +75,9 @@ ForkServer::~ForkServer() {
 
 base::Result<pid_t> ForkServer::start(int socket) {
   pid_t pid = -1;
-  if (!send_descriptor(control_, socket) || ::recv(control_, &pid, sizeof pid, 0) != sizeof pid || pid <= 0)
+  constexpr std::byte start{};
+  if (!base::send_packet(control_, std::span(&start, 1), std::span(&socket, 1)) || ::recv(control_, &pid, sizeof pid, 0) != sizeof pid ||
+      pid <= 0)
     return base::Error{"the fork server starts no reader: " + std::generic_category().message(errno)};
   return pid;
 }

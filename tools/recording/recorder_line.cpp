@@ -14,18 +14,18 @@ namespace recorder {
 using base::Error;
 using base::Result;
 
-Result<std::pair<RecorderLine, shm::FileHandle>> RecorderLine::make() {
+Result<std::pair<RecorderLine, base::FileHandle>> RecorderLine::make() {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
     return Error{std::string("recorder: no line to it: ") + std::strerror(errno)};
-  return std::pair(RecorderLine(shm::FileHandle(ends[0])), shm::FileHandle(ends[1]));
+  return std::pair(RecorderLine(base::FileHandle(ends[0])), base::FileHandle(ends[1]));
 }
 
 Result<void> RecorderLine::send(RecorderMessage message) {
   const auto octet = static_cast<unsigned char>(message);
   // A reader that is stopped lets a handful of packets of one byte wait; none is ever waited for.
   if (::send(end_.get(), &octet, 1, MSG_NOSIGNAL | MSG_DONTWAIT) == 1) return {};
-  return Error{std::string("recorder: cannot be told anything: ") + std::strerror(errno)};
+  return Error{std::string("recorder: cannot receive messages: ") + std::strerror(errno)};
 }
 
 Result<std::optional<RecorderMessage>> RecorderLine::receive(std::chrono::milliseconds timeout) {

@@ -18,8 +18,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/file_handle.h"
 #include "base/result.h"
-#include "shm/file_handle.h"
 
 namespace recorder {
 
@@ -28,8 +28,8 @@ enum class RecorderMessage : unsigned char { recording = 1, look_again, looked, 
 class RecorderLine {
  public:
   // Both ends; the second is for the other process.
-  static base::Result<std::pair<RecorderLine, shm::FileHandle>> make();
-  explicit RecorderLine(shm::FileHandle end) : end_(std::move(end)) {}
+  static base::Result<std::pair<RecorderLine, base::FileHandle>> make();
+  explicit RecorderLine(base::FileHandle end) : end_(std::move(end)) {}
 
   // An Error: the other side has closed its end.
   base::Result<void> send(RecorderMessage message);
@@ -39,7 +39,7 @@ class RecorderLine {
   int descriptor() const { return end_.get(); }
 
  private:
-  shm::FileHandle end_;
+  base::FileHandle end_;
 };
 
 }  // namespace recorder

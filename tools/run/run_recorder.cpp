@@ -61,7 +61,7 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   if (!started) return started.error();
   line_.emplace(std::move(line->first));
   process_.emplace(std::move(*started));
-  line->second = shm::FileHandle();  // theirs alone
+  line->second = base::FileHandle();  // theirs alone
   const auto ready = wait_until("recorder", [&] { return has_told(RecorderMessage::recording, no_wait); });
   if (!ready) return ready;
   if (process_->is_running()) return {};
@@ -99,7 +99,7 @@ base::Result<void> RunRecorder::finish() {
   if (was_killed && is_ring_)
     return base::Error{"recorder: " + how + "; earlier samples are in the segments of the ring: rtse recording repair " + file_ +
                        " puts it together"};
-  if (was_killed) return base::Error{"recorder: " + how + "; what came before is in the file"};
+  if (was_killed) return base::Error{"recorder: " + how + "; earlier samples are in the file"};
   return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};
 }
 

@@ -15,6 +15,8 @@
 #include <string>
 #include <utility>
 
+#include "base/file_handle.h"
+#include "base/packet.h"
 #include "run/same_math.h"
 
 namespace editor {
@@ -24,17 +26,6 @@ using base::Error;
 using base::Result;
 
 constexpr int answer_limit = 5'000;  // [ms] for a process to be made
-
-struct Descriptor {
-  int number = -1;
-  explicit Descriptor(int opened) : number(opened) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number >= 0) close(number);
-  }
-  int release() { return std::exchange(number, -1); }
-};
 
 std::string request_of(const ProgramCall& call) {
   std::string text;
@@ -48,31 +39,15 @@ std::string request_of(const ProgramCall& call) {
   return text;
 }
 
-bool send_with(int line, const std::string& text, int output, int watcher) {
-  const std::array both{output, watcher};
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof both)> control{};
-  iovec data{const_cast<char*>(text.data()), text.size()};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control.data();
-  message.msg_controllen = control.size();
-  cmsghdr* part = CMSG_FIRSTHDR(&message);
-  part->cmsg_level = SOL_SOCKET;
-  part->cmsg_type = SCM_RIGHTS;
-  part->cmsg_len = CMSG_LEN(sizeof both);
-  std::memcpy(CMSG_DATA(part), both.data(), sizeof both);
-  return sendmsg(line, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
-}
-
 }  // namespace
 
 std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<std::string, std::string> environment, Reporter& reporter) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
-  Descriptor ours(ends[0]), theirs(ends[1]);
+  base::FileHandle ours(ends[0]);
+  const base::FileHandle theirs(ends[1]);
   ProgramCall call{{own_program(name), "--warm"}, std::move(environment), ""};
-  call.input = theirs.number;
+  call.input = theirs.get();
   auto started = ChildProcess::start(call);
   if (!started) return std::nullopt;
   return WarmProgram(std::move(*started), call.words.front(), ours.release(), reporter);
@@ -92,21 +67,23 @@ bool WarmProgram::is_there() const {
 Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
   if (*is_silent_ || !call.folder.empty() || call.input >= 0) return ChildProcess::start(call);
   const bool collects = call.output.empty();
-  Descriptor output(collects ? memfd_create("output", MFD_CLOEXEC)
-                             : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
+  base::FileHandle output(collects ? memfd_create("output", MFD_CLOEXEC)
+                                   : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
   std::array<int, 2> ends{-1, -1};
-  if (output.number < 0 || pipe2(ends.data(), O_CLOEXEC) != 0) return ChildProcess::start(call);
-  Descriptor watched(ends[0]);
-  Descriptor watcher(ends[1]);
-  if (!send_with(line_, request_of(call), output.number, watcher.number)) return ChildProcess::start(call);
-  close(watcher.release());  // theirs alone: its end is theirs
-  pollfd event{watched.number, POLLIN, 0};
+  if (output.get() < 0 || pipe2(ends.data(), O_CLOEXEC) != 0) return ChildProcess::start(call);
+  base::FileHandle watched(ends[0]);
+  base::FileHandle watcher(ends[1]);
+  const std::string request = request_of(call);
+  const std::array sent{output.get(), watcher.get()};
+  if (!base::send_packet(line_, std::as_bytes(std::span(request)), sent)) return ChildProcess::start(call);
+  watcher = base::FileHandle();  // theirs alone: its end is theirs
+  pollfd event{watched.get(), POLLIN, 0};
   int pid = 0;
   const int answers = poll(&event, 1, answer_limit);
   if (answers == 0 && !is_silent_->exchange(true))
     reporter_->warn(std::filesystem::path(path_).filename().string() + ": the prefork server did not respond within " +
                     std::to_string(answer_limit / 1000) + " s; processes are started directly");
-  if (answers <= 0 || read(watched.number, &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
+  if (answers <= 0 || read(watched.get(), &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
   ChildProcess made(pid, collects ? output.release() : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
   made.watched_ = watched.release();
   return made;

@@ -24,7 +24,7 @@
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"
-#include "shm/file_handle.h"
+#include "base/file_handle.h"
 
 namespace editor {
 namespace {
@@ -98,8 +98,8 @@ std::string for_seed(const std::string& file, std::uint64_t seed) {
 }
 
 // A file that is read from its beginning, and gone when all have closed it.
-Result<shm::FileHandle> memory_file(const std::string& text) {
-  shm::FileHandle file(memfd_create("options", MFD_CLOEXEC));
+Result<base::FileHandle> memory_file(const std::string& text) {
+  base::FileHandle file(memfd_create("options", MFD_CLOEXEC));
   if (write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) || lseek(file.get(), 0, SEEK_SET) != 0)
     return Error{std::string("run: no memory for the options of a seed: ") + std::strerror(errno)};
   return file;

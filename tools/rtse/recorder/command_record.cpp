@@ -220,7 +220,7 @@ void look_again(const Session& session, Console& console, PortSource& source, Co
 class Orders {
  public:
   explicit Orders(bool controlled) {
-    if (controlled) line_.emplace(shm::FileHandle(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)));
+    if (controlled) line_.emplace(base::FileHandle(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)));
   }
   int descriptor() const { return line_ ? line_->descriptor() : -1; }
   // A run that has exited hears nothing, and needs not.
@@ -392,7 +392,7 @@ void report(const RecordOptions& options, std::uint64_t samples, std::uint32_t c
 
 // The end of a file that was written to the end, or why it was not.
 void finish_file(Console& console, const RecordOptions& options, const McapSink& sink, const base::Result<void>& written) {
-  if (!written) return console.fail({written.error().message + "; what came before is in it"});
+  if (!written) return console.fail({written.error().message + "; earlier samples are in it"});
   report(options, sink.samples(), sink.channels(), files_of(options, sink));
 }
 
@@ -403,7 +403,7 @@ void finish_ring(Console& console, const RecordOptions& options, const base::Res
     console.fail({error.message + "; " +
                   (pieces.empty()
                        ? "nothing was recorded"
-                       : "what came before is in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
+                       : "earlier samples are in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
   };
   if (!written) return fail(written.error());
   const auto joined = join_ring(pieces, options.file, options.file);
@@ -445,7 +445,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
     if (const auto failure = exchange.failure()) written = *failure;
     for (const auto& [topic, count] : written ? exchange.dropped() : decltype(exchange.dropped())()) {
       console.fail(
-          {"record: " + std::to_string(count) + " samples of " + topic + " were dropped, they came faster than they could be written"});
+          {"record: " + std::to_string(count) + " samples of " + topic + " were dropped: they arrived faster than they could be written"});
     }
   }
   if (const auto closed = sinks->file->close(); !closed && written) written = closed;

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace shm {
+namespace base {
 
 class FileHandle {
  public:
@@ -19,9 +19,11 @@ class FileHandle {
     if (file_ >= 0) ::close(file_);
   }
   int get() const { return file_; }
+  // The caller owns it from now on.
+  int release() { return std::exchange(file_, -1); }
 
  private:
   int file_;
 };
 
-}  // namespace shm
+}  // namespace base
