@@ -168,12 +168,12 @@ class UsersTurn {
   using Mine = std::unique_lock<std::recursive_timed_mutex>;
 
   // None when it did not come in time. No data may be held.
-  [[nodiscard]] std::optional<Mine> take(std::chrono::nanoseconds patience) {
+  [[nodiscard]] std::optional<Mine> take(std::chrono::nanoseconds timeout) {
     expect_no_data_held();
 #ifdef __SANITIZE_THREAD__
-    Mine mine(mutex_, std::chrono::system_clock::now() + patience);  // gcc 12's sanitizer does not know pthread_mutex_clocklock
+    Mine mine(mutex_, std::chrono::system_clock::now() + timeout);  // gcc 12's sanitizer does not know pthread_mutex_clocklock
 #else
-    Mine mine(mutex_, patience);
+    Mine mine(mutex_, timeout);
 #endif
     if (!mine) return std::nullopt;
     return mine;

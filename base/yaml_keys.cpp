@@ -24,7 +24,7 @@ void expect_unique_keys(const YAML::Node& root) {
         continue;
       }
       if (entry.first.IsScalar() && !keys.insert(entry.first.Scalar()).second)
-        throw YAML::Exception(entry.first.Mark(), "the key " + base::in_quotes(entry.first.Scalar()) + " is there twice");
+        throw YAML::Exception(entry.first.Mark(), "the key " + base::in_quotes(entry.first.Scalar()) + " appears twice");
       left.push_back(entry.second);
     }
   }

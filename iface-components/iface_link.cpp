@@ -50,7 +50,7 @@ shm::Iface* IfaceLink::live() {
   if (!lost_) {
     const auto status = iface_->status();
     if (status == shm::Status::live) return &*iface_;
-    lose(status == shm::Status::dead ? "the simulator died" : "the simulator has closed it");
+    lose(status == shm::Status::dead ? "the simulator exited" : "the simulator has closed it");
   }
   // Simulated time goes on only when this returns: a wait by the clock on the wall could last for all of a run.
   if (!in_simulated_time() && Clock::now() < next_try_) return nullptr;

@@ -124,7 +124,7 @@ RTC::ReturnCode_t RTCSimulation::onDeactivated(RTC::UniqueId) {
   link_.detach();
   // Without a simulator no time goes on that could be stopped.
   if (const auto world = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world"); !world) {
-    RTC_WARN(("%s: nothing is to be paused", world.error().message.c_str()));
+    RTC_WARN(("%s: no simulation to pause", world.error().message.c_str()));
     return RTC::RTC_OK;
   }
   return ask(shm::PauseRequest{});

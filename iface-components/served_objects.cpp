@@ -3,11 +3,11 @@
 namespace iface {
 
 bool is_gone(CORBA::ORB_ptr orb, const std::string& reference) {
-  constexpr CORBA::ULong patience = 1000;  // [ms]
+  constexpr CORBA::ULong timeout = 1000;  // [ms]
   try {
     // A reference of its own, so that the time-out is for this call alone.
     CORBA::Object_var own = orb->string_to_object(reference.c_str());
-    omniORB::setClientCallTimeout(own, patience);
+    omniORB::setClientCallTimeout(own, timeout);
     return own->_non_existent();
   } catch (const CORBA::TRANSIENT& exception) {
     return exception.minor() != omni::TRANSIENT_CallTimedout;

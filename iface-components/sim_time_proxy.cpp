@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds look_period = std::chrono::milliseconds(long
 static const char* const simtimeproxy_spec[] = {
     "implementation_id", "SimTimeProxy",
     "type_name", "SimTimeProxy",
-    "description", "Takes part in simulated time for a component of another process",
+    "description", "Participates in simulated time for a component of another process",
     "version", "1.0.0",
     "vendor", "rtm-sim",
     "category", "simulation",
@@ -44,7 +44,7 @@ RTC::ReturnCode_t SimTimeProxy::onInitialize() {
     return RTC::RTC_ERROR;
   }
   alone_limit_ = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*seconds));
-  patience_ = std::max<std::chrono::nanoseconds>(*alone_limit_, start_limit);
+  timeout_ = std::max<std::chrono::nanoseconds>(*alone_limit_, start_limit);
   served_at_ = Clock::now();
   watch_ = std::thread([this] { watch(); });
   return RTC::RTC_OK;
@@ -66,7 +66,7 @@ void SimTimeProxy::watch() {
       watched->is_told = watched->is_told || is_late;
     }
     if (is_late)
-      RTC_WARN(("the context that is ticked has not returned from tick() for %d s; it is waited for", static_cast<int>(long_time.count())));
+      RTC_WARN(("the context that is ticked has not returned from tick() for %d s; still waiting", static_cast<int>(long_time.count())));
     if (!alone_limit_ || !is_alone()) continue;
     RTC_INFO(("the component of this proxy was deleted: exiting"));
     exit();
@@ -89,10 +89,10 @@ bool SimTimeProxy::is_alone() {
   if (now < next_look_) return false;
   next_look_ = now + std::min<std::chrono::nanoseconds>(*alone_limit_ / 4, longest_pause);
   const auto all = joined();
-  if (!all.empty()) patience_ = *alone_limit_;
+  if (!all.empty()) timeout_ = *alone_limit_;
   CORBA::ORB_ptr orb = RTC::Manager::instance().getORB();  // borrowed
   if (std::ranges::all_of(all, [&](const std::string& reference) { return iface::is_gone(orb, reference); }))
-    return now - served_at_ > patience_;
+    return now - served_at_ > timeout_;
   served_at_ = now;
   return false;
 }
@@ -135,13 +135,13 @@ RTC::ReturnCode_t SimTimeProxy::onExecute(RTC::UniqueId) {
     case iface::TickedContext::Answer::done:
       return RTC::RTC_OK;
     case iface::TickedContext::Answer::threw:
-      if (std::exchange(said_, why) != why) RTC_WARN(("the context that is ticked throws: %s; it is ticked all the same", why.c_str()));
+      if (std::exchange(said_, why) != why) RTC_WARN(("the context that is ticked throws: %s; it is still ticked", why.c_str()));
       return RTC::RTC_OK;
     case iface::TickedContext::Answer::gone:
       break;
   }
   // rtse run looks for this line.
-  RTC_ERROR(("%s: the context that was ticked is gone at %s s (%s)", getProperties().getProperty("exec_cxt.sim_time.participant").c_str(),
+  RTC_ERROR(("%s: the context that was ticked was lost at %s s (%s)", getProperties().getProperty("exec_cxt.sim_time.participant").c_str(),
              base::format_number(base::to_seconds(base::current_clock().now())).c_str(), why.c_str()));
   ticked_.reset();
   return RTC::RTC_ERROR;

@@ -55,7 +55,7 @@ class SimTimeProxy : public RTC::DataFlowComponentBase {
 
   // Of the watch alone, once that runs.
   std::optional<std::chrono::nanoseconds> alone_limit_;
-  std::chrono::nanoseconds patience_{0};
+  std::chrono::nanoseconds timeout_{0};
   Clock::time_point served_at_, next_look_;
 
   base::Guarded<Watched, base::Rank::worker> watched_;

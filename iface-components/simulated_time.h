@@ -1,4 +1,4 @@
-// Whether a component is called in simulated time. Any thread.
+// Tells a component that is called in simulated time from one in real time. Any thread.
 #pragma once
 
 #include <base/clock.h>

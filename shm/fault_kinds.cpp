@@ -27,7 +27,8 @@ std::string fault_names() {
 
 base::Result<const FaultRow*> check_fault(std::string_view name, std::optional<double> amount) {
   const FaultRow* row = find_fault(name);
-  if (row == nullptr) return base::Error{"fault " + base::in_quotes(std::string(name)) + ": is none; expected one of " + fault_names()};
+  if (row == nullptr)
+    return base::Error{"fault " + base::in_quotes(std::string(name)) + ": unknown fault; expected one of " + fault_names()};
   if (!row->amount || !amount) return row;
   if (row->kind == FaultKind::latency && *amount != std::floor(*amount))
     return base::Error{"fault " + std::string(name) + ": its amount must be a whole number of samples, got " +

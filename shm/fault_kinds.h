@@ -28,11 +28,11 @@ inline constexpr std::array fault_rows = {
     FaultRow{"bias", FaultKind::bias, false, 0.5, -1e6, 1e6, "added to ranges, positions of joints, or every number that is measured"},
     FaultRow{"noise", FaultKind::noise, false, 0.1, 0, 1e6, "standard deviation of what is added"},
     FaultRow{"missing", FaultKind::missing, false, 0.2, 0, 1, "fraction of the beams, always the same ones"},
-    FaultRow{"latency", FaultKind::latency, false, 5, 1, 1000, "samples that it comes late"},
+    FaultRow{"latency", FaultKind::latency, false, 5, 1, 1000, "delay in samples"},
     FaultRow{"dropout", FaultKind::dropout, false, 0.5, 0, 1, "fraction of the samples"},
     FaultRow{"weak", FaultKind::weak, true, 0.5, 0, 1,
              "fraction of the speed asked for that a drive reaches, or of the highest effort that a joint has left"},
-    FaultRow{"halted", FaultKind::halted, true, {}, 0, 0, "a drive or joint goes on as it was told last"},
+    FaultRow{"halted", FaultKind::halted, true, {}, 0, 0, "a drive or joint keeps its last command"},
 };
 
 constexpr const FaultRow* find_fault(std::string_view name) {

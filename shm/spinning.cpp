@@ -54,12 +54,12 @@ void SpinLimit::took(nanoseconds wait) {
 }
 
 void WakeAhead::began(nanoseconds since, bool is_awake) {
-  constexpr std::uint32_t patience = 32;  // ticks before it is tried whether later is early enough
+  constexpr std::uint32_t retry_ticks = 32;  // ticks before it is tried whether later is early enough
   if (since > longest) {
     --steps_;
   } else if (!is_awake) {
     steps_ = std::min(steps_ + 1, most_steps);
-  } else if (++count_ % patience == 0) {
+  } else if (++count_ % retry_ticks == 0) {
     steps_ = std::max<std::int64_t>(steps_ - 1, 1);
   }
 }

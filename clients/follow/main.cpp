@@ -73,7 +73,7 @@ class Follower {
     if (!geometry) return geometry.error();
     player::XdrReader in(*geometry);
     const player::Pose3d mount = player::take_pose3d(in);
-    if (!in.good()) return base::Error{player::to_text(laser_address()) + " does not say where it is mounted"};
+    if (!in.good()) return base::Error{player::to_text(laser_address()) + " does not report where it is mounted"};
     mount_ = {mount.x, mount.y, mount.yaw};
     return {};
   }
@@ -93,7 +93,7 @@ class Follower {
   }
 
   base::Result<void> steer(const player::LaserScan& scan, double time) {
-    constexpr double patience = 0.8;  // [s] without the leader before the robot stands
+    constexpr double lost_timeout = 0.8;  // [s] without the leader before the robot stops
     if (!began_) began_ = time;
     is_over_ = options_.duration > 0 && time - *began_ >= options_.duration;
     const follow::Scan beams{scan.min_angle, scan.resolution, scan.max_range, scan.ranges};
@@ -106,7 +106,7 @@ class Follower {
       const auto around = follow::around(beams, *leader, options_.steering);
       return drive(around ? *around : follow::towards(*leader, options_.steering));
     }
-    if (is_following_ && tracker_.unseen(time).value_or(patience) < patience) return {};  // the last command stays
+    if (is_following_ && tracker_.unseen(time).value_or(lost_timeout) < lost_timeout) return {};  // the last command stays
     if (is_following_) say("leader lost");
     is_following_ = false;
     return drive({});
@@ -127,13 +127,13 @@ class Follower {
 
 int run(const Options& options) {
   using Clock = std::chrono::steady_clock;
-  const auto patience_ends = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.wait));
+  const auto wait_ends = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.wait));
   bool was_there = false;
   std::string complaint;
   while (is_told_to_end == 0) {
     std::optional<base::Error> error;
     const auto socket = PlayerConnection::connect(options.host, options.port);
-    const bool may_come = !socket && !was_there && Clock::now() < patience_ends;
+    const bool may_come = !socket && !was_there && Clock::now() < wait_ends;
     if (!socket) {
       error = socket.error();
     } else if (auto connection = PlayerConnection::open(*socket, options.host, options.port, options.key)) {

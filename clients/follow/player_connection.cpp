@@ -94,13 +94,13 @@ base::Result<PlayerConnection> PlayerConnection::open(int socket, const std::str
   std::size_t size = 0;
   const auto deadline = Clock::now() + answer_limit;
   while (size < hello.size()) {
-    if (!wait_for(socket, POLLIN, deadline)) return base::Error{connection.where_ + " says nothing: it is no server of Player"};
+    if (!wait_for(socket, POLLIN, deadline)) return base::Error{connection.where_ + " does not respond: it is not a Player server"};
     const ssize_t got = ::recv(socket, hello.data() + size, hello.size() - size, 0);
     if (got <= 0) return base::Error{connection.where_ + " has closed the connection"};
     size += static_cast<std::size_t>(got);
   }
   if (!std::string_view(hello.data(), hello.size()).starts_with("Player"))
-    return base::Error{connection.where_ + " is no server of Player"};
+    return base::Error{connection.where_ + " is not a Player server"};
   const auto pull =
       connection.request({}, player::player_request::datamode, player::encode_u32(static_cast<std::uint32_t>(player::DataMode::pull)));
   if (!pull) return pull.error();
@@ -167,7 +167,7 @@ base::Result<void> PlayerConnection::send(const std::string& bytes) {
   std::size_t sent = 0;
   const auto deadline = Clock::now() + answer_limit;
   while (sent < bytes.size()) {
-    if (!wait_for(socket_, POLLOUT, deadline)) return base::Error{where_ + " takes nothing more"};
+    if (!wait_for(socket_, POLLOUT, deadline)) return base::Error{where_ + " accepts no more data"};
     const ssize_t size = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (size < 0 && errno == EINTR) continue;
     if (size < 0) return base::Error{where_ + ": " + std::strerror(errno)};

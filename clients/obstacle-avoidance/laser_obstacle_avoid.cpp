@@ -94,7 +94,7 @@ RTC::ReturnCode_t LaserObstacleAvoid::onExecute(RTC::UniqueId) {
   if (!is_new) {
     // A clock that ran backwards is that of a world that was reset.
     if (time < last_scan_) last_scan_ = time;
-    if (scan_timeout_ > 0 && time - last_scan_ > scan_timeout_) stop("no scan comes any more");
+    if (scan_timeout_ > 0 && time - last_scan_ > scan_timeout_) stop("no scan arrives any more");
     return RTC::RTC_OK;
   }
   while (range_in_.isNew()) range_in_.read();  // the newest counts

@@ -6,7 +6,7 @@
 static const char* const porter_spec[] = {
     "implementation_id", "Porter",
     "type_name", "Porter",
-    "description", "Brings what lies before a robot to a door, and comes back",
+    "description", "Carries the object in front of a robot to a door, and returns",
     "version", "1.0.0",
     "vendor", "rtm-sim",
     "category", "navigation",

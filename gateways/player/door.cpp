@@ -34,7 +34,7 @@ bool Door::fits(std::string_view offered) const {
 
 std::string describe(const Door& door, const std::string& address) {
   if (door.is_open)
-    return "open: everybody who reaches " + address +
+    return "open: every client that reaches " + address +
            " may drive the robots, look through their cameras and move the models of this simulation";
   if (!door.key.empty()) return "open to other accounts and hosts that reach " + address + " and send the key";
   if (!is_loopback(address))
@@ -43,7 +43,7 @@ std::string describe(const Door& door, const std::string& address) {
   return {};
 }
 
-std::optional<std::string_view> Patience::look(Time now, bool is_admitted, bool has_part) {
+std::optional<std::string_view> ClientTimeouts::expired(Time now, bool is_admitted, bool has_part) {
   if (!is_admitted && now - connected_ >= first_request) return "has sent no whole request in 5 s";
   if (!has_part) {
     part_since_.reset();

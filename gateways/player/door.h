@@ -30,17 +30,17 @@ struct Door {
 // What is open, or shut, for people, where that is not what a user expects who said nothing; empty otherwise.
 std::string describe(const Door& door, const std::string& address);
 
-// How long a client may take. Connections that say nothing hold descriptors that others need; clients of Player ask for a mode at once.
-class Patience {
+// Timeouts of one client. Silent connections hold descriptors that other clients need; clients of Player ask for a mode at once.
+class ClientTimeouts {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds first_request{5};  // whole, or the key, from the connection on
   static constexpr std::chrono::seconds whole_message{30};
 
-  explicit Patience(Time connected) : connected_(connected) {}
-  // `is_admitted`: has sent a whole request, and the key where one is needed. `has_part`: a message has begun and not ended. The reason why
-  // the connection is to be closed, if it is.
-  std::optional<std::string_view> look(Time now, bool is_admitted, bool has_part);
+  explicit ClientTimeouts(Time connected) : connected_(connected) {}
+  // `is_admitted`: has sent a whole request, and the key where one is needed. `has_part`: a message has begun and not ended. Returns the
+  // reason for closing the connection, if one has expired.
+  std::optional<std::string_view> expired(Time now, bool is_admitted, bool has_part);
 
  private:
   Time connected_;

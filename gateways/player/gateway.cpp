@@ -84,7 +84,7 @@ base::Result<void> Gateway::run() {
     if (const auto now = std::chrono::steady_clock::now(); now >= next_look) {
       next_look = now + std::chrono::milliseconds(look_period);
       simulator_.look();
-      check_patience();
+      check_timeouts();
       set_accepting(true);
     }
     serve_clients();
@@ -245,9 +245,9 @@ void Gateway::refuse(const Port& port, const std::string& peer, const std::strin
   refusals_ = {now, 0};
 }
 
-void Gateway::check_patience() {
+void Gateway::check_timeouts() {
   const auto now = std::chrono::steady_clock::now();
-  for (const auto& [id, session] : sessions_) session->check_patience(now);
+  for (const auto& [id, session] : sessions_) session->check_timeouts(now);
 }
 
 void Gateway::set_accepting(bool is_accepting) {

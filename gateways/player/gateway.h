@@ -61,7 +61,7 @@ class Gateway {
   // False when there is no room.
   bool make_room();
   void refuse(const Port& port, const std::string& peer, const std::string& why);
-  void check_patience();
+  void check_timeouts();
   void set_accepting(bool is_accepting);
   void handle(const epoll_event& event);
   void take_samples();

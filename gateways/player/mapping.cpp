@@ -177,7 +177,7 @@ ConfiguredPort configured_port(const YAML::Node& node) {
         port.devices.push_back(device_of(device.first, device.second));
         const auto& address = port.devices.back().address;
         if (std::count_if(port.devices.begin(), port.devices.end(), [&](const auto& one) { return one.address == address; }) > 1)
-          throw Wrong{device.first.Mark(), player::to_text(address) + " is there twice"};
+          throw Wrong{device.first.Mark(), player::to_text(address) + " appears twice"};
       }
     } else {
       throw Wrong{entry.first.Mark(), "expected port, robots or devices, got " + base::in_quotes(key)};
@@ -195,7 +195,7 @@ std::vector<ConfiguredPort> configured_ports(const YAML::Node& root) {
     ports.push_back(configured_port(node));
     const auto number = ports.back().port;
     if (number != 0 && std::count_if(ports.begin(), ports.end(), [&](const auto& one) { return one.port == number; }) > 1)
-      throw Wrong{node.Mark(), "port " + std::to_string(number) + " is there twice"};
+      throw Wrong{node.Mark(), "port " + std::to_string(number) + " appears twice"};
   }
   if (ports.empty()) throw Wrong{root.Mark(), "there is no port"};
   return ports;

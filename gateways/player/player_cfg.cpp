@@ -226,7 +226,7 @@ class Ports {
     const bool is_twice =
         std::any_of(port.devices.begin(), port.devices.end(), [&](const auto& one) { return one.address == device.address; });
     if (is_twice)
-      throw CfgError{driver.place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " is there twice"};
+      throw CfgError{driver.place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " appears twice"};
     port.devices.push_back(std::move(device));
   }
 

@@ -51,9 +51,9 @@ void Session::end(const std::string& why) {
   is_over_ = true;
 }
 
-void Session::check_patience(Patience::Time now) {
+void Session::check_timeouts(ClientTimeouts::Time now) {
   // Bytes that wait while the client is not listened to are not its fault.
-  if (const auto why = patience_.look(now, is_admitted(), is_listening() && parser_.pending() > 0)) end(std::string(*why));
+  if (const auto why = timeouts_.expired(now, is_admitted(), is_listening() && parser_.pending() > 0)) end(std::string(*why));
 }
 
 void Session::deliver(const player::Address& device, std::uint8_t subtype, const SharedBytes& message) {

@@ -36,11 +36,11 @@ class Session final : public Client {
   // Answers what has come and sends what may go; to be called after anything has happened.
   void serve();
   // Ends the session of a client that lets others wait; to be called now and then.
-  void check_patience(Patience::Time now);
+  void check_timeouts(ClientTimeouts::Time now);
   // Has sent a whole request, and the key if it needs it.
   bool is_admitted() const { return has_asked_ && !needs_key_; }
   // Makes room for somebody else.
-  void give_way() { end("there is no room for more clients, and this one has asked for nothing"); }
+  void give_way() { end("too many clients, and this one has sent no request"); }
   // Once true it stays: the session is to be ended.
   bool is_over() const { return is_over_; }
   // EPOLLIN and EPOLLOUT as they are needed now.
@@ -70,7 +70,7 @@ class Session final : public Client {
   player::MessageParser parser_{max_payload};
   Outbox outbox_;
   std::set<std::pair<player::Address, std::uint8_t>> complaints_;
-  Patience patience_{std::chrono::steady_clock::now()};
+  ClientTimeouts timeouts_{std::chrono::steady_clock::now()};
   bool needs_key_, has_asked_ = false;
   int wrong_keys_ = 0;
   bool is_waiting_ = false;  // for the simulator to answer: the next request is not looked at before

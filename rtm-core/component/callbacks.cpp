@@ -117,13 +117,13 @@ ReturnCode_t RTObject_impl::Callbacks::in_turn(const char* name, Refusal refusal
     if (is_outside_)
       if (const auto why = refusal()) return component_.refuse(name, *why, PRECONDITION_NOT_MET);
     const bool is_simulated = is_outside_ ? corba::clock_of_caller() != nullptr : base::tick_in_lock_step() != nullptr;
-    const std::chrono::nanoseconds patience = is_simulated ? std::chrono::nanoseconds(simulated_patience)
-                                              : is_outside_
-                                                  ? std::chrono::nanoseconds(remote_patience)
-                                                  : std::max<std::chrono::nanoseconds>(component_.callbackTimeout(), local_patience);
+    const std::chrono::nanoseconds timeout = is_simulated ? std::chrono::nanoseconds(simulated_timeout)
+                                             : is_outside_
+                                                 ? std::chrono::nanoseconds(remote_timeout)
+                                                 : std::max<std::chrono::nanoseconds>(component_.callbackTimeout(), local_timeout);
     {
       const base::ScopedWait waiting;
-      visit.wait(std::chrono::steady_clock::now() + patience);
+      visit.wait(std::chrono::steady_clock::now() + timeout);
     }
     if (visit.answer() != Gate::Answer::inside) {
       const std::string running = component_.impl_->gate.describe();

@@ -39,7 +39,7 @@ class LastCalls {
   explicit LastCalls(std::chrono::steady_clock::time_point deadline)
       : deadline_(deadline), end_(std::max(deadline, std::chrono::steady_clock::now()) + std::chrono::seconds(2)) {}
   bool are_over() const { return std::chrono::steady_clock::now() >= end_; }
-  std::chrono::milliseconds patience() const {
+  std::chrono::milliseconds timeout() const {
     constexpr std::chrono::milliseconds shortest{200};
     return std::max(std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - std::chrono::steady_clock::now()), shortest);
   }

@@ -74,14 +74,14 @@ struct ExecutionContextBase::Impl {
   // The calling thread runs a callback that must return before the context can call the member: it cannot wait for that.
   bool is_waited_for_by_callback(const Member& member) const;
   // False when somebody else has been faster. `is_left_alone`: no callback of it runs any more.
-  bool remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone = nullptr);
+  bool remove(const Member& member, std::chrono::nanoseconds timeout, bool* is_left_alone = nullptr);
   std::shared_ptr<corba::MemberWatch> member_watch();
   // Tells the component that it has left.
   static void detach(const Member& member, Logger& rtclog);
   // The current clock of components while they are called.
   const base::Clock& clock() const;
 
-  const std::shared_ptr<corba::MemberPatience> patience = std::make_shared<corba::MemberPatience>();
+  const std::shared_ptr<corba::MemberTimeout> member_timeout = std::make_shared<corba::MemberTimeout>();
   rt::ExecutionContext context;
   base::Guarded<Data, base::Rank::component> shared;
   Clocks clocks{};                // written before anybody else knows the context

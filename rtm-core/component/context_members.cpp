@@ -48,13 +48,13 @@ std::vector<ExecutionContextBase::Impl::Member> ExecutionContextBase::Impl::memb
   return all;
 }
 
-bool ExecutionContextBase::Impl::remove(const Member& member, std::chrono::nanoseconds patience, bool* is_left_alone) {
+bool ExecutionContextBase::Impl::remove(const Member& member, std::chrono::nanoseconds timeout, bool* is_left_alone) {
   {
     auto data = shared.lock();
     data->retired.push_back(member.machine);
     if (data->retired.size() > max_retired) data->retired.pop_front();
   }
-  const auto removal = context.remove(member.id, patience);
+  const auto removal = context.remove(member.id, timeout);
   if (is_left_alone) *is_left_alone = removal == rt::ExecutionContext::Removal::left_alone;
   return removal != rt::ExecutionContext::Removal::no_member;
 }
@@ -209,13 +209,13 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
       participant = std::make_shared<LocalParticipant>(local, member.handle);
     } else {
       if (!corba::may_keep(comp)) return RTC::RTC_ERROR;
-      const bool has_time = impl_->patience->is_without_end();
-      const RTC::LightweightRTObject_var asked = corba::RemoteParticipant::impatient(
+      const bool has_time = impl_->member_timeout->is_without_end();
+      const RTC::LightweightRTObject_var asked = corba::RemoteParticipant::with_timeout(
           comp, has_time ? corba::RemoteParticipant::long_call_timeout : corba::RemoteParticipant::call_timeout);
-      member.reference = corba::RemoteParticipant::impatient(comp);
+      member.reference = corba::RemoteParticipant::with_timeout(comp);
       member.handle = asked->attach_context(self);
       if (member.handle >= 0)
-        participant = std::make_shared<corba::RemoteParticipant>(comp, member.handle, impl_->patience, impl_->member_watch());
+        participant = std::make_shared<corba::RemoteParticipant>(comp, member.handle, impl_->member_timeout, impl_->member_watch());
     }
   } catch (const CORBA::Exception& exception) {
     RTC_ERROR(("a component that is to join does not answer: %s", corba::to_text(exception).c_str()));
@@ -236,10 +236,10 @@ RTC::ReturnCode_t ExecutionContextBase::removeComponent(RTC::LightweightRTObject
   const auto member = impl_->find(comp);
   if (!member || member->owner) return RTC::BAD_PARAMETER;
   if (const auto code = onRemovingComponent(comp); code != RTC::RTC_OK) return code;
-  const auto patience = std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns);
+  const auto timeout = std::max<std::chrono::nanoseconds>(deadline - std::chrono::steady_clock::now(), 0ns);
   bool is_left_alone = true;
-  if (!impl_->remove(*member, patience, &is_left_alone)) return RTC::BAD_PARAMETER;
-  if (!is_left_alone) complainAboutCallback("it leaves the context all the same");
+  if (!impl_->remove(*member, timeout, &is_left_alone)) return RTC::BAD_PARAMETER;
+  if (!is_left_alone) complainAboutCallback("it leaves the context anyway");
   Impl::detach(*member, rtclog);
   return onRemovedComponent(comp);
 }

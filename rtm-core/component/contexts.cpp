@@ -98,10 +98,10 @@ base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects>& left_con
 
 // What the context asks of others on the way (detach_context) is its own affair; these calls end in time.
 void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, const LastCalls& calls) {
-  const CORBA::Object_var own = corba::impatient_copy(reference, calls.patience());
+  const CORBA::Object_var own = corba::copy_with_timeout(reference, calls.timeout());
   const ExecutionContext_var context = ExecutionContext::_unchecked_narrow(own);
   const LifeCycleState state = context->get_component_state(self);
-  corba::set_call_timeout(context, calls.patience());
+  corba::set_call_timeout(context, calls.timeout());
   switch (state) {
     case ACTIVE_STATE:
       context->deactivate_component(self);
@@ -112,7 +112,7 @@ void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, const
     default:
       break;
   }
-  corba::set_call_timeout(context, calls.patience());
+  corba::set_call_timeout(context, calls.timeout());
   context->remove_component(self);
 }
 
@@ -367,7 +367,7 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     }
   }
   if (id < 0) {
-    RTC_ERROR(("a further execution context is refused: the component takes part in %zu, the most that may be", most_memberships));
+    RTC_ERROR(("a further execution context is refused: the component participates in %zu, the maximum", most_memberships));
     return -1;
   }
   chooseClock();

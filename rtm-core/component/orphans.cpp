@@ -9,7 +9,7 @@
 namespace RTC {
 namespace {
 
-constexpr std::chrono::seconds patience{1};  // with one peer
+constexpr std::chrono::seconds peer_timeout{1};  // with one peer
 
 // A process that hangs is not dead.
 bool is_dead(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
@@ -17,7 +17,7 @@ bool is_dead(CORBA::ORB_ptr orb, CORBA::Object_ptr object) {
     // A reference of its own, so that the time-out is for this call alone.
     CORBA::String_var text = orb->object_to_string(object);
     CORBA::Object_var own = orb->string_to_object(text);
-    corba::set_call_timeout(own, patience);
+    corba::set_call_timeout(own, peer_timeout);
     return own->_non_existent();
   } catch (const CORBA::TIMEOUT&) {
     return false;
@@ -47,14 +47,14 @@ void RTObject_impl::leaveTheDead() {
   if (CORBA::is_nil(orb)) return;
   // Peers that hang take a second each: who is not asked in time is the first the next time.
   const std::size_t count = contexts.size() + organizations.size();
-  const corba::ChainDeadline deadline{patience};
+  const corba::ChainDeadline deadline{peer_timeout};
   bool was_member = false;
   for (std::size_t asked = 0; asked < count && !deadline.is_over(); ++asked) {
     const std::size_t i = impl_->shared.lock()->next_to_look_at++ % count;
     if (i < contexts.size()) {
       if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;
       const auto handle = static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
-      RTC_WARN(("the process of execution context %d has died: left", static_cast<int>(handle)));
+      RTC_WARN(("the process of execution context %d exited: left the context", static_cast<int>(handle)));
       const bool was_active = impl_->shared.lock()->active_in.contains(handle);
       if (was_active) on_deactivated(handle);
       detach_context(handle);
@@ -62,7 +62,7 @@ void RTObject_impl::leaveTheDead() {
     }
     SDOPackage::Organization_var& organization = organizations[i - contexts.size()];
     if (!is_dead(orb, organization)) continue;
-    RTC_WARN(("the process of a composite component has died: this component is on its own again"));
+    RTC_WARN(("the process of a composite component exited: this component uses its own context again"));
     was_member = true;
     auto data = impl_->shared.lock();
     std::erase_if(data->organizations, [&](const SDOPackage::Organization_var& known) { return known->_is_equivalent(organization); });

@@ -25,7 +25,7 @@ bool OutsideCall::is_mine(const RTObject_impl& component) {
 }
 
 std::optional<std::string> why_not(rt::Action action, std::optional<bool> active) {
-  if (!active) return "the handle is of no execution context of another process that the component takes part in";
+  if (!active) return "the handle belongs to no execution context of another process in which the component participates";
   switch (action) {
     case rt::Action::activated:
     case rt::Action::error:

@@ -24,15 +24,15 @@
 // on_aborting when a callback fails; a context that gave up one of the calls can reset the component.
 //
 // Turns: core/callback_gate.h. Failures:
-//   the component's callback runs    the caller waits `remote_patience` for it, then PRECONDITION_NOT_MET
-//   the caller's time is simulated   it waits `simulated_patience`: the answer would be part of a run
+//   the component's callback runs    the caller waits `remote_timeout` for it, then PRECONDITION_NOT_MET
+//   the caller's time is simulated   it waits `simulated_timeout`: the answer would be part of a run
 //   64 callers wait already          PRECONDITION_NOT_MET
 //   the component ends               PRECONDITION_NOT_MET, or OBJECT_NOT_EXIST
 //   a callback calls another process, which calls back into the component by a thread of the ORB    as "the component's callback runs": the
 //                                    call that comes back fails in time, and the callback goes on. CORBA passes on no chain of calls, so
 //                                    such a call cannot be told from one that comes by chance; to let it in is to let callbacks overlap
 // A context of this process waits as long as the component's callbacks may take when it ends (exec_cxt.callback_timeout, at least a second;
-// in lock step `simulated_patience`). Then its call fails like a callback that returns RTC_ERROR.
+// in lock step `simulated_timeout`). Then its call fails like a callback that returns RTC_ERROR.
 // A component that was compiled with headers before these rules passes the gate too, but all its calls count as calls of this process.
 // The log has one line per second and component about refused calls, with the number of those left out.
 #pragma once
@@ -52,9 +52,9 @@ namespace RTC {
 
 class RTObject_impl;
 
-inline constexpr std::chrono::milliseconds remote_patience{500};
-inline constexpr std::chrono::seconds local_patience{1};  // at least
-inline constexpr std::chrono::minutes simulated_patience{1};
+inline constexpr std::chrono::milliseconds remote_timeout{500};
+inline constexpr std::chrono::seconds local_timeout{1};  // at least
+inline constexpr std::chrono::minutes simulated_timeout{1};
 
 // The operations above.
 bool is_watched_operation(std::string_view name);

@@ -94,7 +94,7 @@ void parse_line(std::string_view line, int number, ConfigText& result) {
 
 // Up to the end, which a pipe must reach without pauses of more than five seconds.
 base::Result<std::string> read_all(int file) {
-  constexpr int patience_ms = 5000;
+  constexpr int timeout_ms = 5000;
   std::string text;
   char buffer[65536];
   while (text.size() <= max_file_size) {
@@ -104,7 +104,7 @@ base::Result<std::string> read_all(int file) {
       text.append(buffer, static_cast<std::size_t>(size));
     } else if (errno == EAGAIN) {
       pollfd ready{file, POLLIN, 0};
-      if (poll(&ready, 1, patience_ms) == 0) return base::Error{"does not end"};
+      if (poll(&ready, 1, timeout_ms) == 0) return base::Error{"does not end"};
     } else if (errno != EINTR) {
       return base::Error{"cannot be read"};
     }

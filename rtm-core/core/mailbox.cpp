@@ -108,7 +108,7 @@ ReadResult Mailbox::State::take(Entry& entry) {
   return {PortStatus::ok, entry.last, true, entry.channel};
 }
 
-std::optional<std::chrono::nanoseconds> Mailbox::State::patience(Channel channel) {
+std::optional<std::chrono::nanoseconds> Mailbox::State::longest_wait(Channel channel) {
   std::optional<std::chrono::nanoseconds> longest;
   const Entry* last = last_read(channel);
   for (const auto& entry : entries) {
@@ -208,11 +208,11 @@ ReadResult Mailbox::read(Channel channel, std::uint64_t moment, std::chrono::nan
     for (auto& each : state->entries) each.settle(moment);
     Entry* entry = state->oldest(channel);
     if (!entry) {
-      if (const auto patience = state->patience(channel)) {
+      if (const auto longest = state->longest_wait(channel)) {
         // Nobody brings anything for this phase any more.
         if (base::is_in_phase(moment) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
           return {PortStatus::buffer_timeout, {}, false, channel};
-        state.wait_for(arrived_, std::min(*patience, most), [&] {
+        state.wait_for(arrived_, std::min(*longest, most), [&] {
           for (auto& each : state->entries) each.settle(moment);
           entry = state->oldest(channel);
           return entry || (channel == Channel::any ? state->entries.empty() : !state->find(channel));

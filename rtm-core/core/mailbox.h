@@ -119,7 +119,7 @@ class Mailbox {
     // With what was read last.
     std::size_t all_octets() const;
     // How long a reader waits for the first or next sample; nothing if it does not.
-    std::optional<std::chrono::nanoseconds> patience(Channel channel);
+    std::optional<std::chrono::nanoseconds> longest_wait(Channel channel);
   };
 
   const std::size_t most_octets_;

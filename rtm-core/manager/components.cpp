@@ -126,7 +126,7 @@ void ManagerImpl::destroy(std::uint64_t id) {
   withdraw(record);
   state.lock()->reserved_names.erase(record.instance_name);  // before its number is free, which the next component may get at once
   if (record.numbered) {
-    const auto mine = numbering_turn.take(numbering_patience);
+    const auto mine = numbering_turn.take(numbering_timeout);
     if (mine && numbering != nullptr) numbering->onDelete(record.component);
     if (!mine) RTC_WARN(("the naming policy is busy with another component; it does not hear that %s goes", record.instance_name.c_str()));
   }

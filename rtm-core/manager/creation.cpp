@@ -254,7 +254,7 @@ base::Result<std::string> ManagerImpl::name_component(const Managed& component, 
   }
   {
     // Those with a name of their own count too: T0, mine, T2.
-    const auto mine = numbering_turn.take(numbering_patience);
+    const auto mine = numbering_turn.take(numbering_timeout);
     if (!mine) return base::Error{"the naming policy " + value("manager.components.naming_policy") + " is busy with another component"};
     const std::string number = numbering->onCreate(component.object());
     numbered = true;

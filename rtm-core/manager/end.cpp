@@ -55,15 +55,15 @@ class ManagerImpl::EndWatch {
 
  private:
   // A callback that the end itself calls has lasted too long.
-  bool is_caught(std::chrono::nanoseconds patience) const {
+  bool is_caught(std::chrono::nanoseconds timeout) const {
     for (const auto& component : manager_.all_components())
       for (const auto& one : component->callbacks())
-        if (one.thread == ender_ && steady_clock::now() - one.since >= patience) return true;
+        if (one.thread == ender_ && steady_clock::now() - one.since >= timeout) return true;
     return false;
   }
 
   void watch() {
-    const auto patience = std::max<std::chrono::nanoseconds>(manager_.callback_timeout(), 1ms);
+    const auto timeout = std::max<std::chrono::nanoseconds>(manager_.callback_timeout(), 1ms);
     auto look_at = steady_clock::time_point{};
     for (;;) {
       std::string step;
@@ -71,15 +71,15 @@ class ManagerImpl::EndWatch {
       {
         auto locked = manager_.state.lock();
         since = locked->step_since;
-        look_at = std::max(look_at, since + patience);
+        look_at = std::max(look_at, since + timeout);
         const auto has_moved = [&] { return locked->step.empty() || locked->step_since != since; };
         const bool moved = locked.wait_until(manager_.changed, look_at, has_moved);
         if (locked->step.empty()) return;
         if (moved) continue;
         step = locked->step;
       }
-      if (is_caught(patience) || steady_clock::now() - since >= longest_step) manager_.give_up(step);
-      look_at = steady_clock::now() + std::min<std::chrono::nanoseconds>(patience / 4, 1s);
+      if (is_caught(timeout) || steady_clock::now() - since >= longest_step) manager_.give_up(step);
+      look_at = steady_clock::now() + std::min<std::chrono::nanoseconds>(timeout / 4, 1s);
     }
   }
 
@@ -196,13 +196,13 @@ void ManagerImpl::live() {
     ready = locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->end_requested; });
   }
   // Nothing is taken away under the hands of activate, unless it makes a component that does not return.
-  const auto is_activated = [&](std::chrono::nanoseconds patience) {
+  const auto is_activated = [&](std::chrono::nanoseconds timeout) {
     auto locked = state.lock();
-    return locked.wait_for(changed, patience, [&] { return !locked->activating; });
+    return locked.wait_for(changed, timeout, [&] { return !locked->activating; });
   };
-  const auto patience = std::max<std::chrono::nanoseconds>(callback_timeout(), 10ms);
-  while (!is_activated(patience))
-    if (is_callback_running(patience)) give_up("activation");
+  const auto timeout = std::max<std::chrono::nanoseconds>(callback_timeout(), 10ms);
+  while (!is_activated(timeout))
+    if (is_callback_running(timeout)) give_up("activation");
   try {
     end();
   } catch (const std::exception& e) {

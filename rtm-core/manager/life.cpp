@@ -79,8 +79,8 @@ base::Result<void> ManagerImpl::start(const ManagerConfig& configuration, const 
     while (!locked.wait_for(changed, std::chrono::hours(1), [&] { return locked->life_is_over; })) {
     }
     // If nobody comes to runManager who would let the process end, the signal ends it.
-    constexpr std::chrono::seconds patience{2};
-    if (!locked.wait_for(changed, patience, [&] { return locked->runners > 0; })) ::raise(number);
+    constexpr std::chrono::seconds timeout{2};
+    if (!locked.wait_for(changed, timeout, [&] { return locked->runners > 0; })) ::raise(number);
   });
   if (auto started = start_orb(); !started) return started.error();
   timer = std::make_unique<rt::TaskRunner>("rtm-timer");

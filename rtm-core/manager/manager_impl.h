@@ -198,7 +198,7 @@ class ManagerImpl {
   base::Result<RTObject_impl*> try_to_finish_creation(const Record& place, const rt::ComponentArgument& argument);
   // Policies are called one at a time, user-written or not; one may ask the manager for anything, another component included.
   base::UsersTurn numbering_turn;
-  static constexpr std::chrono::seconds numbering_patience{30};  // more than a policy that asks a naming service which hangs
+  static constexpr std::chrono::seconds numbering_timeout{30};  // more than a policy that asks a naming service which hangs
   RTM::NumberingPolicyBase* numbering = nullptr;
   std::unique_ptr<rt::SignalWatcher> signals;
   std::vector<LogstreamBase*> log_plugins;

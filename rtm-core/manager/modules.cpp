@@ -86,7 +86,7 @@ bool ends_until(pid_t child, steady_clock::time_point deadline) {
 
 // What the program prints on stdout; nothing when it fails or takes too long, in which case it is killed. `start_error`: why it does not
 // start, or 0.
-std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds patience, int& start_error) {
+std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds timeout, int& start_error) {
   base::expect_no_data_held();
   constexpr std::size_t longest = std::size_t{4} << 20;
   int ends[2];
@@ -106,7 +106,7 @@ std::optional<std::string> output_of(const std::vector<std::string>& words, std:
   std::string output;
   bool complete = false;
   if (start_error == 0) {
-    const auto deadline = steady_clock::now() + patience;
+    const auto deadline = steady_clock::now() + timeout;
     while (output.size() < longest) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
       pollfd ready{ends[0], POLLIN, 0};
@@ -271,7 +271,7 @@ struct ModuleManager::Impl {
     int start_error = 0;
     const auto output = output_of(command, std::chrono::seconds(10), start_error);
     if (start_error != 0) {
-      base::log(base::Level::warn, "manager", "{}, which tells what is in {}, does not start: {}", command.front(), file.string(),
+      base::log(base::Level::warn, "manager", "cannot start {} to inspect module {}: {}", command.front(), file.string(),
                 std::strerror(start_error));
       return {};
     }

@@ -74,7 +74,7 @@ class Subscribed {
   template <class Call>
   DataPortStatus call(const char* what, Call call) {
     DataPortStatus status = DataPortStatus::PORT_ERROR;
-    const auto mine = turn_.take(patience);
+    const auto mine = turn_.take(turn_timeout);
     if (!mine) {
       auto& rtclog = rtclog_;
       RTC_WARN(("%s: the one before has not returned", what));
@@ -92,7 +92,7 @@ class Subscribed {
   const SDOPackage::NVList properties_;
   Logger rtclog_;
   base::UsersTurn turn_;
-  static constexpr std::chrono::seconds patience{10};  // as calls of the ORB
+  static constexpr std::chrono::seconds turn_timeout{10};  // as calls of the ORB
 };
 
 class AuthorSender final : public corba::Sender {

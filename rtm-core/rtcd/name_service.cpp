@@ -63,9 +63,9 @@ bool answers(const Address& address) {
   for (const auto* at = found; at != nullptr && !answered; at = at->ai_next) {
     const int socket = ::socket(at->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (socket < 0) continue;
-    const timeval patience{1, 0};
-    setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);  // also of connect
+    const timeval timeout{1, 0};
+    setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
+    setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof timeout);  // also of connect
     answered = connect(socket, at->ai_addr, at->ai_addrlen) == 0 && is_naming_service(socket);
     close(socket);
   }
@@ -155,8 +155,8 @@ base::Result<std::unique_ptr<NameService>> NameService::start_if_none(const std:
   if (service->keeper_ > 0) folder->give_away();
   service->log_ = std::thread([file = lines[0]] { log_lines(file); });
 
-  constexpr std::chrono::seconds patience{10};
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+  constexpr std::chrono::seconds timeout{10};
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (std::chrono::steady_clock::now() < deadline) {
     if (answers(*address)) return service;
     if (waitpid(service->keeper_, nullptr, WNOHANG) == service->keeper_) {

@@ -68,8 +68,8 @@ void make_sensor(Makers& m, Mount mount, const SensorDef& sensor) {
       return;
     }
     if (!maker->stands_in_joint) return m.take(maker->make({m.world, mount, sensor, std::nullopt}));
-    m.left_out.push_back(fmt::format("model {}: sensor {}: a {} sensor measures the joint that it stands in; this one stands in a link",
-                                     def.name, sensor.name, to_text(sensor.kind)));
+    m.left_out.push_back(fmt::format("model {}: sensor {}: a {} sensor measures its joint; this one is in a link", def.name, sensor.name,
+                                     to_text(sensor.kind)));
     return;
   }
   if (!is_camera(sensor.kind)) return;
@@ -86,7 +86,7 @@ void make_joint_sensors(Makers& m) {
       const SensorMaker* maker = maker_of(sensor.kind);
       if (maker == nullptr || !maker->stands_in_joint || !link) {
         m.left_out.push_back(
-            fmt::format("model {}: sensor {}: {} sensors stand in links, not in joints", def.name, sensor.name, to_text(sensor.kind)));
+            fmt::format("model {}: sensor {}: {} sensors belong in links, not in joints", def.name, sensor.name, to_text(sensor.kind)));
         continue;
       }
       if (!m.can_name(iface_name(def, sensor), "sensor " + sensor.name)) continue;

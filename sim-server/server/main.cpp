@@ -103,7 +103,7 @@ class Signals {
 
  private:
   void stop(int signal) {
-    constexpr timespec patience{2, 0};
+    constexpr timespec timeout{2, 0};
     bool has_loop = false;
     {
       auto loop = loop_.lock();
@@ -111,9 +111,9 @@ class Signals {
       if (has_loop) (*loop)->stop();
     }
     if (!has_loop) end_process(signal);
-    const int next = sigtimedwait(&set_, nullptr, &patience);
+    const int next = sigtimedwait(&set_, nullptr, &timeout);
     if (is_over_.load(std::memory_order_acquire)) return;  // pairs with the release in end
-    if (next < 0) std::fprintf(stderr, "sim-server: ended in the middle of a step, which takes more than %ld s\n", patience.tv_sec);
+    if (next < 0) std::fprintf(stderr, "sim-server: ended in the middle of a step, which takes more than %ld s\n", timeout.tv_sec);
     end_process(signal);
   }
   static bool is_input_closed() {

@@ -70,7 +70,7 @@ bool leaves_the_world_alone(const shm::Request& request) {
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
-constexpr std::chrono::seconds patience{3};
+constexpr std::chrono::seconds longest_delay{3};
 
 using Clock = std::chrono::steady_clock;
 
@@ -99,7 +99,7 @@ struct ServerLoop::Handler {
   }
   // Answered when the steps are done.
   shm::Reply operator()(const shm::StepRequest& request) {
-    if (loop.step_ticket_) return refused(shm::RequestStatus::failed, "steps of another client are under way");
+    if (loop.step_ticket_) return refused(shm::RequestStatus::failed, "another client's steps are running");
     loop.mode_.make_steps(static_cast<std::uint64_t>(request.steps), request.is_paced);
     loop.start_pace();
     loop.step_ticket_ = ticket;
@@ -181,7 +181,7 @@ struct ServerLoop::Handler {
     }
     constexpr std::string_view deleted = "deleted://";
     if (request.sdf.starts_with(deleted) && !(request.gains.empty() && request.joints.empty()))
-      return refused(shm::RequestStatus::bad_request, "a deleted model comes back as it was; gains and joints cannot be given");
+      return refused(shm::RequestStatus::bad_request, "a deleted model is restored as it was; gains and joints cannot be given");
     if (request.is_path && request.sdf.starts_with(deleted)) return restore(request.sdf.substr(deleted.size()));
     // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
@@ -232,7 +232,7 @@ struct ServerLoop::Handler {
     return {};
   }
   shm::Reply operator()(const shm::ShowRequest&) {
-    if (!loop.mode_.stands_still()) return refused(shm::RequestStatus::failed, "time goes on; pause the simulation first");
+    if (!loop.mode_.stands_still()) return refused(shm::RequestStatus::failed, "the simulation is running; pause it first");
     simulation.show_present();
     return {};
   }
@@ -344,13 +344,14 @@ void ServerLoop::spawn_loaded(When when) {
   for (auto& [done, since] : std::exchange(loaded_, {})) {
     if (!board_.is_awaited(done.ticket)) continue;
     const auto ticket = done.ticket;
-    if (when == When::in_tick && Clock::now() - since < patience) {
+    if (when == When::in_tick && Clock::now() - since < longest_delay) {
       kept.push_back({std::move(done), since});
       continue;
     }
-    shm::Reply reply = when == When::between_steps
-                           ? spawn(std::move(done))
-                           : refused(shm::RequestStatus::failed, "time stands still: " + late_participants() + " has not ended its tick");
+    shm::Reply reply =
+        when == When::between_steps
+            ? spawn(std::move(done))
+            : refused(shm::RequestStatus::failed, "simulated time does not advance: " + late_participants() + " has not ended its tick");
     reply.sim_time_ns = simulation_.time().count();
     reply.steps = simulation_.steps();
     board_.reply(ticket, reply);
@@ -393,11 +394,11 @@ void ServerLoop::handle_requests(When when) {
     // What its client was told has failed must not happen later.
     if (!board_.is_awaited(asked.ticket)) continue;
     if (when == When::in_tick && !leaves_the_world_alone(asked.request)) {
-      if (Clock::now() - since < patience) {
+      if (Clock::now() - since < longest_delay) {
         postponed_.push_back({std::move(asked), since});
       } else {
-        board_.reply(asked.ticket,
-                     refused(shm::RequestStatus::failed, "time stands still: " + late_participants() + " has not ended its tick"));
+        board_.reply(asked.ticket, refused(shm::RequestStatus::failed,
+                                           "simulated time does not advance: " + late_participants() + " has not ended its tick"));
       }
       continue;
     }

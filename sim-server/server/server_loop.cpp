@@ -65,13 +65,13 @@ void ServerLoop::on_barrier_event(const shm::BarrierEvent& event) {
   };
   switch (event.kind) {
     case Kind::joined:
-      return say(base::Level::info, "takes part");
+      return say(base::Level::info, "joined");
     case Kind::left:
       return say(base::Level::info, "has left");
     case Kind::died:
       note_death(event);
-      if (death_) return say(base::Level::warn, "died; time stops");
-      return say(base::Level::warn, "died; time goes on without it");
+      if (death_) return say(base::Level::warn, "exited; simulated time stops");
+      return say(base::Level::warn, "exited; simulated time continues without it");
     case Kind::hangs:
       return say(base::Level::warn, "has not finished its tick for a second; time waits for it");
     case Kind::dropped:
@@ -294,7 +294,7 @@ void ServerLoop::end_steps_at_death() {
   for (const auto& name : death.in_tick) reply.text += (reply.text.empty() ? "" : "\n") + name;
   reply.values[0] = seconds(simulation_.time().count());
   reply.values[1] = seconds(death.period_ns);
-  end_steps("process " + std::to_string(death.pid) + ", which takes part in the lock step, has died", std::move(reply));
+  end_steps("process " + std::to_string(death.pid) + ", a lock-step participant, exited", std::move(reply));
 }
 
 void ServerLoop::end_steps(const std::string& why, shm::Reply reply) {

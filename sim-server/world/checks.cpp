@@ -482,7 +482,7 @@ bool mend_model(pugi::xml_node model, Complaints& complaints) {
     if (!reference || std::string_view(reference.value()).empty() || names.contains(reference.value())) return;
     if (std::string_view(node.name()) == "pose" && node.parent() == model) return;  // seen from outside the model
     complaints.warn(node, "<" + std::string(node.name()) + "> in " + describe_in_context(model) + " refers to " +
-                              base::in_quotes(reference.value()) + ", which does not exist; it is taken as if it referred to nothing");
+                              base::in_quotes(reference.value()) + ", which does not exist; it is ignored");
     node.remove_attribute(reference);
   });
   mend_circular_references(model, complaints);

@@ -25,7 +25,7 @@ void take_out(const NamedPlace& place, Relation relation, const std::string& why
   const pugi::xml_attribute reference = reference_of(place, relation);
   const pugi::xml_node thing = place.frame ? place.frame : place.pose.parent();
   complaints.warn(thing, describe_in_context(thing) + (is_attached ? " is attached to " : " stands relative to ") +
-                             base::in_quotes(reference.value()) + ", " + why + "; it is taken as if it referred to nothing");
+                             base::in_quotes(reference.value()) + ", " + why + "; it is ignored");
   holder.remove_attribute(reference);
 }
 

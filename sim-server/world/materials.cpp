@@ -274,7 +274,7 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
       if (!parent.empty() && !at) material = built_in_material(parent).value_or(material);
       if (!is_in_line(at) && line.size() < most_ancestors) continue;
       if (at && faults) {
-        (*faults)[start.first] = is_in_line(at) ? "inherits from itself by way of " + base::in_quotes(line.back()->first)
+        (*faults)[start.first] = is_in_line(at) ? "inherits from itself through " + base::in_quotes(line.back()->first)
                                                 : "inherits over more than " + std::to_string(most_ancestors) + " generations";
       }
       break;

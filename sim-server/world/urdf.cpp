@@ -31,7 +31,7 @@ Fault wrong_names(pugi::xml_node robot, const char* kind) {
   std::set<std::string_view> names;
   for (const pugi::xml_node node : robot.children(kind)) {
     if (urdf_name(node).empty()) return "a <" + std::string(kind) + "> has no name";
-    if (!names.insert(urdf_name(node)).second) return std::string(kind) + " " + base::in_quotes(urdf_name(node)) + " is there twice";
+    if (!names.insert(urdf_name(node)).second) return std::string(kind) + " " + base::in_quotes(urdf_name(node)) + " appears twice";
   }
   return {};
 }
@@ -79,7 +79,7 @@ Fault wrong_tree(pugi::xml_node robot) {
   }
   if (roots.empty()) return robot.child("link") ? "its links hang on each other in a ring" : "it has no link";
   if (roots.size() > 1)
-    return "links " + base::in_quotes(roots[0]) + " and " + base::in_quotes(roots[1]) + " hang on nothing; one root is allowed";
+    return "links " + base::in_quotes(roots[0]) + " and " + base::in_quotes(roots[1]) + " have no parent; one root is allowed";
   return {};
 }
 

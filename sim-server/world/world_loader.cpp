@@ -446,7 +446,7 @@ base::Result<LoadedModel> Loader::model(std::string_view what, const std::string
   result.found = files_.found();
   result.found[{"", std::string(trimmed)}] = complaints_.place_of(found).file;
   if (world.models.empty()) {
-    return base::Error{result.findings.empty() ? "no model comes out of " + base::in_quotes(trimmed.substr(0, 80))
+    return base::Error{result.findings.empty() ? "no model found in " + base::in_quotes(trimmed.substr(0, 80))
                                                : result.findings.back().text()};
   }
   result.model = std::move(world.models.front());

@@ -163,7 +163,7 @@ TEST(DetachableJoints, of_what_is_not_there_are_lines) {
   EXPECT_EQ(Scene(crane("box", "nose")).turn("crane::box", true), "crane::box: model box has no link \"nose\"");
   Scene wrong(crane("", "body"));
   ASSERT_EQ(wrong.f.dropped.size(), 1U);
-  EXPECT_NE(wrong.f.dropped[0].find("child_model and child_link must name a link of another model; it holds nothing"), std::string::npos)
+  EXPECT_NE(wrong.f.dropped[0].find("child_model and child_link must name a link of another model; it attaches nothing"), std::string::npos)
       << wrong.f.dropped[0];
 }
 

@@ -37,22 +37,22 @@ TEST(Door, says_what_is_open) {
   EXPECT_NE(describe({true, ""}, "127.0.0.1").find("everybody"), std::string::npos);
 }
 
-TEST(Patience, ends_with_those_who_ask_for_nothing) {
-  const auto start = Patience::Time();
-  Patience patience(start);
-  EXPECT_FALSE(patience.look(start + milliseconds(4999), false, false));
-  EXPECT_TRUE(patience.look(start + seconds(5), false, true));
-  EXPECT_FALSE(patience.look(start + seconds(5000), true, false));
+TEST(ClientTimeouts, ends_with_those_who_ask_for_nothing) {
+  const auto start = ClientTimeouts::Time();
+  ClientTimeouts timeouts(start);
+  EXPECT_FALSE(timeouts.expired(start + milliseconds(4999), false, false));
+  EXPECT_TRUE(timeouts.expired(start + seconds(5), false, true));
+  EXPECT_FALSE(timeouts.expired(start + seconds(5000), true, false));
 }
 
-TEST(Patience, ends_with_those_who_do_not_end_a_message) {
-  const auto start = Patience::Time();
-  Patience patience(start);
-  EXPECT_FALSE(patience.look(start + seconds(100), true, true));
-  EXPECT_FALSE(patience.look(start + seconds(129), true, true));
-  EXPECT_TRUE(patience.look(start + seconds(130), true, true));
+TEST(ClientTimeouts, ends_with_those_who_do_not_end_a_message) {
+  const auto start = ClientTimeouts::Time();
+  ClientTimeouts timeouts(start);
+  EXPECT_FALSE(timeouts.expired(start + seconds(100), true, true));
+  EXPECT_FALSE(timeouts.expired(start + seconds(129), true, true));
+  EXPECT_TRUE(timeouts.expired(start + seconds(130), true, true));
   // One message after another is no long message.
-  Patience other(start);
+  ClientTimeouts other(start);
   EXPECT_FALSE(other.look(start + seconds(1), true, true));
   EXPECT_FALSE(other.look(start + seconds(20), true, false));
   EXPECT_FALSE(other.look(start + seconds(40), true, true));

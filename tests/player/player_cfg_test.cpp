@@ -103,7 +103,7 @@ TEST_F(PlayerConfig, errors_name_the_line) {
   EXPECT_EQ(served("driver ( name )"), "robots.cfg:1: key \"name\" has no value");
   EXPECT_EQ(served("driver ( provides [\"laser:0\" )"), "robots.cfg:1: a list [ is not closed");
   EXPECT_EQ(served("driver ( name \"stage\" provides [\"laser:0\"] )"), "robots.cfg:1: laser:0: the driver has no model (or gz_id)");
-  EXPECT_EQ(served("driver ( model \"r0\" provides [\"laser:0\" \"laser:0\"] )"), "robots.cfg:1: laser:0 of port 6665 is there twice");
+  EXPECT_EQ(served("driver ( model \"r0\" provides [\"laser:0\" \"laser:0\"] )"), "robots.cfg:1: laser:0 of port 6665 appears twice");
   EXPECT_EQ(served("driver ( name \"amcl\" provides [\"localize:0\"] )"),
             "robots.cfg: no driver provides a device of a simulator (name \"stage\" or \"gazebo\", model or gz_id)");
   EXPECT_EQ(served("include \"robots.cfg\"\n"), "robots.cfg:1: include: files include each other");

@@ -318,7 +318,7 @@ TEST_F(MappingFile, errors_say_where) {
     return ports ? std::string("accepted") : ports.error().message.substr(path.size());
   };
   EXPECT_EQ(error("ports:\n- port: 70000\n"), ":2: port must be a number from 0 to 65535, got \"70000\"");
-  EXPECT_EQ(error("ports:\n- port: 1\n- port: 1\n"), ":3: port 1 is there twice");
+  EXPECT_EQ(error("ports:\n- port: 1\n- port: 1\n"), ":3: port 1 appears twice");
   EXPECT_EQ(error("ports:\n- robots: [a]\n"), ":2: port is missing");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: \"lazer\" is no interface of Player; did you mean laser?");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    Position2D:0: x\n"),
@@ -331,7 +331,7 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:0: [a, b]\n"), ":4: expected the name of an iface");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:0: sonar:x\n"), ":4: laser:0 can't show an iface of type \"sonar\"");
   EXPECT_EQ(error("ports:\n- port: 1\n  colour: red\n"), ":3: expected port, robots or devices, got \"colour\"");
-  EXPECT_EQ(error("ports:\n- port: 1\n  robots: [a]\n  robots: [b]\n"), ":4: the key \"robots\" is there twice");
+  EXPECT_EQ(error("ports:\n- port: 1\n  robots: [a]\n  robots: [b]\n"), ":4: the key \"robots\" appears twice");
   EXPECT_EQ(error("port: 1\n"), ":1: expected a list called ports and nothing else");
   EXPECT_EQ(error("ports: []\n"), ":1: there is no port");
   EXPECT_NE(error("ports: [\n").find(":"), std::string::npos);

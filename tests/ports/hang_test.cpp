@@ -225,7 +225,7 @@ TEST_F(Faults, leaving_a_peer_that_hangs_takes_a_moment_for_all_its_connections_
   EXPECT_EQ(third.disconnect_all(), RTC::RTC_OK);
   EXPECT_EQ(first.disconnect_all(), RTC::RTC_OK);
   EXPECT_EQ(second.disconnect_all(), RTC::RTC_OK);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, corba::port_call_timeout()) << "one call of the usual patience would last as long";
+  EXPECT_LT(std::chrono::steady_clock::now() - start, corba::port_call_timeout()) << "one call of the usual timeout would last as long";
   EXPECT_EQ(first.connectors().size() + second.connectors().size() + third.connectors().size(), 0u);
   // The peer has had the message when it wakes.
   peer.process().signal(SIGCONT);

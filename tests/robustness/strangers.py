@@ -143,7 +143,7 @@ class Strangers(unittest.TestCase):
         closed = self.host("-o", "manager.instance_name:closed")
         slave = reference(closed.port, b"manager")
         self.assertNotEqual(call(stranger, ours.port, "add_slave_manager", slave).number(), 0)
-        self.assertIn("asked for _non_existent for another account of this machine who may not come in: refused", closed.text())
+        self.assertIn("asked for _non_existent for another account of this machine and was rejected", closed.text())
         self.assertEqual(call(ourselves, ours.port, "add_slave_manager", slave).number(), 0)
         wanted = text("SinkAll?manager_name=closed")
         self.assertFalse(call(stranger, ours.port, "create_component", wanted).is_nil())  # here: there is no such slave
@@ -168,7 +168,7 @@ class Strangers(unittest.TestCase):
         closed = self.host("-o", "manager.components.precreate:SinkAll")
         wanted = text(f"PeriodicECSharedComposite?conf.default.members=rtcloc://127.0.0.1:{closed.port}/*/SinkAll0")
         call(stranger, ours.port, "create_component", wanted)
-        self.assertIn("for another account of this machine who may not come in: refused", closed.text())
+        self.assertIn("for another account of this machine and was rejected", closed.text())
 
     def test_strangers_see_no_secrets(self):
         os.environ["RTMSIM_TEST_SECRET"] = "swordfish"
@@ -214,7 +214,7 @@ class Strangers(unittest.TestCase):
         self.addCleanup(sent_on.close)
         self.assertEqual(call(stranger, ours.port, "add_master_manager", reference(sent_on.port, b"any")).number(), 0)
         self.assertEqual(ours.end(), 0)
-        self.assertIn("asked for remove_slave_manager for another account of this machine who may not come in: refused", closed.text())
+        self.assertIn("asked for remove_slave_manager for another account of this machine and was rejected", closed.text())
 
     # LOCATION_FORWARD_PERM: the ORB would take the new reference for the one that was given.
     def test_calls_that_an_answer_sends_on_for_ever_do_not_go_there_unmarked(self):

@@ -74,7 +74,7 @@ TEST_F(ExpectationsTest, contacts_count_for_both_models_and_the_ground_does_not)
 TEST_F(ExpectationsTest, values_states_and_commands_are_judged_by_what_was_seen) {
   EXPECT_EQ(problem("- value: {port: 'A0:out', member: data, min: -1, max: 2}"), "");
   EXPECT_NE(problem("- value: {port: 'A0:out', member: data, min: 0}"), "");
-  EXPECT_EQ(problem("- value: {port: 'A0:out', member: other, min: 0}"), "no sample came");
+  EXPECT_EQ(problem("- value: {port: 'A0:out', member: other, min: 0}"), "no sample arrived");
   EXPECT_EQ(problem("- state: {component: A0, is: active}"), "");
   EXPECT_EQ(problem("- state: {component: A0, is: Error}"), "it is Active");
   EXPECT_EQ(problem("- command: 'true'"), "it was not run");

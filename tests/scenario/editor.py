@@ -348,7 +348,7 @@ def why_not():
     refused("mgr", "create", "SourceAll?instance_name=SinkAll0", says="there is a component SinkAll0 already")
     rig.rtse("mgr", "create", "SinkAll?instance_name=SinkAll0")  # it is there
     refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')
-    refused("mgr", "unload", "SinkAll.so", says="components of it are there")
+    refused("mgr", "unload", "SinkAll.so", says="components of it exist")
     refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38")
 
 

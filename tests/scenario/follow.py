@@ -156,7 +156,7 @@ def wrong_servers():
         port = listener.getsockname()[1]
         refused(follow(port, "--wait", "0"), "refused")
         listener.listen()
-        for hello, says in ((b"HTTP/1.1 400 Bad Request\r\n\r\n" + bytes(20), "no server of Player"), (b"Player v", "closed"), (b"Player v.3".ljust(32, b"\0") + b"\xff" * 40, "sends")):
+        for hello, says in ((b"HTTP/1.1 400 Bad Request\r\n\r\n" + bytes(20), "not a Player server"), (b"Player v", "closed"), (b"Player v.3".ljust(32, b"\0") + b"\xff" * 40, "sends")):
             process = subprocess.Popen([f"{bin_dir}/follow", "--port", str(port)], stderr=subprocess.PIPE, text=True)
             peer, _ = listener.accept()
             peer.sendall(hello)

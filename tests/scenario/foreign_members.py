@@ -79,7 +79,7 @@ def join_and_leave():
         s.rtse("act", "Alien")
         s.until("calls in its own context", lambda: ["on_execute", "0"] in s.calls("Alien"))
         said = s.rtse("join", "Alien", "--phase", "1", "--rate", "100", "--server-id", s.server_id)
-        assert "takes part" in said and "phase 1" in said and "once that runs" not in said, said
+        assert "participates in simulator" in said and "phase 1" in said and "once that runs" not in said, said
         assert {p["name"] for p in s.participants()} == {"From", "To", "Alien"}
         s.rtse("act", "From", "To")
         assert s.state("Alien") == "Active"
@@ -172,7 +172,7 @@ def started():
         for fault in ("", "--fault 300@*", "--fault 1500@3"):
             code, err, read, calls = r.run(start=r.start(fault), duration="0.5")
             assert code == 0 and "stamped with simulated time" in err and "Alien.out to To.in" in err, (code, err)
-            assert ("it is waited for" in err) == ("1500" in fault), err
+            assert ("waiting up to" in err) == ("1500" in fault), err
             seen.append((read, calls))
         assert len(set(seen)) == 1, seen
         read, calls = seen[0]
@@ -223,7 +223,7 @@ def faulty():
                 out.write(f"processes:\n  - command: {r.command(options)}; sleep 1000\n    components:\n      - {{name: Alien, join: {how}}}\n")
             done = subprocess.run([f"{bin_dir}/rtse", "run", system, "--world", empty, "--module-path", lib_dir, "--duration", "1000000", "--run-file", f"{r.path}/run.yaml"],
                                   text=True, capture_output=True, timeout=120)
-            assert done.returncode == 1 and re.search(r"component Alien: .* is gone( in onExecute)? at 0.2 s", done.stderr), done
+            assert done.returncode == 1 and re.search(r"component Alien: .* was lost( in onExecute)? at 0.2 s", done.stderr), done
         # Where the command itself ends: also then the time is that of the tick, however far the others have come.
         code, err, read, calls = r.run("--hang-timeout", "1", start=r.start("--fault die@3"), duration="1000000")
         assert code == 1 and re.search(r"process of Alien .* killed by signal 9.*, at 0.2 s", err), err
@@ -393,7 +393,7 @@ def wrong_start():
         for text, why in (("processes: []", "needs a list"), ("process: 1", "has no key"), ("processes: [{command: x, components: [Nobody]}]", "no component Nobody"),
                           ("processes: [{command: x, components: [{name: Alien, phase: 99}]}]", "phase must be"), ("processes: [{command: x, components: [Alien, Alien]}]", "twice"),
                           ("processes: [{command: x, wait: nan, components: [Alien]}]", "wait must be"), ("processes: [{command: x, folder: nowhere, components: [Alien]}]", "no such folder"),
-                          ("processes: [{command: x, command: y, components: [Alien]}]", 'key "command" is there twice'),
+                          ("processes: [{command: x, command: y, components: [Alien]}]", 'key "command" appears twice'),
                           ("processes: [{command: x, components: [{name: Alien, join: up}]}]", "join must be"), ("][", "run.yaml:1")):
             with open(file, "w") as out:
                 out.write(text)
@@ -485,7 +485,7 @@ def faulty_ticked():
         seen = []
         for fault in ("", "300@*", "1500@3"):
             code, err, read, calls = run(fault)
-            assert code == 0 and ("it is waited for" in err) == ("1500" in fault), (fault, code, err)
+            assert code == 0 and ("waiting up to" in err) == ("1500" in fault), (fault, code, err)
             seen.append((read, calls))
         assert len(set(seen)) == 1 and seen[0][1].count("on_execute 0") == 6, seen
         code, err, read, calls = run("throw@3")
@@ -544,7 +544,7 @@ def clock():
         s.until("a participant", lambda: s.participants())
         s.kill(process)
         s.simctl("step", "30")
-        assert s.state("Alien_clock3") == "Error" and "is gone" in "".join(s.log(one) for one in s.running), s.state("Alien_clock3")
+        assert s.state("Alien_clock3") == "Error" and "was lost" in "".join(s.log(one) for one in s.running), s.state("Alien_clock3")
 
 
 def one_context():

@@ -285,7 +285,7 @@ def broken_ring():
     there = ["r-004.mcap", "r-005.mcap"]
     newer = fresh()
     flip(newer, (chunk_of(newer, 3) + 4, 1))  # its length
-    repaired(1, 12, '"r-005.mcap": not all can be read: ', " bytes are lost; ", "the last record is cut off", "the pieces stay")
+    repaired(1, 12, '"r-005.mcap": not all can be read: ', " bytes are lost; ", "the last record is truncated", "the pieces stay")
     newer = fresh()
     flip(newer, (chunk_of(newer, 3), 0x80))  # its opcode
     repaired(1, 19, '"r-005.mcap": not all can be read: 1 samples are lost; ', "a record of kind 134 among the data")

@@ -40,7 +40,7 @@ with tempfile.TemporaryDirectory() as folder:
         if not is_good:
             wrong.append(f"{' '.join(words)}: exit {code}: {text.strip()}")
         code, text = said(words, "aFolder")
-        if words[0] == "rtse" and not (code in (1, 2) and text.count("\n") == 1 and "aFolder" in text and ("a file is expected" in text or "is no recording" in text)):
+        if words[0] == "rtse" and not (code in (1, 2) and text.count("\n") == 1 and "aFolder" in text and ("a file is expected" in text or "is not a recording" in text)):
             wrong.append(f"{' '.join(words)} of a folder: exit {code}: {text.strip()}")
     code, text = said(["rtse", "load", "FILE"], "system.xml")
     assert "did you mean systm.xml?" in text, text

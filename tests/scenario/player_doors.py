@@ -64,7 +64,7 @@ def accounts():
         rig.process.terminate()
         assert rig.process.wait(20) == 0
         rig.gateway("--port", "0", "--open")
-        assert "open: everybody who reaches 127.0.0.1" in rig.log(rig.process)
+        assert "open: every client that reaches 127.0.0.1" in rig.log(rig.process)
         assert listed(rig.ports[0]) == "listed"
         rig.process.terminate()
         assert rig.process.wait(20) == 0

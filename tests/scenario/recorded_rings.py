@@ -89,7 +89,7 @@ def again():
     os.mkdir(file)
     third.send_signal(signal.SIGINT)
     err = third.communicate(timeout=60)[1]
-    assert third.returncode == 1 and err.count("\n") == 1 and f'"{file}": cannot be written: Is a directory; what came before is in "' in err, err
+    assert third.returncode == 1 and err.count("\n") == 1 and f'"{file}": cannot be written: Is a directory; earlier samples are in "' in err, err
     assert len(pieces()) == 2 and not os.path.exists(file + ".part"), pieces()
     os.rmdir(file)
     assert "samples kept of" in rig.rtse("recording", "repair", file) and len(scan_times("run.mcap")) in (10, 11)
@@ -154,7 +154,7 @@ def full_disk():
     err = process.communicate(timeout=60)[1]
     piece = rig.path("run-001.mcap")
     assert process.returncode == 1 and err.count("\n") == 1, err
-    assert f'"{piece}": cannot be written: File too large; what came before is in "{piece}", rtse recording repair {file} puts it together' in err, err
+    assert f'"{piece}": cannot be written: File too large; earlier samples are in "{piece}", rtse recording repair {file} puts it together' in err, err
     kept = len(scan_times("run-001.mcap"))
     assert kept > 0 and rig.rtse("recording", "repair", file) == f'{kept} samples kept of "{piece}"\n', kept
     assert len(scan_times("run.mcap")) == kept

@@ -400,7 +400,7 @@ def slow_start():
         os.chmod(never, 0o755)
         place.environment["PATH"] = f"{place.path}:{place.environment['PATH']}"
         code, out, err = place.run(avoidance, course, "--start-timeout", "6")
-        assert code == 1 and "name server: not ready after" in err and "s, is waited for up to 6 s (--start-timeout)" in err, err
+        assert code == 1 and "name server: not ready after" in err and "s; waiting up to 6 s (--start-timeout)" in err, err
         assert "not ready after 6 s (--start-timeout)" in err, err
         code, out, err = place.run(avoidance, course, "--start-timeout", "0")
         assert code == 2 and "--start-timeout" in err, err

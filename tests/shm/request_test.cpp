@@ -102,7 +102,7 @@ TEST(Requests, nonsense_is_refused_with_a_message) {
   EXPECT_EQ(message(ResetRequest{true, 5}), "request reset: a reset of the poses alone keeps the seed");
   EXPECT_EQ(message(FaultRequest{"", "off", std::nullopt, 0}), "request fault: needs a name");
   EXPECT_EQ(message(FaultRequest{"laser", "odd", std::nullopt, 0}),
-            "fault \"odd\": is none; expected one of off, stuck, bias, noise, missing, latency, dropout, weak, halted");
+            "fault \"odd\": unknown fault; expected one of off, stuck, bias, noise, missing, latency, dropout, weak, halted");
   EXPECT_EQ(message(FaultRequest{"laser", "dropout", 1.5, 0}), "fault dropout: its amount must be from 0 to 1, got 1.5");
   EXPECT_EQ(message(FaultRequest{"laser", "latency", 2.5, 0}), "fault latency: its amount must be a whole number of samples, got 2.5");
   EXPECT_EQ(message(FaultRequest{"laser", "off", std::nullopt, -1}), "request fault: duration must not be negative, got -1");

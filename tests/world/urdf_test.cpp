@@ -31,8 +31,8 @@ TEST(Urdf, that_is_refused_has_the_reason) {
            Case{"<xacro:property name='w' value='1'/>" + two + joint("fixed", ends + "<origin xyz='${w} 0 0'/>"),
                 "it must be expanded by xacro first, it has <xacro:property>", "name='r' xmlns:xacro='http://ros.org/wiki/xacro'"},
            Case{two + joint("fixed", "<parent link='none'/><child link='b'/>"), "parent \"none\" of joint \"j\" does not exist"},
-           Case{two, "links \"a\" and \"b\" hang on nothing; one root is allowed"},
-           Case{link("a") + link("a") + joint("fixed", ends), "link \"a\" is there twice"},
+           Case{two, "links \"a\" and \"b\" have no parent; one root is allowed"},
+           Case{link("a") + link("a") + joint("fixed", ends), "link \"a\" appears twice"},
            Case{two + joint("hinge", ends), "joint \"j\" has the unknown type \"hinge\""},
        }) {
     const auto loaded = load(each.content, each.attributes);

@@ -366,9 +366,9 @@ TEST(Materials, inherit_from_later_ones_and_never_from_themselves) {
   EXPECT_EQ(materials.at("Child").diffuse, (Color{0, 0, 1, 1}));
   EXPECT_EQ(materials.at("Child").texture, "child.png");
   EXPECT_EQ(materials.at("A").diffuse, (Color{1, 0, 0, 1}));
-  EXPECT_THAT(faults, testing::UnorderedElementsAre(testing::Pair("A", "inherits from itself by way of \"B\""),
-                                                    testing::Pair("B", "inherits from itself by way of \"A\""),
-                                                    testing::Pair("Own", "inherits from itself by way of \"Own\"")));
+  EXPECT_THAT(faults, testing::UnorderedElementsAre(testing::Pair("A", "inherits from itself through \"B\""),
+                                                    testing::Pair("B", "inherits from itself through \"A\""),
+                                                    testing::Pair("Own", "inherits from itself through \"Own\"")));
 }
 
 TEST(Materials, that_inherit_in_a_circle_are_told_once_when_used) {

@@ -86,7 +86,7 @@ base::Result<Picture> picture_of(const std::string& type, const Json& sample) {
     if (type == "sensor_msgs/msg/CompressedImage") return from_jpeg(base::from_base64(sample.value("data", "")));
     return from_component(sample);
   } catch (const Json::exception&) {
-    return base::Error{"its samples say " + base::in_quotes(type) + " and have members of other types"};
+    return base::Error{"its samples name the type " + base::in_quotes(type) + " and have members of other types"};
   }
 }
 

@@ -41,7 +41,7 @@ base::Result<RingPiece> read_piece(const std::string& path) {
                      std::chrono::nanoseconds(number_at(one->texts, "span_ns")),
                      compression == one->texts.end() ? "zstd" : compression->second};
   }
-  return base::Error{base::in_quotes(path) + ": does not say that it is a piece of a ring"};
+  return base::Error{base::in_quotes(path) + ": is not marked as a segment of a ring recording"};
 }
 
 // The files with names of pieces, by the numbers in these.
@@ -173,7 +173,7 @@ void Joint::note_losses(const mcap::Reader& piece, const std::string& path, std:
   if (samples > 0) line += " " + std::to_string(samples) + " samples are lost;";
   if (unread.octets > 0) line += " " + std::to_string(unread.octets) + " bytes are lost;";
   samples_lost_ += samples;
-  losses_.push_back(line + " " + damage.value_or(piece.damage().value_or("it has fewer samples than it says")));
+  losses_.push_back(line + " " + damage.value_or(piece.damage().value_or("it has fewer samples than its summary lists")));
 }
 
 // What of a piece cannot be read is left out and told.

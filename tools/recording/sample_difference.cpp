@@ -25,7 +25,7 @@ bool is_near(const DifferenceOptions& options, const std::string& member, const 
 
 std::optional<std::string> differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b);
 
-std::optional<std::string> one_alone(const std::string& place) { return place + ": is there in one of them only"; }
+std::optional<std::string> one_alone(const std::string& place) { return place + ": exists in one of them only"; }
 
 std::optional<std::string> objects_differ(const DifferenceOptions& options, const std::string& place, const Json& a, const Json& b) {
   for (auto one = a.begin(), other = b.begin(); one != a.end() || other != b.end(); ++one, ++other) {

@@ -13,7 +13,7 @@ namespace editor {
 namespace {
 
 constexpr std::chrono::milliseconds offer_limit{500};
-constexpr std::chrono::seconds patience_with_modules{5};  // a manager looks into each file of its load path
+constexpr std::chrono::seconds modules_timeout{5};  // a manager looks into each file of its load path
 
 // The value of an option that stands before.
 std::string option_value(const std::vector<std::string>& words, const std::string& option, const std::string& otherwise) {
@@ -51,7 +51,7 @@ std::vector<base::Offer> names(const Session& session, const std::string& curren
     if (std::ranges::find(kinds, entry->kind) == kinds.end()) continue;
     const auto is_path = current.find('/') != std::string::npos || count[entry->id] > 1;
     const auto is_short = current.starts_with('/') ? entry->path() : base::join({entry->segments.begin() + 1, entry->segments.end()}, "/");
-    const auto health = entry->health == Health::alive ? "" : entry->health == Health::hung ? "does not answer" : "is gone";
+    const auto health = entry->health == Health::alive ? "" : entry->health == Health::hung ? "does not answer" : "does not exist";
     offers.push_back({(is_path                               ? is_short
                        : entry->kind == EntryKind::component ? escape_name(entry->id)
                                                              : entry->name()) +
@@ -100,7 +100,7 @@ std::vector<base::Offer> types(const Session& session, const std::vector<std::st
   const auto tree = session.tree();
   const auto wanted = parse_address(option_value(words, "-m", option_value(words, "--manager", "")), "");
   if (!tree || !wanted) return offers;
-  const CallLimit limited(patience_with_modules);
+  const CallLimit limited(modules_timeout);
   for (const auto* entry : tree->objects()) {
     if (entry->kind != EntryKind::manager || entry->health != Health::alive) continue;
     if (!wanted->segments.empty() && !matches(wanted->segments.back(), entry->id, entry->kind_text)) continue;

@@ -193,7 +193,7 @@ std::vector<std::string> BreakWatch::missing() const {
                       (state_->ports.at(value.name)->latest.snapshot().is_there ? " has no number " + value.member : " has sent nothing"));
         break;
       case ValueKind::state:
-        all.push_back("component " + value.name + " does not say its state");
+        all.push_back("component " + value.name + " does not report its state");
         break;
       case ValueKind::touches:
         all.push_back("the world has no model " + value.name);

@@ -62,7 +62,7 @@ Result<void> check_value(const Session& session, const Expectation& expectation)
   const auto port = session.port(expectation.port);
   if (!port) return about(expectation, port.error().message);
   if (port->port.port_type() != "DataOutPort")
-    return about(expectation, "port " + expectation.port + ": is no OutPort, so there are no values to see");
+    return about(expectation, "port " + expectation.port + ": is not an OutPort, so it has no values");
   const auto type = port->port.data_type();
   if (CORBA::is_nil(type_code_of(type)))
     return about(expectation, "port " + expectation.port + ": carries " + type + ", which rtse does not know");

@@ -145,9 +145,9 @@ std::string contact_problem(const Expectation& e, const PoseRecord& record, cons
 
 std::string value_problem(const Expectation& e, const Seen& seen) {
   const auto found = seen.values.find(e.port + " " + e.member);
-  if (found == seen.values.end()) return "no sample came";
+  if (found == seen.values.end()) return "no sample arrived";
   const auto& value = found->second;
-  if (value.samples == 0) return value.problem.empty() ? "no sample came" : value.problem;
+  if (value.samples == 0) return value.problem.empty() ? "no sample arrived" : value.problem;
   if (value.not_numbers > 0)
     return "it was not a number (NaN) in " + std::to_string(value.not_numbers) + " of " + std::to_string(value.samples) + " samples";
   const auto fits = [&](double number) { return e.condition.holds([&](const auto&) { return std::optional(number); }).value(); };

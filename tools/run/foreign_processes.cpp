@@ -126,7 +126,7 @@ void ForeignProcesses::order_calls(const SavedSystem& system, std::vector<Compon
     member.turn = order.turn_of(member.instance);
     if (member.how == TimeMember::How::clock && member.turn > 0)
       chances_.push_back("component " + member.instance +
-                         ": OpenHRP's clock ticks it together with those of its phase to whom it sends: give it another phase");
+                         ": OpenHRP's clock ticks it together with its receivers in the phase: give it another phase");
   }
   for (const auto& component : system.components) {
     if (const int turn = order.turn_of(component.instance); turn > 0 && !has(component.instance))
@@ -145,7 +145,7 @@ std::vector<std::string> ForeignProcesses::components_of(const ForeignProcess& p
   return names;
 }
 
-std::chrono::duration<double> ForeignProcesses::patience(std::chrono::duration<double> usual) const {
+std::chrono::duration<double> ForeignProcesses::start_timeout(std::chrono::duration<double> usual) const {
   double longest = 0;
   for (const auto& process : processes_) longest = std::max(longest, process.wait_s.value_or(usual.count()));
   return std::chrono::duration<double>(longest);
@@ -207,11 +207,11 @@ std::vector<std::string> ForeignProcesses::creations(const std::string& server_i
   return all;
 }
 
-Result<void> ForeignProcesses::join(const Session& session, SavedSystem& system, std::chrono::milliseconds patience) {
+Result<void> ForeignProcesses::join(const Session& session, SavedSystem& system, std::chrono::milliseconds timeout) {
   for (const auto& member : members_) {
     if (member.how == TimeMember::How::clock) continue;
     const auto path = member.instance + ".rtc";
-    if (const auto joined = join_time(session, path, proxy_name(member.instance) + ".rtc", member.how, patience); !joined) return joined;
+    if (const auto joined = join_time(session, path, proxy_name(member.instance) + ".rtc", member.how, timeout); !joined) return joined;
     const auto view = session.component(path, {.contexts = true});
     if (!view) return view.error();
     if (member.how == TimeMember::How::tick && ticks_on_its_own(*view))
@@ -233,7 +233,7 @@ std::vector<std::string> ForeignProcesses::rest(const Session& session, const Sa
   const auto end = std::chrono::steady_clock::now() + default_transition_timeout;  // of all that hang
   for (const auto& member : members) {
     if (std::chrono::steady_clock::now() > end) {
-      problems.push_back("component " + member.instance + ": was not deactivated, others took too long");
+      problems.push_back("component " + member.instance + ": was not deactivated: other components took too long");
       continue;
     }
     if (const auto rests = rest_in_time(session, member.instance + ".rtc", member.how); !rests) problems.push_back(rests.error().message);

@@ -34,7 +34,7 @@ class ForeignProcesses {
   const std::vector<TimeMember>& members() const { return members_; }
   std::vector<std::string> names() const;
   // The longest that somebody waits for the components of a process.
-  std::chrono::duration<double> patience(std::chrono::duration<double> usual) const;
+  std::chrono::duration<double> start_timeout(std::chrono::duration<double> usual) const;
 
   Result<void> start(const std::string& naming, const std::string& server_id);
   // What the host of their contexts is made of: a proxy for each that needs one, and OpenHRP's clock.
@@ -42,7 +42,7 @@ class ForeignProcesses {
   std::vector<std::string> proxies() const;
   // Brings them into simulated time, once they and their proxies are there; each may take so long for it. In `system` their states are then
   // those in these contexts.
-  Result<void> join(const Session& session, SavedSystem& system, std::chrono::milliseconds patience);
+  Result<void> join(const Session& session, SavedSystem& system, std::chrono::milliseconds timeout);
   // Deactivates those that are active, in the order in which the system stops. What could not be deactivated, one line each.
   std::vector<std::string> rest(const Session& session, const SavedSystem& system) const;
   struct Ended {

@@ -79,12 +79,12 @@ std::string what_differs(const base::HashDifference& difference) {
 std::string seconds(std::chrono::nanoseconds time) { return base::format_number(base::to_seconds(time)) + " s"; }
 
 std::string incomplete(const base::HashComparison& comparison) {
-  if (comparison.ticks == 0) return "there is nothing to compare: both logs have no tick";
+  if (comparison.ticks == 0) return "cannot compare: both logs have no tick";
   if (comparison.is_complete_a && comparison.is_complete_b) return "";
   const std::string which = comparison.is_complete_a   ? "the second run has"
                             : comparison.is_complete_b ? "the first run has"
                                                        : "both runs have";
-  return "nothing differs in " + std::to_string(comparison.ticks) + " ticks, but " + which + " not come to the end";
+  return "no difference in " + std::to_string(comparison.ticks) + " ticks, but " + which + " not come to the end";
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ std::string in_ports(const editor::ComponentView& component) {
   for (const auto& port : component.ports) {
     if (port.port_type() == "DataInPort") names.push_back(port.name);
   }
-  return names.empty() ? ", it has none at all" : "; it has " + base::join(names, ", ");
+  return names.empty() ? ", it has none" : "; it has " + base::join(names, ", ");
 }
 
 base::Result<void> Player::connect() {

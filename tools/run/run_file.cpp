@@ -91,7 +91,7 @@ std::vector<ForeignProcess> all_of(const std::string& text, const std::filesyste
   for (const auto& node : root["processes"]) {
     processes.push_back(process_of(node, beside));
     for (const auto& component : processes.back().components) {
-      if (!names.insert(component.instance).second) fail_at(node, "component " + component.instance + " is there twice");
+      if (!names.insert(component.instance).second) fail_at(node, "component " + component.instance + " appears twice");
     }
   }
   return processes;

@@ -66,7 +66,7 @@ LogLevel level_of(const std::string& line) {
 
 std::string telling_line(const std::string& file) {
   const auto lines = lines_of(file);
-  std::string telling = lines.empty() ? "it said nothing" : lines.back();
+  std::string telling = lines.empty() ? "its log is empty" : lines.back();
   for (const auto& line : lines) {
     if (level_of(line) == LogLevel::error) return line;
     if (level_of(line) == LogLevel::warning) telling = line;

@@ -135,7 +135,7 @@ Error RunHosts::end_of(const Host& host) {
 }
 
 std::vector<RunHosts::Gone> RunHosts::gone_members() {
-  constexpr std::string_view ticked = ": the context that was ticked is gone";  // sim_time_proxy.cpp
+  constexpr std::string_view ticked = ": the context that was ticked was lost";  // sim_time_proxy.cpp
   std::vector<Gone> gone;
   std::error_code error;
   for (auto& host : hosts_) {

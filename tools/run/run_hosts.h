@@ -41,7 +41,7 @@ class RunHosts {
   // Members of others of whom the contexts have said since the last time that they have gone.
   struct Gone {
     std::string instance;
-    std::string said;              // "Alien: component of another process is gone ..."
+    std::string said;              // "Alien: component of another process was lost ..."
     std::optional<double> time{};  // [s], simulated: of the tick in which it was called
   };
   std::vector<Gone> gone_members();

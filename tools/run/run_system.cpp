@@ -161,7 +161,7 @@ class Run final : public RunningSystem {
       if (now - told > limit / 3) {
         told = now;
         reporter_.warn(base::printable(what) + ": not ready after " + std::to_string(std::lround(Seconds(now - began).count())) +
-                       " s, is waited for up to " + base::format_number(limit.count()) + " s (--start-timeout)");
+                       " s; waiting up to " + base::format_number(limit.count()) + " s (--start-timeout)");
       }
       std::this_thread::sleep_for(20ms);  // what is waited for is another program's start, which nobody announces
     }
@@ -278,7 +278,7 @@ class Run final : public RunningSystem {
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
     if (const auto there = await_components(expected, start_limit()); !there) return there;
-    return await_components(foreign_.names(), foreign_.patience(start_limit()));
+    return await_components(foreign_.names(), foreign_.start_timeout(start_limit()));
   }
 
   Result<void> await_components(const std::vector<std::string>& expected, std::chrono::duration<double> limit) {

@@ -105,7 +105,7 @@ Result<void> RunWiring::wait_for_participants() {
     return missing.empty();
   });
   if (waited || missing.empty() || is_interrupted() || !check_children_()) return waited;
-  return Error{"component " + missing + ": does not take part in simulated time after " +
+  return Error{"component " + missing + ": does not participate in simulated time after " +
                base::format_number(parts_.options.start_timeout_s) + " s"};
 }
 

@@ -23,7 +23,7 @@ std::string late_text(Simulator& simulator) { return base::join(late_participant
 std::string wait_text(Simulator& simulator, double time_s, double timeout_s) {
   const auto late = late_text(simulator);
   return (late.empty() ? "the simulator" : late) + ": did not finish its tick at " + base::format_number(time_s) +
-         " s for more than a second of real time; it is waited for up to " + base::format_number(timeout_s) + " s (--hang-timeout)";
+         " s for more than a second of real time; waiting up to " + base::format_number(timeout_s) + " s (--hang-timeout)";
 }
 
 std::string hang_text(Simulator& simulator, double time_s, double timeout_s) {

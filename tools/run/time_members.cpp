@@ -146,10 +146,11 @@ bool ticks_on_its_own(const ComponentView& component) {
 }
 
 Result<void> join_time(const Session& session, const std::string& path, const std::string& proxy, TimeMember::How how,
-                       std::chrono::milliseconds patience) {
+                       std::chrono::milliseconds timeout) {
   const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
-  if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
+  if (simulated_context(*component))
+    return Error{"component " + component->path + ": already participates in simulated time (rtse leave ends that)"};
   const auto host = session.component(proxy, {.contexts = true});
   if (!host) return host.error();
   if (host->contexts.empty() || !is_simulated(host->contexts.front()))
@@ -159,10 +160,10 @@ Result<void> join_time(const Session& session, const std::string& path, const st
   if (!was_active) return was_active.error();
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
   const auto what = "component " + component->path + ": joining simulated time";
-  const CallLimit limited(patience);  // the context asks the component in turn
+  const CallLimit limited(timeout);  // the context asks the component in turn
   const auto called = remote(what, [&] { code = host->contexts.front().object->add_component(component->object); });
   if (!called) return called.error();
-  if (const auto added = check(what, code, "it does not answer attach_context, or has refused; the log of its process may say why"); !added)
+  if (const auto added = check(what, code, "it did not respond to attach_context, or rejected it; see the log of its process"); !added)
     return added;
   return *was_active ? activate_in(session, path, true) : Result<void>();
 }

@@ -83,8 +83,8 @@ void list(Control& control, bool all_servers) {
   if (control.json()) control.print(json);
   if (!any && !all_servers)
     control.fail("server " + std::to_string(control.server_id()) +
-                 ": is not there; simctl list --all shows others, start one with: sim-server -s " + std::to_string(control.server_id()) +
-                 " WORLD");
+                 ": does not exist; simctl list --all shows all simulators; start one with: sim-server -s " +
+                 std::to_string(control.server_id()) + " WORLD");
 }
 
 void info(Control& control, const std::string& name) {

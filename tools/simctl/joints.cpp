@@ -159,7 +159,7 @@ void joints(Control& control, const JointOptions& options) {
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
   const auto limit = old > 0 && is_paused(control.server_id()) ? std::chrono::milliseconds(200) : std::chrono::milliseconds(2000);
   if (iface->wait(old, limit) != shm::Wait::fresh && !iface->read())
-    return control.fail("joints of " + options.model + ": no sample comes");
+    return control.fail("joints of " + options.model + ": no sample arrives");
   if (options.settings.empty()) return show(control, *iface);
   command(control, *iface, options);
 }

@@ -81,7 +81,7 @@ Result<Plan> manager(const ActContext& context, const Json& args) {
                 const auto said = rtse(context, words, true);
                 if (!said) return said.error();
                 const Json list = Json::parse(*said, nullptr, false);
-                if (!list.is_object()) return Error{"manager: rtse has said what cannot be read"};
+                if (!list.is_object()) return Error{"manager: the output of rtse is not JSON"};
                 Json loadable = Json::array();
                 for (const Json& module : list.value("loadable_modules", Json::array())) {
                   const auto file = module.value("module_file_path", module.value("module_file_name", ""));

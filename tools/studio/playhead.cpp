@@ -212,7 +212,7 @@ Result<void> Playhead::show(std::uint32_t number, Watch& watch, News& news) {
   if (latest == watch.shown) return {};
   watch.shown = latest;
   if (latest == 0) {
-    news.push_back({values_key(number), event(number, {{"error", "nothing was said of it up to this time"}})});
+    news.push_back({values_key(number), event(number, {{"error", "no data up to this time"}})});
     return {};
   }
   if (watch.is_picture) {

@@ -45,7 +45,7 @@ WebHandlers RecordedStudio::handlers() {
   return {
       [this](std::shared_ptr<Viewer> viewer) { join(std::move(viewer)); },
       [this](Viewer& viewer, std::string_view text) { hear(viewer, text); },
-      [](Viewer& viewer, std::string_view) { viewer.send(text_frame(status(2, "a recording is open here: nothing takes binary frames"))); },
+      [](Viewer& viewer, std::string_view) { viewer.send(text_frame(status(2, "a recording is open here: binary frames are rejected"))); },
       [this](Viewer& viewer) { leave(viewer); },
       [this](const std::string& path, const std::string& query, const Answer& answer) { return fetch(path, query, answer); }};
 }
@@ -100,7 +100,8 @@ bool RecordedStudio::fetch(const std::string& path, const std::string& query, co
 void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
   viewer->send(text_frame(server_info(session_, Offer::nothing)));
   if (!viewer->speaks_studio()) {
-    return viewer->send(text_frame(status(2, "a recording is open here, nothing runs: open " + base::in_quotes(facts_->file) + " itself")));
+    return viewer->send(
+        text_frame(status(2, "a recording is open here, and no system runs: open " + base::in_quotes(facts_->file) + " itself")));
   }
   auto playhead = Playhead::open(facts_);
   if (!playhead) return viewer->send(text_frame(status(2, playhead.error().message)));
@@ -127,7 +128,7 @@ void RecordedStudio::hear(Viewer& viewer, std::string_view text) {
   const auto* request = std::get_if<Request>(&*message);
   const auto found = guests_.find(viewer.id());
   if (request != nullptr && found != guests_.end()) return handle(found->second, *request);
-  viewer.send(text_frame(status(2, "a recording is open here: nothing is sent on channels")));
+  viewer.send(text_frame(status(2, "a recording is open here: its channels accept no data")));
 }
 
 void RecordedStudio::handle(Guest& guest, const Request& request) {

@@ -212,7 +212,7 @@ void Studio::subscribe(Guest& guest, const Subscribe& message) {
     if (channel != known || !channels_->open_channels().contains(known)) {
       guest.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
     } else if (guest.subscriptions.size() >= most_subscriptions) {
-      guest.viewer->send(text_frame(status(2, "1024 subscriptions are there already")));
+      guest.viewer->send(text_frame(status(2, "too many subscriptions, at most 1024")));
     } else {
       guest.subscriptions[id] = known;
       channels_->want(known, true);

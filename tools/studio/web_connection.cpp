@@ -124,7 +124,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     const bool is_fetched = shared_->handlers.fetch(path, query, [self = shared_from_this()](Content content) {
       boost::asio::post(self->stream_.get_executor(), [self, content = std::move(content)] { self->send_content(content); });
     });
-    if (!is_fetched) return refuse(404, "there is nothing of this name");
+    if (!is_fetched) return refuse(404, "no page of this name");
     stream_.expires_never();  // a fetch ends in time
   }
 

@@ -21,7 +21,7 @@ Properties to_properties(const SDOPackage::NVList& list);
 SDOPackage::NVList to_nv_list(const Properties& properties);
 std::string property(const Properties& properties, const std::string& key, const std::string& otherwise = "");
 
-// What an exception means to the person who called: "does not answer within the time-out", "is gone", ...
+// What an exception means to the person who called: "does not answer within the timeout", "does not exist any more", ...
 std::string describe(const CORBA::Exception& exception);
 // True when the exception says that the peer is there but silent.
 bool is_time_out(const CORBA::Exception& exception);

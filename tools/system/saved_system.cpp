@@ -226,7 +226,7 @@ Result<void> restore_configuration(const Matched& matched, const SavedComponent&
     if (const auto used = use_set(*component, active); !used) return used;
   }
   if (problems.empty()) return {};
-  return Error{"component " + component->path + ": " + base::join(problems, "; ") + " (--force sets it all the same)"};
+  return Error{"component " + component->path + ": " + base::join(problems, "; ") + " (--force sets it anyway)"};
 }
 
 int context_index(const ComponentView& component, const std::string& context_id) {
@@ -252,7 +252,7 @@ Result<void> restore_states(const Session& session, const Matched& matched, cons
   if (!component || !component->problem.empty()) return {};
   for (const auto& context : saved.contexts) {
     const auto index = context_index(*component, context.id);
-    if (component->contexts.empty()) return Error{"component " + component->path + ": takes part in no execution context"};
+    if (component->contexts.empty()) return Error{"component " + component->path + ": participates in no execution context"};
     const auto now = state_text(component->contexts[static_cast<std::size_t>(index)].state);
     if (context.state.empty() || base::equal_ignoring_case(now, context.state)) continue;
     const auto steps = way(now, context.state);

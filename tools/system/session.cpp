@@ -160,7 +160,7 @@ Result<Session::Port> Session::port(const std::string& path, bool with_connector
     std::vector<std::string> names;
     for (const auto& candidate : view->ports) names.push_back(candidate.name);
     return Error{"component " + view->path + ": has no port " + base::in_quotes(address->port) +
-                 (names.empty() ? ", it has none at all" : "; it has " + base::join(names, ", "))};
+                 (names.empty() ? ", it has none" : "; it has " + base::join(names, ", "))};
   }
   const auto copy = *port;
   return Port{std::move(*view), copy};

@@ -40,7 +40,7 @@ RTC::ReturnCode_t call(RTC::ExecutionContext_ptr context, RTC::RTObject_ptr comp
 }
 
 Result<const ContextView*> pick_context(const ComponentView& component, int index) {
-  if (component.contexts.empty()) return Error{"component " + component.path + ": takes part in no execution context"};
+  if (component.contexts.empty()) return Error{"component " + component.path + ": participates in no execution context"};
   if (index < 0) return component.shown_context();
   if (static_cast<std::size_t>(index) >= component.contexts.size()) {
     return Error{"component " + component.path + ": has no execution context number " + std::to_string(index) + ", it has " +

@@ -36,12 +36,12 @@ void Courier::repeat(std::vector<Regular> regulars) {
   condition_.notify_one();
 }
 
-void Courier::finish(std::chrono::nanoseconds patience) {
+void Courier::finish(std::chrono::nanoseconds timeout) {
   {
     auto data = shared_.lock();
     data->is_finishing = true;
     data->regulars.clear();
-    data.wait_for(finished_, patience, [&] { return data->stopping || data->gave_up || (data->waiting.empty() && !data->is_carrying); });
+    data.wait_for(finished_, timeout, [&] { return data->stopping || data->gave_up || (data->waiting.empty() && !data->is_carrying); });
   }
   stop();
 }

@@ -33,8 +33,8 @@ class Courier {
     Message message;
   };
   void repeat(std::vector<Regular> regulars);
-  // What was sent before is still carried, for as long as `patience`; then as stop(). Not from a message.
-  void finish(std::chrono::nanoseconds patience = std::chrono::seconds(1));
+  // What was sent before is still carried, for as long as `timeout`; then as stop(). Not from a message.
+  void finish(std::chrono::nanoseconds timeout = std::chrono::seconds(1));
   // Nothing is carried after return, but for one message that may be on its way.
   void stop();
 

@@ -99,7 +99,7 @@ bool MemberWatch::look(std::uint64_t& seen) {
       long_ones.emplace_back(*call.who, text_of(call) + " has not returned from " + std::string(call.operation));
     }
   }
-  for (const auto& [who, what] : long_ones) base::log(base::Level::warn, who, "{} for {} s; it is waited for", what, long_time.count());
+  for (const auto& [who, what] : long_ones) base::log(base::Level::warn, who, "{} for {} s; still waiting", what, long_time.count());
   return true;
 }
 

@@ -26,7 +26,7 @@ std::string name_of(RTC::LightweightRTObject_ptr component, std::chrono::millise
       return id.in();
     }
   } catch (const CORBA::Exception&) {
-    return "a component that does not tell its name";
+    return "a component that does not report its name";
   }
   return "a component without a name";
 }
@@ -39,7 +39,7 @@ std::string simulated_time_text() {
 
 }  // namespace
 
-CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
+CORBA::Object_ptr copy_with_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
   if (CORBA::is_nil(object)) return CORBA::Object::_nil();
   int argc = 0;
   CORBA::ORB_var orb = CORBA::ORB_init(argc, nullptr);
@@ -49,29 +49,29 @@ CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::millisec
   return own._retn();
 }
 
-RTC::LightweightRTObject_ptr RemoteParticipant::impatient(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout) {
-  CORBA::Object_var own = impatient_copy(component, timeout);
+RTC::LightweightRTObject_ptr RemoteParticipant::with_timeout(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout) {
+  CORBA::Object_var own = copy_with_timeout(component, timeout);
   return RTC::LightweightRTObject::_unchecked_narrow(own);
 }
 
-void MemberPatience::set(std::chrono::nanoseconds limit) {
+void MemberTimeout::set(std::chrono::nanoseconds limit) {
   const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
   constexpr auto without_end = std::chrono::milliseconds(longest).count();
   limit_ms_.store(limit > std::chrono::hours(24) ? without_end : std::max<std::int64_t>(count, 1), std::memory_order_relaxed);
 }
 
 RemoteParticipant::RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
-                                     std::shared_ptr<const MemberPatience> patience, std::shared_ptr<MemberWatch> watch)
-    : component_(impatient(component, patience->is_without_end() ? long_call_timeout : call_timeout)),
+                                     std::shared_ptr<const MemberTimeout> timeout, std::shared_ptr<MemberWatch> watch)
+    : component_(with_timeout(component, timeout->is_without_end() ? long_call_timeout : call_timeout)),
       data_flow_(RTC::DataFlowComponentAction::_narrow(component_)),
       handle_(handle),
-      name_(name_of(component_, patience->is_without_end() ? long_call_timeout : call_timeout)),
+      name_(name_of(component_, timeout->is_without_end() ? long_call_timeout : call_timeout)),
       place_(process_address(component_)),
-      patience_(std::move(patience)),
+      timeout_(std::move(timeout)),
       watch_(std::move(watch)) {}
 
 bool RemoteParticipant::prepare(rt::Action action) {
-  const auto limit = patience_->limit();
+  const auto limit = timeout_->limit();
   bool is_new = false;
   {
     auto state = state_.lock();
@@ -107,7 +107,7 @@ void RemoteParticipant::tell(rt::Action action, const CORBA::Exception& exceptio
   if (is_late || is_gone) state_.lock()->is_lost = true;
   if (is_late) {
     base::log(base::Level::error, name_, "component of another process has not answered {} within {} s; it is left alone until it is reset",
-              callback, base::format_number(static_cast<double>(patience_->limit().count()) / 1000));
+              callback, base::format_number(static_cast<double>(timeout_->limit().count()) / 1000));
   } else if (is_gone) {
     base::log(base::Level::error, name_, "{} in {}{} ({}); it is left alone until it is reset", gone_mark.substr(2), callback,
               simulated_time_text(), to_text(exception));

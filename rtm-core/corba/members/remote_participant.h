@@ -27,16 +27,16 @@
 namespace corba {
 
 // What the log says of a member whose process has ended, or whose object has gone; its name stands before it.
-inline constexpr std::string_view gone_mark = ": component of another process is gone";
+inline constexpr std::string_view gone_mark = ": component of another process was lost";
 
 // What the log says of a member that threw; its name stands before it, "onExecute at 0.2 s: UNKNOWN" behind it.
 inline constexpr std::string_view threw_mark = ": component of another process throws in ";
 
 // A reference of its own to the same object, whose calls end after `timeout` and throw CORBA system exceptions; nil for nil.
-CORBA::Object_ptr impatient_copy(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+CORBA::Object_ptr copy_with_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
 
 // How long members of other processes may take for one callback. Any thread, at any time.
-class MemberPatience {
+class MemberTimeout {
  public:
   static constexpr std::chrono::milliseconds usual{1000};
   static constexpr std::chrono::hours longest{24 * 20};  // what omniORB's clock can hold, in milliseconds
@@ -52,16 +52,17 @@ class MemberPatience {
 class RemoteParticipant final : public rt::Participant {
  public:
   // What else is asked than callbacks.
-  static constexpr std::chrono::milliseconds call_timeout = MemberPatience::usual;
+  static constexpr std::chrono::milliseconds call_timeout = MemberTimeout::usual;
   // The same where the other answer would be part of a repeatable run: when members are waited for without end.
   static constexpr std::chrono::minutes long_call_timeout{1};
 
-  // An impatient_copy.
-  static RTC::LightweightRTObject_ptr impatient(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout = call_timeout);
+  // A copy_with_timeout of the component.
+  static RTC::LightweightRTObject_ptr with_timeout(RTC::LightweightRTObject_ptr component,
+                                                   std::chrono::milliseconds timeout = call_timeout);
 
   // Asks whether it has on_execute and the like; throws CORBA::SystemException when it does not answer that.
   RemoteParticipant(RTC::LightweightRTObject_ptr component, RTC::ExecutionContextHandle_t handle,
-                    std::shared_ptr<const MemberPatience> patience, std::shared_ptr<MemberWatch> watch);
+                    std::shared_ptr<const MemberTimeout> timeout, std::shared_ptr<MemberWatch> watch);
 
   std::string name() const override { return name_; }
   std::string place() const override { return place_; }
@@ -81,7 +82,7 @@ class RemoteParticipant final : public rt::Participant {
   const RTC::ExecutionContextHandle_t handle_;
   const std::string name_;
   const std::string place_;  // its process
-  const std::shared_ptr<const MemberPatience> patience_;
+  const std::shared_ptr<const MemberTimeout> timeout_;
   const std::shared_ptr<MemberWatch> watch_;
   base::Guarded<State, base::Rank::connector> state_;
 };

@@ -113,13 +113,13 @@ ForGiver::ForGiver(CORBA::Object_ptr object) {
   if (const Asker giver = giver_of(object); giver != Asker::own) asker_.emplace(giver);
 }
 
-bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds patience) {
+bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
   if (CORBA::is_nil(object) || asker_of_thread == Asker::own) return true;
   omniObjRef* reference = object->_PR_getobj();
   if (reference != nullptr && is_here(reference)) return true;  // ours, and called without a message
-  if (reference == nullptr || patience <= std::chrono::milliseconds::zero()) return false;
+  if (reference == nullptr || timeout <= std::chrono::milliseconds::zero()) return false;
   try {
-    const CORBA::Object_var asked = impatient_copy(object, patience);
+    const CORBA::Object_var asked = copy_with_timeout(object, timeout);
     if (asked->_non_existent()) return false;
   } catch (const CORBA::Exception& e) {
     base::log(base::Level::warn, "doors", "{}: a reference of its call does not answer it: {}", caller(), to_text(e));

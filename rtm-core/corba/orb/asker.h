@@ -36,7 +36,7 @@ class ForAsker {
 
 // Whether a reference that came with a request may be kept, to be called later: all that are, are asked for here. Those of strangers must
 // answer them in time; those that do are remembered, and a process remembers a million. Nil may be kept.
-bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds patience = std::chrono::seconds(2));
+bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds timeout = std::chrono::seconds(2));
 
 // The stranger who gave this reference; `own` for all others.
 Asker giver_of(CORBA::Object_ptr object);

@@ -48,21 +48,21 @@ bool is_time_out(const CORBA::Exception& problem) {
 
 namespace {
 
-constexpr int most_patience = 3;
+constexpr int most_timeouts = 3;
 
 }  // namespace
 
-ChainDeadline::ChainDeadline(std::chrono::milliseconds patience_for_one)
-    : patience_for_one_(patience_for_one), end_(std::chrono::steady_clock::now() + most_patience * patience_for_one) {}
+ChainDeadline::ChainDeadline(std::chrono::milliseconds timeout_of_one)
+    : timeout_of_one_(timeout_of_one), end_(std::chrono::steady_clock::now() + most_timeouts * timeout_of_one) {}
 
 std::chrono::milliseconds ChainDeadline::left() const {
   return std::chrono::ceil<std::chrono::milliseconds>(end_ - std::chrono::steady_clock::now());
 }
 
-void ChainDeadline::limit(CORBA::Object_ptr object) const { limit_calls(object, std::min(left(), patience_for_one_)); }
+void ChainDeadline::limit(CORBA::Object_ptr object) const { limit_calls(object, std::min(left(), timeout_of_one_)); }
 
-std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all) {
-  return patience_for_one * static_cast<int>(left) / static_cast<int>(all);
+std::chrono::milliseconds chain_timeout(std::chrono::milliseconds timeout_of_one, std::size_t left, std::size_t all) {
+  return timeout_of_one * static_cast<int>(left) / static_cast<int>(all);
 }
 
 }  // namespace corba

@@ -23,22 +23,22 @@ void expect_no_data_held_at_calls();
 // The other side has taken the whole time-out: it hangs, or the way there does.
 bool is_time_out(const CORBA::Exception& problem);
 
-// One deadline for calls that are made one after the other to peers that may all hang: three times the patience for one. Any thread.
+// One deadline for calls that are made one after the other to peers that may all hang: three times the timeout of one. Any thread.
 class ChainDeadline {
  public:
-  explicit ChainDeadline(std::chrono::milliseconds patience_for_one);
+  explicit ChainDeadline(std::chrono::milliseconds timeout_of_one);
   bool is_over() const { return left() <= std::chrono::milliseconds::zero(); }
   std::chrono::milliseconds left() const;
-  // Later calls of this reference end with the deadline, or with the patience for one if that is earlier; at once when it is over.
+  // Later calls of this reference end with the deadline, or with the timeout of one if that is earlier; at once when it is over.
   void limit(CORBA::Object_ptr object) const;
 
  private:
-  std::chrono::milliseconds patience_for_one_;
+  std::chrono::milliseconds timeout_of_one_;
   std::chrono::steady_clock::time_point end_;
 };
 
 // The time-out of a call that leads through `left` of the `all` members of a chain, each of which waits for the next one: whoever comes
-// later gives up earlier, and the whole chain takes at most the patience for one.
-std::chrono::milliseconds chain_timeout(std::chrono::milliseconds patience_for_one, std::size_t left, std::size_t all);
+// later gives up earlier, and the whole chain takes at most the timeout of one.
+std::chrono::milliseconds chain_timeout(std::chrono::milliseconds timeout_of_one, std::size_t left, std::size_t all);
 
 }  // namespace corba

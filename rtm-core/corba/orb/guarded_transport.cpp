@@ -250,7 +250,7 @@ _CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::i
   const Asker who = asker_of(request.giop_s);
   set_asker(who);
   if (who != Asker::own && !may_come_in(who, Doors::instance().state.lock()->settings)) {
-    complain(caller() + " asked for " + request.operation() + " for " + to_text(who) + " who may not come in: refused");
+    complain(caller() + " asked for " + request.operation() + " for " + to_text(who) + " and was rejected");
     throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
   }
   return true;
@@ -323,9 +323,9 @@ class GuardedEndpoint final : public omni::giopEndpoint {
       auto& doors = Doors::instance();
       auto state = doors.state.lock();
       // Those that leave have their files until their threads have seen it.
-      constexpr std::chrono::milliseconds patience{500};
+      constexpr std::chrono::milliseconds timeout{500};
       if (state->connections.size() >= state->most + leaving_files)
-        state.wait_for(doors.gone, patience, [&] { return state->connections.size() < state->most + leaving_files; });
+        state.wait_for(doors.gone, timeout, [&] { return state->connections.size() < state->most + leaving_files; });
       std::size_t staying = 0;
       GuardedConnection* oldest = nullptr;
       for (const auto& [inner, connection] : state->connections) {

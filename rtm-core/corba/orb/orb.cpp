@@ -295,7 +295,7 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   if (failure.empty()) {
     if (doors.open_to != OpenTo::account) {
       base::log(base::Level::info, "orb", "open to {}: {}",
-                doors.open_to == OpenTo::host ? "every account of this machine" : "everybody who reaches it",
+                doors.open_to == OpenTo::host ? "every account of this machine" : "every caller that reaches it",
                 base::join(result->addresses(), ", "));
     }
     if (doors.has_tls) {

@@ -75,7 +75,7 @@ void remove_references(RTC::ConnectorProfile& profile) {
   profile.properties = kept;
 }
 
-// A peer may ask for more patience than calls have here, but not without end.
+// A peer may ask for a longer timeout than calls have here, but not without end.
 Line line_of(const rt::ConnectorSettings& settings) {
   constexpr std::chrono::milliseconds most{60'000};
   const auto usual = port_call_timeout();

@@ -36,7 +36,7 @@ constexpr auto longest_absence = std::chrono::hours(24);
 // Each is a thread. Who gives a thousand addresses to ports and answers at none of them is told nothing at further ones.
 constexpr std::size_t most_processes = 1024;
 
-std::chrono::milliseconds patience_for_one() { return std::min(port_call_timeout(), farewell_limit); }
+std::chrono::milliseconds timeout_of_one() { return std::min(port_call_timeout(), farewell_limit); }
 
 struct Message {
   RTC::PortService_var port;
@@ -173,7 +173,7 @@ void give_up(const std::string& address, const char* reason) {
     --state->threads;
   }
   Farewells::instance().changed.notify_all();
-  base::log(base::Level::warn, "port", "the process at {} is not told of the end of its connections: {}", address, reason);
+  base::log(base::Level::warn, "port", "cannot notify the process at {} that its connections were closed: {}", address, reason);
 }
 
 // Does not throw for want of a thread.
@@ -214,7 +214,7 @@ void end_farewells() {
 }
 
 ChainDeadline farewell_deadline(bool has_waited) {
-  return ChainDeadline(has_waited ? std::chrono::milliseconds::zero() : 2 * patience_for_one());
+  return ChainDeadline(has_waited ? std::chrono::milliseconds::zero() : 2 * timeout_of_one());
 }
 
 std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const char* connector_id, CORBA::ULong left,
@@ -227,7 +227,7 @@ std::optional<RTC::ReturnCode_t> take_leave(RTC::PortService_ptr port, const cha
       tell_later(address, port, connector_id, false, port_call_timeout());
       return std::nullopt;
     }
-    limit_calls(port, std::min(deadline.left(), patience_for_one() * static_cast<int>(std::min<CORBA::ULong>(left, 3))));
+    limit_calls(port, std::min(deadline.left(), timeout_of_one() * static_cast<int>(std::min<CORBA::ULong>(left, 3))));
     return port->notify_disconnect(connector_id);
   } catch (const CORBA::SystemException& e) {
     if (is_time_out(e)) tell_later(address, port, connector_id, true, port_call_timeout());  // or it is dead, and there is nobody to tell

@@ -19,10 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto patience = std::chrono::milliseconds(1000);              // of one question
-constexpr auto soon = std::chrono::milliseconds(200);                   // after a first sign of death, and to meet a new peer
-constexpr auto patience_with_hanging = std::chrono::milliseconds(100);  // is spent whole as long as it hangs
-constexpr auto patience_with_hanging_afar = std::chrono::milliseconds(300);
+constexpr auto question_timeout = std::chrono::milliseconds(1000);  // of one question
+constexpr auto soon = std::chrono::milliseconds(200);               // after a first sign of death, and to meet a new peer
+constexpr auto hung_timeout = std::chrono::milliseconds(100);       // is spent whole as long as it hangs
+constexpr auto hung_timeout_afar = std::chrono::milliseconds(300);
 
 struct Peer {
   RTC::PortService_var port;
@@ -54,7 +54,7 @@ struct Table {
 
 enum class Sign { life, object_is_gone, process_is_gone, silence };
 
-Sign ask(CORBA::Object_ptr port, std::chrono::milliseconds limit = patience) {
+Sign ask(CORBA::Object_ptr port, std::chrono::milliseconds limit = question_timeout) {
   try {
     // A reference of its own, so that the time-out touches nobody else's calls.
     const CORBA::ORB_var the_orb = orb();
@@ -138,8 +138,8 @@ class Rounds {
   void look_at(const std::string& address, const std::vector<std::pair<const Key*, const Peer*>>& members, std::set<Key>& suspects) {
     const auto& first = members[round_ % members.size()];
     const bool has_hung = hanging_.erase(address) > 0;
-    const auto brief = is_on_loopback(address) ? patience_with_hanging : patience_with_hanging_afar;
-    const Sign sign = ask(first.second->port, has_hung ? brief : patience);
+    const auto brief = is_on_loopback(address) ? hung_timeout : hung_timeout_afar;
+    const Sign sign = ask(first.second->port, has_hung ? brief : question_timeout);
     if (sign == Sign::silence) hanging_.insert(address);
     if (sign != Sign::process_is_gone) met_.insert(address);
     // One of another host that could never be called may be behind a wall and send to us all the same.
@@ -187,9 +187,9 @@ PeerWatch::PeerWatch(std::chrono::milliseconds interval) : interval_(interval) {
     try {
       Rounds(interval_).run();
     } catch (const std::exception& e) {
-      base::log(base::Level::error, "port", "dead peers are not found any more: {}", e.what());
+      base::log(base::Level::error, "port", "exited peers are not detected any more: {}", e.what());
     } catch (...) {
-      base::log(base::Level::error, "port", "dead peers are not found any more");
+      base::log(base::Level::error, "port", "exited peers are not detected any more");
     }
   });
 }

@@ -24,9 +24,9 @@ class Turns {
  public:
   class Turn {
    public:
-    Turn(Turns& turns, std::chrono::milliseconds patience) : turns_(turns) {
+    Turn(Turns& turns, std::chrono::milliseconds timeout) : turns_(turns) {
       auto busy = turns_.busy_.lock();
-      has_it_ = busy.wait_for(turns_.free_, patience, [&] { return !*busy; });
+      has_it_ = busy.wait_for(turns_.free_, timeout, [&] { return !*busy; });
       if (has_it_) *busy = true;
     }
     ~Turn() {

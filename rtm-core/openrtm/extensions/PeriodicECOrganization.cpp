@@ -33,7 +33,7 @@ bool attempt(const std::string& id, const char* what, Function function) {
 }
 
 // One deadline for what is asked of one member: it says itself how many contexts, ports and members it has.
-class Patience {
+class ShortCalls {
  public:
   // The object, which is asked next; throws when the time is over.
   template <class Reference>
@@ -79,11 +79,11 @@ class MemberSearch {
 
  private:
   void look_into(SDO_ptr component) {
-    CORBA::Object_var asked = corba::impatient_copy(component, answer_time);
+    CORBA::Object_var asked = corba::copy_with_timeout(component, answer_time);
     SDO_var sdo = SDO::_unchecked_narrow(asked);
     OrganizationList_var organizations = sdo->get_owned_organizations();
     for (CORBA::ULong i = 0; i < organizations->length() && !is_found_ && !is_late(); ++i) {
-      asked = corba::impatient_copy(organizations[i], answer_time);
+      asked = corba::copy_with_timeout(organizations[i], answer_time);
       if (CORBA::is_nil(asked)) continue;
       Organization_var organization = Organization::_unchecked_narrow(asked);
       CORBA::String_var id = organization->get_organization_id();
@@ -116,7 +116,7 @@ bool PeriodicECOrganization::join(const Member& member) {
   SDO_var sdo = member.sdo;
   if (!corba::may_keep(sdo)) return false;
   RTC::LightweightRTObject_var component;
-  const Patience in_time;
+  const ShortCalls in_time;
   const bool joined = attempt(member.id, "join", [&] {
     component = RTC::LightweightRTObject::_narrow(sdo);
     if (CORBA::is_nil(component)) return;
@@ -144,7 +144,7 @@ bool PeriodicECOrganization::join(const Member& member) {
 void PeriodicECOrganization::leave(const Member& member) {
   SDO_var sdo = member.sdo;
   const corba::ForGiver giver(sdo);  // its contexts are what it says
-  const Patience in_time;
+  const ShortCalls in_time;
   attempt(member.id, "leave", [&] {
     RTC::LightweightRTObject_var component = RTC::LightweightRTObject::_narrow(sdo);
     if (CORBA::is_nil(component)) return;
@@ -235,7 +235,7 @@ void PeriodicECOrganization::export_ports(const std::string& list) {
 void PeriodicECOrganization::update_ports() {
   std::map<std::string, RTC::PortService_var> wanted;
   for_each_member([&](const Member& member, RTC::RTObject_ptr component) {
-    const Patience in_time;
+    const ShortCalls in_time;
     RTC::PortServiceList_var ports = component->get_ports();
     for (CORBA::ULong i = 0; i < ports->length(); ++i) {
       RTC::PortProfile_var profile = in_time(ports[i])->get_port_profile();

@@ -33,7 +33,7 @@ constexpr std::array options{
 };
 
 std::string description(const std::string& component) {
-  return "makes one component of type " + component + " and runs until it is told to end";
+  return "makes one component of type " + component + " and runs until Ctrl+C or SIGTERM";
 }
 
 std::string spelled(const OptionText& option) { return std::string(option.name) + (*option.value == '\0' ? "" : " ") + option.value; }

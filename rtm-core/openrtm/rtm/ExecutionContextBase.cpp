@@ -53,22 +53,22 @@ void ExecutionContextBase::init(coil::Properties& props) {
     RTC_WARN(("%s must be a number of seconds, got %s", key, base::in_quotes(text).c_str()));
     return otherwise;
   };
-  struct Patience {
+  struct Wait {
     bool wait = true;
     std::chrono::nanoseconds timeout = Impl::default_timeout;
   };
-  const auto read = [&](const char* sync, const char* timeout, const Patience& fallback) {
-    Patience patience = fallback;
-    if (const std::string text = props.getProperty(sync); !text.empty()) patience.wait = coil::toBool(text, "YES", "NO", patience.wait);
-    patience.timeout = read_seconds(timeout, patience.timeout);
-    return patience;
+  const auto read = [&](const char* sync, const char* timeout, const Wait& fallback) {
+    Wait chosen = fallback;
+    if (const std::string text = props.getProperty(sync); !text.empty()) chosen.wait = coil::toBool(text, "YES", "NO", chosen.wait);
+    chosen.timeout = read_seconds(timeout, chosen.timeout);
+    return chosen;
   };
-  const Patience any = read("sync_transition", "transition_timeout", Patience{});
-  const Patience activation = read("sync_activation", "activation_timeout", any);
-  const Patience deactivation = read("sync_deactivation", "deactivation_timeout", any);
-  const Patience reset = read("sync_reset", "reset_timeout", any);
+  const Wait any = read("sync_transition", "transition_timeout", Wait{});
+  const Wait activation = read("sync_activation", "activation_timeout", any);
+  const Wait deactivation = read("sync_deactivation", "deactivation_timeout", any);
+  const Wait reset = read("sync_reset", "reset_timeout", any);
   const auto callback_timeout = read_seconds("callback_timeout", default_callback_timeout);
-  impl_->patience->set(read_seconds("member_timeout", corba::MemberPatience::usual));
+  impl_->member_timeout->set(read_seconds("member_timeout", corba::MemberTimeout::usual));
   m_syncActivation = activation.wait;
   m_syncDeactivation = deactivation.wait;
   m_syncReset = reset.wait;
@@ -111,7 +111,7 @@ RTC::ReturnCode_t ExecutionContextBase::start() {
   } catch (...) {
     RTC_ERROR(("the context does not start: an unknown exception"));
   }
-  impl_->context.stop(callbackPatience());
+  impl_->context.stop(callbackTimeLeft());
   return RTC::RTC_ERROR;
 }
 
@@ -125,7 +125,7 @@ RTC::ReturnCode_t ExecutionContextBase::stop() {
     return code;
   }
   const base::ScopedClock clock(impl_->clock());
-  if (const auto code = impl_->context.stop(callbackPatience()); code != rt::ReturnCode::ok) {
+  if (const auto code = impl_->context.stop(callbackTimeLeft()); code != rt::ReturnCode::ok) {
     complainAboutCallback("the context cannot stop");
     return corba::to_wire(code);
   }
@@ -139,11 +139,11 @@ RTC::ReturnCode_t ExecutionContextBase::stopBy(std::chrono::steady_clock::time_p
   return code;
 }
 
-void ExecutionContextBase::setMemberTimeout(std::chrono::nanoseconds timeout) { impl_->patience->set(timeout); }
+void ExecutionContextBase::setMemberTimeout(std::chrono::nanoseconds timeout) { impl_->member_timeout->set(timeout); }
 
 std::chrono::nanoseconds ExecutionContextBase::callbackTimeout() const { return impl_->shared.lock()->callback_timeout; }
 
-std::chrono::nanoseconds ExecutionContextBase::callbackPatience() const {
+std::chrono::nanoseconds ExecutionContextBase::callbackTimeLeft() const {
   auto data = impl_->shared.lock();
   if (!data->stop_by) return data->callback_timeout;
   return std::max<std::chrono::nanoseconds>(*data->stop_by - std::chrono::steady_clock::now(), 0ns);
@@ -152,7 +152,7 @@ std::chrono::nanoseconds ExecutionContextBase::callbackPatience() const {
 bool ExecutionContextBase::waitForQuiet(std::chrono::nanoseconds timeout) { return impl_->context.wait_until_quiet(timeout); }
 
 bool ExecutionContextBase::waitForCallbacks() {
-  if (waitForQuiet(callbackPatience())) return true;
+  if (waitForQuiet(callbackTimeLeft())) return true;
   complainAboutCallback("the context cannot stop");
   return false;
 }

@@ -74,12 +74,12 @@ thread_local std::string ManagerImpl::current_module;
 // A program that leaves main() without ending the manager: it is ended before statics and libraries go away. When a component keeps that
 // from happening the process ends as it is.
 void ManagerImpl::end_at_exit(int status, void*) {
-  constexpr std::chrono::seconds patience{10};
+  constexpr std::chrono::seconds timeout{10};
   const Manager* manager = Manager::instance_if_any();
   if (manager == nullptr) return;
   if (base::report_exit_in_callback(status)) manager->impl_->end_in_callback(status);
   manager->impl_->request_end();
-  if (manager->impl_->wait_until_ended(patience)) return;
+  if (manager->impl_->wait_until_ended(timeout)) return;
   manager->impl_->remove_files();
   ManagerImpl::flush_streams();
   _exit(status);

@@ -68,8 +68,8 @@ struct Configuration_impl::Door {
   base::UsersTurn turn;
 
   // Throws if a listener that another caller's change has called does not return in time.
-  base::UsersTurn::Mine turn_to_change(std::chrono::nanoseconds patience) {
-    auto mine = turn.take(std::max<std::chrono::nanoseconds>(patience, std::chrono::seconds(1)));
+  base::UsersTurn::Mine turn_to_change(std::chrono::nanoseconds timeout) {
+    auto mine = turn.take(std::max<std::chrono::nanoseconds>(timeout, std::chrono::seconds(1)));
     if (!mine) throw InternalError("another change of the configuration has not ended: a listener does not return");
     return std::move(*mine);
   }

@@ -36,7 +36,7 @@ void Attachments::add(const Physics& physics, ModelId model, std::vector<std::st
     if (kind_of(plugin) != PluginKind::detachable_joint) continue;
     const auto text = [&](std::string_view name) { return plugin.parameters.text_of({name}).value_or(""); };
     const auto fail = [&](const std::string& why) {
-      left_out.push_back(fmt::format("{}: plugin {}: {}; it holds nothing", plugin.source, plugin.name, why));
+      left_out.push_back(fmt::format("{}: plugin {}: {}; it attaches nothing", plugin.source, plugin.name, why));
     };
     const auto parent = link_of(def, plugin.scope, text("parent_link"));
     Detachable joint{.model = model, .child_model = text("child_model"), .child_link = text("child_link")};

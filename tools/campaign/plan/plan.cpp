@@ -143,7 +143,7 @@ void check_in_run(const YAML::Node& node, const char* key, double time, bool is_
 
 Condition to_condition_in_run(const YAML::Node& node, const Plan& plan, bool has_end = false) {
   auto condition = to_condition(node);
-  if (condition.within_s && !has_end) fail_at(node["within"], "within is of eventually; expected after, or nothing");
+  if (condition.within_s && !has_end) fail_at(node["within"], "within belongs to eventually; expected after, or no time");
   check_in_run(node, "after", condition.after_s, true, plan);
   if (condition.within_s) check_in_run(node, "within", *condition.within_s, true, plan);
   if (condition.within_s && *condition.within_s < condition.after_s) fail_at(node["within"], "within must not be less than after");

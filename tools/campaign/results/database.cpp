@@ -26,8 +26,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::milliseconds patience = 60s;        // for others that write; a list of a million rows takes half of it
-constexpr std::chrono::seconds turn_patience{5};           // for others that close the file
+constexpr std::chrono::milliseconds busy_timeout = 60s;    // for others that write; a list of a million rows takes half of it
+constexpr std::chrono::seconds turn_timeout{5};            // for others that close the file
 constexpr std::int64_t most_heap = std::int64_t{1} << 30;  // [byte] of all that SQLite keeps
 
 std::string uri(const std::string& file) {
@@ -78,7 +78,7 @@ void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_fi
 // One at a time, or the last two would each think that the other one is still there.
 void Database::Close::operator()(sqlite3* database) const {
   const int turn = folder.empty() ? -1 : ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const auto end = std::chrono::steady_clock::now() + turn_patience;
+  const auto end = std::chrono::steady_clock::now() + turn_timeout;
   while (turn >= 0 && flock(turn, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(10ms);  // a wait for a lock has no end of its own
   if (!folder.empty()) {
@@ -142,7 +142,7 @@ Result<Database> Database::open(const std::string& file, Access access, const Re
   const auto parent = std::filesystem::path(file).parent_path().string();
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
-  sqlite3_busy_timeout(handle, static_cast<int>(patience.count()));
+  sqlite3_busy_timeout(handle, static_cast<int>(busy_timeout.count()));
   Database database(handle, file, parent.empty() ? "." : parent);
   if (code != SQLITE_OK) return problem(file, handle);
   if (const auto begun = database.begin_log(); !begun) return begun.error();
@@ -178,7 +178,7 @@ Result<Database> Database::open_to_read(const std::string& file, const ReadLimit
 
 // Which SQLite refuses at once, without waiting, while another one is at it.
 Result<void> Database::begin_log() {
-  const auto end = std::chrono::steady_clock::now() + patience;
+  const auto end = std::chrono::steady_clock::now() + busy_timeout;
   for (;;) {
     const auto begun = execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA wal_autocheckpoint=1000;");
     if (begun || sqlite3_errcode(database_.get()) != SQLITE_BUSY || std::chrono::steady_clock::now() > end) return begun;
@@ -189,7 +189,7 @@ Result<void> Database::begin_log() {
 // Before anything is read from it but its head.
 Result<void> Database::guard(const ReadLimits& limits) {
   auto* handle = database_.get();
-  sqlite3_busy_timeout(handle, static_cast<int>(std::min<std::chrono::milliseconds>(patience, limits.time).count()));
+  sqlite3_busy_timeout(handle, static_cast<int>(std::min<std::chrono::milliseconds>(busy_timeout, limits.time).count()));
   sqlite3_hard_heap_limit64(most_heap);
   for (const auto& [limit, value] : std::initializer_list<std::pair<int, int>>{{SQLITE_LIMIT_LENGTH, 64 << 20},
                                                                                {SQLITE_LIMIT_SQL_LENGTH, 64 << 10},

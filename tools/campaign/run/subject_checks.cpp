@@ -43,7 +43,7 @@ std::string value_problem(const editor::SavedSystem& system, const std::string& 
     }
     is_read = is_read || is_at(connector.target);
   }
-  return is_read ? "port " + base::in_quotes(port) + " is no OutPort, so there are no values to see" : "";
+  return is_read ? "port " + base::in_quotes(port) + " is not an OutPort, so it has no values" : "";
 }
 
 class SubjectChecks {

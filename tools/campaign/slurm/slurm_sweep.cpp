@@ -22,8 +22,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto queue_patience = 10min;  // for a controller that does not answer
-constexpr auto cancel_patience = 2min;  // Slurm gives a task its KillWait, 30 s
+constexpr auto queue_timeout = 10min;  // for a controller that does not answer
+constexpr auto cancel_timeout = 2min;  // Slurm gives a task its KillWait, 30 s
 constexpr std::chrono::milliseconds shortest_pause = 200ms, longest_pause = 10s;
 
 // Nobody tells when a job of Slurm has ended, or a file of another machine has grown.
@@ -94,8 +94,8 @@ class SlurmSweep {
   }
 
   // The commands of Slurm may fail while its controller is started again.
-  Result<std::size_t> count_patiently(bool ends_on_interrupt) {
-    const auto deadline = Clock::now() + queue_patience;
+  Result<std::size_t> count_until_queue_timeout(bool ends_on_interrupt) {
+    const auto deadline = Clock::now() + queue_timeout;
     for (;;) {
       auto counted = slurm::count(folder_.name());
       if (counted || Clock::now() > deadline || (ends_on_interrupt && is_over())) return counted;
@@ -111,10 +111,10 @@ class SlurmSweep {
         gather();
         return cancelled;
       }
-      const auto left = count_patiently(true);
+      const auto left = count_until_queue_timeout(true);
       gather();
       if (left && *left == 0) return {};
-      if (!left && !is_over()) return Error{left.error().message + "; the tasks go on, and the same command gathers what they find"};
+      if (!left && !is_over()) return Error{left.error().message + "; the tasks continue; repeat the command to collect their results"};
       const auto past = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began);
       pause(std::clamp(past / 20, shortest_pause, longest_pause), true);
     }
@@ -122,7 +122,7 @@ class SlurmSweep {
 
   Result<void> cancel() {
     if (const auto cancelled = slurm::cancel(folder_.name()); !cancelled) return cancelled;
-    for (const auto deadline = Clock::now() + cancel_patience; Clock::now() < deadline; pause(shortest_pause, false)) {
+    for (const auto deadline = Clock::now() + cancel_timeout; Clock::now() < deadline; pause(shortest_pause, false)) {
       const auto left = slurm::count(folder_.name());
       if (left && *left == 0) return {};
     }

@@ -59,14 +59,14 @@ base::Result<void> Limbs::learn() {
   const auto reply = simulator_->ask(shm::TreeRequest{}, answer_limit);
   if (!reply) return reply.error();
   const auto tree = Json::parse(reply->text, nullptr, false);
-  if (!tree.is_object()) return base::Error{"simulator: what it says of its models is no JSON"};
+  if (!tree.is_object()) return base::Error{"simulator: its list of models is not JSON"};
   models_.clear();
   actor_frames_.clear();
   link_count_ = joint_count_ = 0;
   try {
     for (const auto& model : tree.value("models", Json::array())) models_.push_back(frames_of(model));
   } catch (const Json::exception&) {
-    return base::Error{"simulator: what it says of its models is not of the expected kind"};
+    return base::Error{"simulator: its list of models has an unexpected form"};
   }
   for (const auto& model : models_) {
     link_count_ += model.links.size();

@@ -54,7 +54,7 @@ base::Result<Repair> keep_octets(const File& file, std::uint64_t size, Index ind
   if (index.has_data_end && file.read(index.data_end + record_head, sizeof wanted, piece)) wanted = Octets(piece).number<std::uint32_t>();
   if (wanted != 0 && wanted != crc) {
     repair.is_changed = true;
-    note(repair, at(file, index.data_end, "the data do not match their CRC: something was changed that has none of its own, as metadata"));
+    note(repair, at(file, index.data_end, "data CRC mismatch outside the chunks, for example in metadata"));
   }
   // Of a file that its writer closed nothing is missing at the end.
   if (!index.has_data_end && size > magic.size() && file.read(size - magic.size(), magic.size(), piece) && piece == magic) {

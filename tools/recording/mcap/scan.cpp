@@ -158,7 +158,7 @@ class Scanner {
       const auto head = read_head(file_, offset, end);
       if (!head) return head.error();
       if (!head->has_value()) {
-        note(index_, at(file_, offset, "the last record is cut off; what stands before it is read"));
+        note(index_, at(file_, offset, "the last record is truncated; the records before it are read"));
         index_.cut_off = end - offset;
         end_broken();
         return {};

@@ -65,8 +65,8 @@ void tell(const Find& find, std::size_t number) {
 void tell_progress(const HuntProgress& progress) {
   if (progress.find) tell(*progress.find, progress.finds);
   if (progress.problem.empty() || progress.tries > 0) return;
-  std::printf("case %zu after %.0f s: %s\n  shrinking it: the simplest case that fails in this way is searched for\n", progress.case_number,
-              progress.wall_s, base::printable(progress.problem, "\n\t").c_str());
+  std::printf("case %zu after %.0f s: %s\n  shrinking it: searching for the simplest case that fails in the same way\n",
+              progress.case_number, progress.wall_s, base::printable(progress.problem, "\n\t").c_str());
   std::fflush(stdout);
 }
 

@@ -159,7 +159,8 @@ void tell(Console& console, const SweepResult& result, const SweepCall& call) {
   if (!result.problem.empty()) console.fail({result.problem});
   for (const auto number : result.different) console.fail({"audit: row " + std::to_string(number) + " has another state than stored"});
   if (result.is_interrupted)
-    console.fail({"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; the same command goes on"});
+    console.fail(
+        {"interrupted after " + std::to_string(p.done) + " of " + std::to_string(p.rows) + " rows; repeat the command to continue"});
 }
 
 // Rows that were run before are not in the results any more.

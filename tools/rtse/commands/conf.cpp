@@ -57,7 +57,7 @@ Result<void> check_value(const ComponentView& component, const std::string& para
   const auto problem = value_problem(component, parameter, value);
   if (problem.empty()) return {};
   return Error{"component " + component.path + ": parameter " + parameter + " cannot be " + base::in_quotes(value) + ", expected " +
-               problem + " (--force sets it all the same)"};
+               problem + " (--force sets it anyway)"};
 }
 
 void configure(const Session& session, Console& console, const ConfigurationOptions& options) {
@@ -126,7 +126,7 @@ void add_conf(base::Command& app, Chosen& chosen) {
     }
     const auto& action = options->action;
     const auto count = options->arguments.size();
-    require(action != "list" || count == 0, "conf list", "expected nothing more");
+    require(action != "list" || count == 0, "conf list", "expected no further argument");
     require(action != "get" || count == 1, "conf get", "expected one parameter");
     require(action != "set" || count == 2, "conf set", "expected a parameter and a value");
     require((action != "use" && action != "act") || count == 1, "conf " + action, "expected one configuration set");

@@ -73,7 +73,7 @@ void add_context(base::Command& app, Chosen& chosen) {
       ->check(base::number_between(0, 1000));
   command->callback([&chosen, options, rate] {
     require(rate->size() == (options->action == "rate" ? 1u : 0u), "ec " + options->action,
-            options->action == "rate" ? "expected one rate" : "expected nothing more");
+            options->action == "rate" ? "expected one rate" : "expected no further argument");
     if (!rate->empty()) options->rate = rate->front();
     chosen.work = [options](const Session& session, Console& console) { work_on_context(session, console, *options); };
   });

@@ -143,7 +143,7 @@ void print_ports(const Session& session, Console& console, const PrintOptions& o
   }
   taps.clear();
   if (const auto dropped = queue.content.lock()->dropped; dropped > 0)
-    console.fail({"print: " + std::to_string(dropped) + " samples were dropped, they came faster than they could be written"});
+    console.fail({"print: " + std::to_string(dropped) + " samples were dropped: they arrived faster than they could be written"});
   if (options.count > 0 && printed < options.count && !is_over()) {
     console.fail({"print: got " + std::to_string(printed) + " of " + std::to_string(options.count) + " samples in " +
                   base::format_number(options.timeout_s) + " s"});

@@ -77,7 +77,7 @@ class ProgramApart {
     const auto count = pread(output_, text.data(), text.size(), from);
     text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     const auto lines = base::split_list(text, '\n');
-    return lines.empty() ? "it said nothing" : lines.back();
+    return lines.empty() ? "its log is empty" : lines.back();
   }
 
  private:
@@ -94,7 +94,8 @@ struct Joining {
 Result<Joining> look_at(const Session& session, Console& console, const std::string& path, const JoinOptions& options) {
   const auto component = session.component(path, {.contexts = true});
   if (!component) return component.error();
-  if (simulated_context(*component)) return Error{"component " + component->path + ": takes part in simulated time already (rtse leave)"};
+  if (simulated_context(*component))
+    return Error{"component " + component->path + ": already participates in simulated time (rtse leave ends that)"};
   if (has_proxy(session, component->instance))
     return Error{"component " + component->path + ": its own context is ticked in simulated time already (rtse leave)"};
   auto rate = options.rate;
@@ -175,7 +176,7 @@ void join(const Session& session, Console& console, const JoinOptions& options) 
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const auto& one : all) {
     if (!console.json())
-      std::cout << one.path << ": takes part in simulator " << options.server_id << (runs ? "" : ", once that runs,") << " at "
+      std::cout << one.path << ": participates in simulator " << options.server_id << (runs ? "" : ", once that runs,") << " at "
                 << one.member.rate << " Hz, phase " << one.member.phase << '\n';
     json.push_back({{"component", one.path},
                     {"server_id", options.server_id},

@@ -153,7 +153,7 @@ void manage(const Session& session, Console& console, const ManagerOptions& opti
         meaning = code == RTC::BAD_PARAMETER ? "the manager has no such component" : refused;
       } else if (options.action == "unload") {
         code = manager->unload_module(argument.c_str());
-        meaning = code == RTC::PRECONDITION_NOT_MET ? "components of it are there"
+        meaning = code == RTC::PRECONDITION_NOT_MET ? "components of it exist"
                   : code == RTC::BAD_PARAMETER      ? "the manager has not loaded it"
                                                     : refused;
       }
@@ -176,7 +176,7 @@ void add_manager(base::Command& app, Chosen& chosen) {
   mgr->add_option("ARGUMENT", options->arguments, "Types, instances or files");
   mgr->add_option("-m,--manager", options->manager, "Path or corbaloc::HOST[:PORT][/ID] (default: the only manager of the name server)");
   mgr->callback([&chosen, options] {
-    require(options->action != "list" || options->arguments.empty(), "mgr list", "expected nothing more");
+    require(options->action != "list" || options->arguments.empty(), "mgr list", "expected no further argument");
     require(options->action == "list" || !options->arguments.empty(), "mgr " + options->action, "expected a name");
     for (const auto& argument : options->action == "create" ? options->arguments : std::vector<std::string>()) {
       const auto question = std::min(argument.find('?'), argument.size());

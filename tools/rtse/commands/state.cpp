@@ -46,7 +46,7 @@ bool holds_living(const Entry& entry) {
 void delete_binding(const Session& session, Console& console, const Entry& entry, bool force) {
   const bool lives = holds_living(entry);
   if (lives && entry.kind == EntryKind::context && !force)
-    return console.fail({entry.path() + ": is a context that holds living objects (--force deletes it all the same)"});
+    return console.fail({entry.path() + ": is a context that holds living objects (--force deletes it anyway)"});
   if (const auto gone = unbind(session.orb(), entry); !gone) return console.fail(gone.error());
   std::cout << "deleted " << entry.path() << (lives ? "  (it lives; its process may register it again)" : "") << '\n';
 }

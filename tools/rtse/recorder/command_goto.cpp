@@ -111,7 +111,7 @@ void Stand::say() const {
     std::cout << json.dump() << std::endl;
     return;
   }
-  std::cout << "stands at " << base::format_number(now()) << " s, after " << steps_ << " steps\n";
+  std::cout << "stopped at " << base::format_number(now()) << " s, after " << steps_ << " steps\n";
   for (const auto& process : system_->processes())
     std::printf("%8d  %s\n", static_cast<int>(process.pid), base::printable(process.what).c_str());
   std::fflush(stdout);
@@ -214,7 +214,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
   editor::RunOptions call;
   if (options.world.empty()) {
     if (!is_recording(options.what))
-      return console.fail({base::in_quotes(options.what) + ": is no recording; with a system's profile say its world: -w WORLD"});
+      return console.fail({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
     if (!run) return console.fail(run.error());
     if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);

@@ -104,11 +104,11 @@ std::set<std::string> recorded_links(const mcap::Reader& reader) {
 base::Result<void> add_recorded_routes(const Session& session, Console& console, const mcap::Reader& reader, Routes& routes) {
   const auto links = recorded_links(reader);
   if (links.empty())
-    return base::Error{"recording: does not say which InPorts its channels were connected to; expected COMPONENT:PORT=INPORT"};
+    return base::Error{"recording: does not list the InPorts to which its channels were connected; expected COMPONENT:PORT=INPORT"};
   for (const auto& link : links) {
     if (const auto added = add_route(session, reader, link, routes); !added) console.warn(base::printable(added.error().message));
   }
-  if (routes.empty()) return base::Error{"recording: none of the InPorts that its channels were connected to is there"};
+  if (routes.empty()) return base::Error{"recording: none of the InPorts to which its channels were connected exists"};
   return {};
 }
 

@@ -209,7 +209,7 @@ void report(Console& console, const Options& options, const ReplayResult& result
 // What was to be compared has to be there.
 std::string nothing_compared(const Options& options, const ReplayResult& result) {
   if (!options.compares || std::ranges::any_of(result.outputs, [](const auto& output) { return output.recorded > 0; })) return "";
-  return "replay: nothing could be compared, the recording has no outputs of " + options.component + " while it was active";
+  return "replay: cannot compare: the recording has no outputs of " + options.component + " while it was active";
 }
 
 base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem) {

@@ -94,7 +94,7 @@ Result<const PortView*> Matched::port(const SavedTarget& target) const {
   std::vector<std::string> names;
   for (const auto& port : component->ports) names.push_back(port.name);
   return Error{component->path + " has no port " + base::in_quotes(name) +
-               (names.empty() ? "; it has none at all" : "; it has " + base::join(names, ", "))};
+               (names.empty() ? "; it has none" : "; it has " + base::join(names, ", "))};
 }
 
 }  // namespace editor

@@ -1,5 +1,5 @@
-// What contexts with a thread of their own have in common: the thread starts and stops with the context, sleeps while there is nothing to
-// do, and steps the context once a period or once a tick. The step functions run on the thread, everything else on any.
+// The thread of an execution context: starts and stops with the context, sleeps while no step is due, and steps the context once a period
+// or once a tick. The step functions run on this thread; all other functions may be called from any thread.
 #pragma once
 
 #include <coil/Task.h>

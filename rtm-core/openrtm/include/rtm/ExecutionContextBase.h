@@ -163,7 +163,7 @@ class ExecutionContextBase {
   void askToRest(RTC::LightweightRTObject_ptr comp);
   // Waits until no callback of a member runs on another thread; false on time-out.
   bool waitForQuiet(std::chrono::nanoseconds timeout);
-  std::chrono::nanoseconds callbackPatience() const;
+  std::chrono::nanoseconds callbackTimeLeft() const;
   std::unique_ptr<Impl> impl_;
 };
 
