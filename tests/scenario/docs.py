@@ -2,7 +2,7 @@
 #   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test,
 #               those of bundled components are those of their sources
 #   layers      writes the table of layers into docs/ARCHITECTURE.md
-#   promises    each promise of docs/promises.md names tests that exist, in ctest or, those by hand, as files below tests/
+#   promises    each promise of docs/promises.md and docs/security.md names tests that exist, in ctest or, those by hand, as files below tests/
 import pathlib
 import re
 import subprocess
@@ -120,23 +120,32 @@ def check_pages():
             problems.append(f"docs/README.md: {name} is not in the index")
 
 
+# Rows of the tables of a page whose last column has this heading: the first cell, and the names in the last.
+def rows_with_tests(page, heading):
+    is_one = False
+    for line in page.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("|") else []
+        is_one = bool(cells) and (is_one or cells[-1] == heading)
+        if is_one and cells[-1] not in (heading, "---"):
+            yield cells[0], re.findall(r"`([^`]+)`", cells[-1])
+
+
 def check_promises(build):
     shown = subprocess.run(["ctest", "--test-dir", build, "-N"], capture_output=True, text=True, check=True).stdout
     tests = re.findall(r"^ +Test +#\d+: (\S+)", shown, re.M)
     not_built = [name.removesuffix("_NOT_BUILT") for name in tests if name.endswith("_NOT_BUILT")]
-    rows = re.findall(r"^\|(.*)\|(.*)\|$", (docs / "promises.md").read_text(), re.M)
-    rows = [row for row in rows if row[1].strip() not in ("kept by", "---")]
-    assert len(rows) > 20, rows
-    for promise, kept_by in rows:
-        names = re.findall(r"`([^`]+)`", kept_by)
-        if not names:
-            problems.append(f"docs/promises.md: {promise.strip()}: no test keeps it")
-        for name in names:
-            if name.startswith("tests/"):
-                if not (source / name).is_file():
-                    problems.append(f"docs/promises.md: {promise.strip()}: there is no file {name}")
-            elif not any(test.startswith(name) for test in tests) and name.split(".")[0] not in not_built:
-                problems.append(f"docs/promises.md: {promise.strip()}: there is no test {name}")
+    for page, heading in (("promises.md", "kept by"), ("security.md", "tested by")):
+        rows = list(rows_with_tests(docs / page, heading))
+        assert len(rows) > 20, rows
+        for promise, names in rows:
+            if not names:
+                problems.append(f"docs/{page}: {promise}: no test keeps it")
+            for name in names:
+                if name.startswith("tests/"):
+                    if not (source / name).is_file():
+                        problems.append(f"docs/{page}: {promise}: there is no file {name}")
+                elif not any(test.startswith(name) for test in tests) and name.split(".")[0] not in not_built:
+                    problems.append(f"docs/{page}: {promise}: there is no test {name}")
 
 
 if mode == "layers":
