@@ -1,8 +1,8 @@
 #include "world.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/log.h"
 #include "ros/from_iface.h"
@@ -55,78 +55,22 @@ std::optional<Listed> parse_listed(const std::string& list, const std::string& t
 }
 
 World::World(std::uint32_t server_id, Errands& errands, std::function<void(const Listed&)> on_list, std::function<void()> on_loss)
-    : server_id_(server_id), errands_(errands), on_list_(std::move(on_list)), on_loss_(std::move(on_loss)) {}
-
-void World::look() {
-  if (clock_ && clock_->iface().status() != shm::Status::live) lose();
-  if (!clock_) {
-    auto clock = Source::open(server_id_, shm::IfaceType::simulation, "world", met_ + 1);
-    if (!clock) return;
-    clock_ = std::move(*clock);
-    ++met_;
-    has_list_ = false;
-    found_.clear();
-  }
-  auto present = listed_;
-  if (clock_->iface().read()) {
-    const auto& sample = clock_->iface().sample<shm::SimulationSample>();
-    present = {sample.ifaces, sample.models};
-  }
-  const auto used = sources();
-  const bool is_one_gone = std::ranges::any_of(used, [](const auto& one) { return one->is_closed(); });
-  if (is_listing_ || (has_list_ && present == listed_ && !is_one_gone)) return;
-  listed_ = present;
-  list();
-}
-
-void World::lose() {
-  base::log(base::Level::warn, "ros2-gateway", "simulator {} has ended; waiting for it", server_id_);
-  clock_.reset();
-  found_.clear();
-  on_loss_();
-}
+    : SimulatorLink(server_id, "ros2-gateway", std::move(on_loss)), errands_(errands), on_list_(std::move(on_list)) {}
 
 void World::list() {
-  is_listing_ = has_list_ = true;
-  errands_.post(shm::ListRequest{}, [this, met = met_](const base::Result<shm::Reply>& list) {
-    if (!list || met != met_) {
-      is_listing_ = has_list_ = false;  // asked again at the next look
-      return;
-    }
+  errands_.post(shm::ListRequest{}, [this, met = met()](const base::Result<shm::Reply>& list) {
+    if (!list || met != this->met()) return listed(false);
     errands_.post(shm::TreeRequest{}, [this, met, text = list->text](const base::Result<shm::Reply>& tree) {
-      is_listing_ = false;
-      has_list_ = tree && met == met_ && clock_;
-      if (has_list_) take(text, tree->text);
+      const bool is_known = tree && met == this->met() && is_there();
+      listed(is_known);
+      if (is_known) take(text, tree->text);
     });
   });
 }
 
 void World::take(const std::string& list, const std::string& tree) {
-  if (const auto listed = parse_listed(list, tree)) return on_list_(*listed);
-  base::log(base::Level::error, "ros2-gateway", "the list of simulator {} cannot be read", server_id_);
-}
-
-std::shared_ptr<Source> World::find(shm::IfaceType type, const std::string& name) {
-  if (!clock_) return nullptr;
-  auto& known = found_[{type, name}];
-  if (auto source = known.lock(); source && !source->is_closed()) return source;
-  auto source = Source::open(server_id_, type, name, met_);
-  if (!source) {
-    base::log(base::Level::warn, "ros2-gateway", "{}", source.error().message);
-    return nullptr;
-  }
-  known = *source;
-  return *source;
-}
-
-std::vector<std::shared_ptr<Source>> World::sources() {
-  std::vector<std::shared_ptr<Source>> used;
-  std::erase_if(found_, [&](const auto& entry) {
-    auto source = entry.second.lock();
-    if (source) used.push_back(std::move(source));
-    return entry.second.expired();
-  });
-  return used;
+  if (const auto read = parse_listed(list, tree)) return on_list_(*read);
+  base::log(base::Level::error, "ros2-gateway", "the list of simulator {} cannot be read", server_id());
 }
 
 }  // namespace ros2

@@ -1,18 +1,15 @@
-// The simulator that the gateway serves: found when it starts, lost when it ends, listed again when models come or go. One thread at a
-// time.
+// The simulator that the gateway serves, with its ifaces and models. One thread at a time.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/errands.h"
-#include "common/source.h"
+#include "common/simulator_link.h"
 #include "shm/iface_types.h"
 
 namespace ros2 {
@@ -48,33 +45,16 @@ struct Listed {
   std::vector<ListedModel> models;
 };
 
-class World {
+class World final : public gateway::SimulatorLink {
  public:
   World(std::uint32_t server_id, Errands& errands, std::function<void(const Listed&)> on_list, std::function<void()> on_loss);
 
-  // To be called some times a second.
-  void look();
-  bool is_there() const { return clock_ != nullptr; }
-  // The simulation iface; nothing while there is no simulator.
-  const std::shared_ptr<Source>& clock() const { return clock_; }
-  // The iface, opened once; nothing, with a line in the log, when it is not there.
-  std::shared_ptr<Source> find(shm::IfaceType type, const std::string& name);
-  std::vector<std::shared_ptr<Source>> sources();
-
  private:
-  void lose();
-  void list();
+  void list() override;
   void take(const std::string& list, const std::string& tree);
 
-  const std::uint32_t server_id_;
   Errands& errands_;
   const std::function<void(const Listed&)> on_list_;
-  const std::function<void()> on_loss_;
-  std::shared_ptr<Source> clock_;
-  std::uint64_t met_ = 0;
-  std::pair<std::uint32_t, std::uint32_t> listed_{};
-  bool is_listing_ = false, has_list_ = false;
-  std::map<std::pair<shm::IfaceType, std::string>, std::weak_ptr<Source>> found_;
 };
 
 // From the replies to a ListRequest and a TreeRequest. Nothing when they cannot be read.
