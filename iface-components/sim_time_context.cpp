@@ -122,7 +122,7 @@ void SimTimeContext::run_requests() {
   invokeWorkerPreDo();
 }
 
-void SimTimeContext::report_long_call() { complainAboutCallback("its context takes part in the lock step again when it returns"); }
+void SimTimeContext::report_long_call() { complainAboutCallback("its context participates in lock step again when it returns"); }
 
 shm::Participant::State SimTimeContext::run_alone(shm::Participant& participant) {
   shm::Tick tick;

@@ -166,7 +166,7 @@ with System(bin_dir, lib_dir) as s:
         join(s, 1)
         goes_on(s)
         victim.send_signal(signal.SIGCONT)
-        join(s, 2)  # it takes part again
+        join(s, 2)  # it participates again
         goes_on(s)
 
     elif case == "hanging_component":
@@ -180,6 +180,20 @@ with System(bin_dir, lib_dir) as s:
         join(s, 1)
         goes_on(s)
         assert re.search(r"warn.*Hangs", s.log(server)), s.log(server)
+
+    # One thread ticks both. The context of the one that hangs is to leave its group: it names the callback that it waits for, and the other one stays.
+    elif case == "hangs_on_a_shared_thread":
+        s.naming()
+        s.server(empty, "--lockstep", "--rtf", "0")
+        host = s.host("-o", "exec_cxt.sim_time.own_thread:NO", relay("Stays"), relay("Hangs", **{"conf.default.hang_at": 20}))
+        s.rtse("wait", "Stays", "Hangs", "--state", "any", "--timeout", "60")
+        join(s, 2)
+        context = own_context(Orb(), s, "Hangs")
+        s.rtse("act", "Hangs")
+        stands_still(s)
+        Orb().invoke(context, "set_rate", lambda out: out.number("d", 50.0))
+        s.until("a line with the callback", lambda: "Hangs in onExecute, and does not return: its context participates in lock step again when it returns" in s.log(host))
+        assert len(s.participants()) == 2, s.participants()
 
     elif case == "server_restarted":
         s.naming()
@@ -234,7 +248,7 @@ with System(bin_dir, lib_dir) as s:
         context = own_context(orb, s, "Comes")
         order = lambda operation: orb.invoke(context, operation).ulong()
         resident = lambda: int(re.search(r"VmRSS:\s*(\d+)", open(f"/proc/{server.pid}/status").read())[1])
-        joined = lambda: len(re.findall(r"participant Comes .* takes part", s.log(server)))
+        joined = lambda: len(re.findall(r"participant Comes .* joined", s.log(server)))
         at = s.seconds()
         for n in range(1, 1000):
             assert order("stop") == 0 and order("start") == 0, f"registration {n}"
