@@ -31,6 +31,13 @@ std::string_view last_part(std::string_view name) {
   return at == std::string_view::npos ? name : name.substr(at + 1);
 }
 
+// Of the last parts of two names, what they have in common behind a dot: it makes no name nearer to another.
+std::size_t common_extension(std::string_view a, std::string_view b) {
+  const auto at = a.rfind('.');
+  if (at == std::string_view::npos || at == 0 || !b.ends_with(a.substr(at)) || b.size() == a.size() - at) return 0;
+  return a.size() - at;
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
@@ -40,9 +47,9 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
   for (const auto& name : known) {
     const std::string whole = to_lower(std::string_view(name).substr(0, longest));
     for (const std::string_view part : {std::string_view(whole), last_part(whole)}) {
-      const std::size_t letters = std::min(part.size(), wanted.size());
+      const std::size_t letters = std::min(part.size(), wanted.size()) - common_extension(wanted, part);
       const std::size_t differing = distance(wanted, part);
-      if (letters < 2 || differing > (letters < 4 ? 1 : 1 + letters / 4)) continue;
+      if (letters < 2 || differing > (letters < 4 ? 1 : (letters + 4) / 5)) continue;
       if (found.empty() || differing < fewest) found = name, fewest = differing;
     }
   }

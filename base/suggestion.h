@@ -8,7 +8,7 @@
 namespace base {
 
 // The known name that differs from the word in the fewest letters, in any case, or whose last part after "::" or "/" does. Nothing when
-// none is near.
+// none is near: of up to 5 letters one may differ, of up to 10 two, and so on; an extension that both have does not count.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
 // "; did you mean NAME?", or nothing when none is near.

@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 using base::Error;
 using base::Result;
 
-constexpr int most_cells = 8192;  // a side
-constexpr double margin = 0.5;    // [m] around what is shown, unless an area is given
+constexpr double margin = 0.5;  // [m] around what is shown, unless an area is given
 
 struct Shape {
   std::vector<MapPoint> points;  // three for each triangle, in the world
@@ -126,17 +125,16 @@ std::vector<Shape> Export::shapes(bool with_movable) const {
 std::vector<double> area_of(const std::vector<Shape>& shapes, const MapOptions& options) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> area = {infinite, infinite, -infinite, -infinite};
+  const auto include = [&](double x, double y) {
+    area = {std::min(area[0], x - margin), std::min(area[1], y - margin), std::max(area[2], x + margin), std::max(area[3], y + margin)};
+  };
+  for (const auto& [x, y] : options.places) include(x, y);
   for (const Shape& shape : shapes) {
     for (std::size_t i = 0; !shape.is_plane && i + 2 < shape.points.size(); i += 3) {
       const auto triangle = std::span(shape.points).subspan(i, 3);
       const auto [least, most] = std::ranges::minmax(triangle, {}, [](const MapPoint& p) { return p[2]; });
       if (most[2] <= options.heights[0] || least[2] >= options.heights[1]) continue;
-      for (const MapPoint& p : triangle) {
-        for (std::size_t k = 0; k < 2; ++k) {
-          area[k] = std::min(area[k], p[k] - margin);
-          area[2 + k] = std::max(area[2 + k], p[k] + margin);
-        }
-      }
+      for (const MapPoint& p : triangle) include(p[0], p[1]);
     }
   }
   return area[0] < area[2] ? area : std::vector<double>();
@@ -144,13 +142,15 @@ std::vector<double> area_of(const std::vector<Shape>& shapes, const MapOptions& 
 
 // Corners at multiples of the resolution, so that maps of one world fit on each other.
 Result<MapArea> grid_of(const std::vector<double>& area, const MapOptions& options) {
-  const double r = options.resolution;
+  const double least = std::max(area[2] - area[0], area[3] - area[1]) / (options.most_cells - 2);
+  const double r = options.may_coarsen ? std::max(options.resolution, least) : options.resolution;
   const auto down = [&](double v) { return std::floor(v / r + 1e-6); };
   const auto up = [&](double v) { return std::ceil(v / r - 1e-6); };
   const double width = up(area[2]) - down(area[0]), height = up(area[3]) - down(area[1]);
-  if (width > most_cells || height > most_cells) {
+  if (width > options.most_cells || height > options.most_cells) {
     return Error{"map: " + base::format_number(r) + " m makes " + base::format_number(width) + " x " + base::format_number(height) +
-                 " cells, expected at most 8192 a side: give a larger --resolution or a smaller --area"};
+                 " cells, expected at most " + std::to_string(options.most_cells) +
+                 " a side: give a larger --resolution or a smaller --area"};
   }
   return MapArea{down(area[0]) * r,  down(area[1]) * r, r, static_cast<int>(width), static_cast<int>(height),
                  options.heights[0], options.heights[1]};
@@ -177,16 +177,18 @@ base::Result<WorldMap> make_map(const std::string& glb, const MapOptions& option
   const auto area = grid_of(bounds, options);
   if (!area) return area.error();
   OccupancyMap cells(*area);
+  std::vector<MapLine> lines;
   for (const Shape& shape : *shapes) {
     if (!shape.is_plane) {
       cells.add_mesh(shape.points);
+      add_map_lines(shape.points, 0.5 * (area->low + area->high), lines);
     } else if (shape.points.size() >= 3) {
       const MapPoint &a = shape.points[0], &b = shape.points[1], &c = shape.points[2];
       const MapPoint u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
       cells.add_plane(a, {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
     }
   }
-  return WorldMap{*area, cells.pixels()};
+  return WorldMap{*area, cells.pixels(), std::move(lines)};
 }
 
 base::Result<WorldMap> world_map(Requester& requester, const MapOptions& options, std::chrono::nanoseconds timeout) {

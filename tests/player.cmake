@@ -27,6 +27,12 @@ foreach(case seen identity configure power estimates settings meters_and_depths 
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
+foreach(case lines_of_the_map maps_delay_nobody planner stereo opaque dio)
+  add_test(NAME player.${case}
+    COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_world.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+  set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
+endforeach()
+
 foreach(case accounts key silent exhausted few_descriptors)
   add_test(NAME player.${case}
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_doors.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})

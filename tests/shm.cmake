@@ -6,6 +6,7 @@ rtmsim_test(shm_test shm/iface_test.cpp shm/iface_types_test.cpp shm/frame_ring_
             LIBRARIES simshm)
 rtmsim_test(shm_faults_test shm/faults_test.cpp shm/process_test.cpp LIBRARIES simshm LABELS processes)
 add_dependencies(shm_faults_test shm_helper)
+rtmsim_test(map_path_test shm/map_path_test.cpp LIBRARIES world_map)
 rtmsim_test(shm_c_header_test shm/c_header_test.cpp shm/c_client.c LIBRARIES simshm simshm_c)
 set_source_files_properties(shm/c_client.c PROPERTIES COMPILE_OPTIONS "-std=c11")
 

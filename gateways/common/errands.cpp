@@ -49,11 +49,11 @@ Errands::~Errands() {
   ::close(descriptor_);
 }
 
-void Errands::post(shm::Request request, Done done, std::chrono::nanoseconds timeout) {
+void Errands::post(shm::Request request, Done done, std::chrono::nanoseconds timeout, Work work) {
   {
     auto queues = queues_.lock();
     if (queues->jobs.size() < max_waiting) {
-      queues->jobs.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + timeout});
+      queues->jobs.push_back({std::move(request), std::move(done), std::chrono::steady_clock::now() + timeout, std::move(work)});
       posted_.notify_one();
       return;
     }
@@ -82,6 +82,7 @@ void Errands::run(const std::stop_token& stop) {
       queues->jobs.pop_front();
     }
     auto reply = ask(requester, server_id_, job.request, job.deadline - std::chrono::steady_clock::now());
+    if (job.work) job.work(reply);
     queues_.lock()->answers.push_back({std::move(job.done), std::move(reply)});
     ring(descriptor_);
   }

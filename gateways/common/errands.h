@@ -22,6 +22,8 @@ class Errands {
   static constexpr std::size_t max_waiting = 1000;
 
   using Done = std::function<void(base::Result<shm::Reply>)>;
+  // What takes long and is done with the reply in the thread of the errands, before `done`.
+  using Work = std::function<void(const base::Result<shm::Reply>&)>;
 
   explicit Errands(std::uint32_t server_id);
   ~Errands();  // what has not been asked yet is dropped
@@ -29,7 +31,7 @@ class Errands {
   Errands& operator=(const Errands&) = delete;
 
   // In the order of the calls. `done` is called by deliver(), with an error too when the simulator refused.
-  void post(shm::Request request, Done done, std::chrono::nanoseconds timeout = limit);
+  void post(shm::Request request, Done done, std::chrono::nanoseconds timeout = limit, Work work = {});
   // Readable when there are answers; an eventfd.
   int descriptor() const { return descriptor_; }
   void deliver();
@@ -39,6 +41,7 @@ class Errands {
     shm::Request request;
     Done done;
     std::chrono::steady_clock::time_point deadline;
+    Work work;
   };
   struct Answer {
     Done done;

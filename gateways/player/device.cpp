@@ -144,7 +144,7 @@ bool Device::command(Client& client, std::uint8_t subtype, const std::string& pa
   return true;
 }
 
-void Device::publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp) {
+void Device::publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp, const Client* but) {
   assert(is_served(served(), static_cast<std::uint32_t>(player::Type::data), subtype));
   const auto time = services_.timeline.at(source_->server(), stamp.resets, stamp.sim_time_ns);
   if (!time) return;
@@ -154,7 +154,7 @@ void Device::publish(std::uint8_t subtype, const std::string& payload, const shm
   player::Header header{.address = address_, .type = player::Type::data, .subtype = subtype, .timestamp = last_time_, .size = 0};
   const auto message = std::make_shared<const std::string>(player::encode(header, robot_, payload));
   for (const Subscriber& one : subscribers_) {
-    if (newcomer_ == nullptr || newcomer_ == one.client) one.client->deliver(address_, subtype, message);
+    if (one.client != but && (newcomer_ == nullptr || newcomer_ == one.client)) one.client->deliver(address_, subtype, message);
   }
 }
 

@@ -41,6 +41,7 @@ using Later = std::function<void(Answer)>;
 // What devices share.
 struct Services {
   Errands& errands;
+  Errands& long_errands;  // with work that would delay the others
   Timeline& timeline;
   RealTime& real_time;
 };
@@ -53,6 +54,8 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const player::Address& address() const { return address_; }
+  // Also news of the companion are shown.
+  virtual bool shows_companion() const { return false; }
   // Before it is attached: the joints that it shows, of devices that show joints.
   virtual void choose(const JointGroup&) {}
   // Names the iface, by its end where it is long: at most 62 characters.
@@ -103,8 +106,8 @@ class Device {
   shm::Iface& iface() const { return source_->iface(); }
   // What is shown just now is shown to a newcomer alone, who should not wait.
   bool is_for_newcomer() const { return newcomer_ != nullptr; }
-  // To all subscribers, or the newcomer, with one encoding.
-  void publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp);
+  // To all subscribers but one, or the newcomer, with one encoding.
+  void publish(std::uint8_t subtype, const std::string& payload, const shm::Stamp& stamp, const Client* but = nullptr);
   // Lets the simulator do it; the answer is an empty ack when it did.
   std::nullopt_t ask(shm::Request request, const Later& later);
 

@@ -11,12 +11,15 @@
 #include "joint_devices.h"
 #include "limb_device.h"
 #include "map_device.h"
+#include "opaque_device.h"
+#include "planner_device.h"
 #include "point_cloud_device.h"
 #include "power_device.h"
 #include "range_devices.h"
 #include "seen_devices.h"
 #include "sensor_devices.h"
 #include "simulation_device.h"
+#include "stereo_device.h"
 
 namespace gateway {
 namespace {
@@ -56,6 +59,11 @@ constexpr std::array kinds{
     row<Blobfinder>(blobfinder),
     row<Simulation>(simulation),
     row<Map>(map),
+    row<VectorMap>(vectormap),
+    row<Planner>(planner),
+    row<Stereo>(stereo),
+    row<Opaque>(opaque),
+    row<Digital>(dio),
 };
 
 std::string names_of(std::span<const shm::IfaceType> types) {
@@ -84,6 +92,11 @@ std::vector<player::Interface> interfaces_for(shm::IfaceType type) {
     if (can_show(kind.interface, type)) all.push_back(kind.interface);
   }
   return all;
+}
+
+shm::IfaceType companion_type(player::Interface interface) {
+  if (interface == stereo) return shm::IfaceType::camera;
+  return interface == planner ? shm::IfaceType::truth : shm::IfaceType::magnetometer;
 }
 
 std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services) {

@@ -31,6 +31,9 @@ const DeviceKind* find_kind(player::Interface interface);
 std::vector<player::Interface> interfaces_for(shm::IfaceType type);
 bool can_show(player::Interface interface, shm::IfaceType type);
 
+// Of the second iface of a device: the magnetometer of an imu, the other camera of a stereo, the true pose of the robot of a planner.
+shm::IfaceType companion_type(player::Interface interface);
+
 // Nothing for interfaces that are not served. What is attached must be of a type that the interface can show.
 std::unique_ptr<Device> make_device(const player::Address& address, std::uint32_t robot, Services services);
 

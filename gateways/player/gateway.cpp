@@ -17,7 +17,7 @@ namespace gateway {
 namespace {
 
 // What an event is about: the kind in the upper half of the tag, which one in the lower.
-enum class Kind : std::uint32_t { signal, alarm, errand, port, session };
+enum class Kind : std::uint32_t { signal, alarm, errand, long_errand, port, session };
 constexpr std::uint64_t tag(Kind kind, std::uint64_t which = 0) { return static_cast<std::uint64_t>(kind) << 56 | which; }
 constexpr Kind kind_of(std::uint64_t value) { return static_cast<Kind>(value >> 56); }
 constexpr std::uint64_t which_of(std::uint64_t value) { return value & ((std::uint64_t{1} << 56) - 1); }
@@ -37,6 +37,7 @@ Gateway::Gateway(Options options)
       descriptors_(base::raise_descriptor_limit()),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       errands_(options_.server_id),
+      long_errands_(options_.server_id),
       simulator_(
           options_.server_id, errands_, real_time_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
           [this] { lose(); }) {}
@@ -63,10 +64,12 @@ base::Result<void> Gateway::run() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0) return base::Error{"no file descriptors left"};
+  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0 || long_errands_.descriptor() < 0)
+    return base::Error{"no file descriptors left"};
   add(signals_, tag(Kind::signal));
   add(alarm_.descriptor(), tag(Kind::alarm));
   add(errands_.descriptor(), tag(Kind::errand));
+  add(long_errands_.descriptor(), tag(Kind::long_errand));
   if (options_.config) {
     for (const ConfiguredPort& port : *options_.config) {
       if (auto good = open_port(port.port); !good) return good;
@@ -105,6 +108,8 @@ void Gateway::handle(const epoll_event& event) {
       return take_samples();
     case Kind::errand:
       return errands_.deliver();
+    case Kind::long_errand:
+      return long_errands_.deliver();
     case Kind::port:
       return accept(ports_[which]);
     case Kind::session:
@@ -161,7 +166,7 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
 base::Result<void> Gateway::open_port(std::uint16_t number) {
   auto listener = Listener::open(options_.address, number);
   if (!listener) return listener.error();
-  const Services services{errands_, timeline_, real_time_};
+  const Services services{errands_, long_errands_, timeline_, real_time_};
   auto robot = std::make_unique<Robot>(listener->port(), services);
   add(listener->socket(), tag(Kind::port, ports_.size()));
   ports_.push_back({std::move(*listener), std::move(robot), ""});
@@ -181,7 +186,7 @@ void Gateway::take_samples() {
   for (const auto& source : fresh) {
     for (const Port& port : ports_) {
       for (const auto& device : port.robot->all()) {
-        if (device->source() == source) device->take_sample();
+        if (device->source() == source || (device->companion() == source && device->shows_companion())) device->take_sample();
       }
     }
   }

@@ -1,7 +1,7 @@
 // The gateway: ports, clients and the simulator in one event loop. One thread.
 //
-// Two threads help it: alarm.h sleeps on the futexes of all subscribed ifaces and errands.h sends requests to the simulator. So samples are
-// not polled, and a simulator that hangs does not delay a client.
+// Three threads help it: alarm.h sleeps on the futexes of all subscribed ifaces, and two of errands.h send requests to the simulator, one
+// of them those whose replies are work, as maps. So samples are not polled, and a simulator that hangs does not delay a client.
 #pragma once
 
 #include <sys/epoll.h>
@@ -73,7 +73,7 @@ class Gateway {
   int epoll_ = -1, signals_ = -1;
   Timeline timeline_;
   RealTime real_time_;
-  Errands errands_;
+  Errands errands_, long_errands_;
   Alarm alarm_;
   Simulator simulator_;
   std::vector<Port> ports_;  // only ever more

@@ -8,6 +8,20 @@
 #include "protocol/payloads.h"
 
 namespace gateway {
+namespace {
+
+constexpr std::uint8_t get_info = 1, get_tile = 2;  // of map; 3 gets lines
+constexpr std::uint8_t get_layer = 3;               // of vectormap; 1 gets the layers
+constexpr std::string_view layer = "walls";
+
+Answer fitting(std::string payload) {
+  if (payload.size() < player::max_message - 64) return ack(std::move(payload));
+  base::log(base::Level::warn, "player-gateway", "a part of the map has {} bytes, more than the 8 MiB that Player can send",
+            payload.size());
+  return nack();
+}
+
+}  // namespace
 
 std::string map_cells(const shm::WorldMap& map, const player::MapTile& tile) {
   constexpr std::uint8_t grey_occupied = 0, grey_unknown = 205;
@@ -34,22 +48,59 @@ Answer Map::tile(const std::string& payload) const {
   if (::compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(cells.data()), cells.size()) != Z_OK)
     return nack();
   packed.resize(size);
-  return packed.size() < player::max_message - 64 ? ack(player::encode_map_tile(*wanted, packed)) : nack();
+  return fitting(player::encode_map_tile(*wanted, packed));
+}
+
+void MapDevice::make(std::function<void(const shm::WorldMap*)> done) {
+  constexpr int most_cells = 4096;  // a side: seconds of work
+  const auto made = std::make_shared<base::Result<shm::WorldMap>>(base::Error{""});
+  const auto work = [made](const base::Result<shm::Reply>& reply) {
+    shm::MapOptions options;
+    options.most_cells = most_cells;
+    options.may_coarsen = true;
+    *made = reply ? shm::make_map(reply->text, options) : base::Result<shm::WorldMap>(reply.error());
+  };
+  services_.long_errands.post(
+      shm::ExportRequest{true},
+      [made, map = map_, done = std::move(done)](const base::Result<shm::Reply>& reply) {
+        if (!reply || !*made) {
+          base::log(base::Level::warn, "player-gateway", "{}", (reply ? made->error() : reply.error()).message);
+          return done(nullptr);
+        }
+        *map = std::move(**made);
+        done(map.get());
+      },
+      Errands::limit, work);
+}
+
+std::vector<player::Segment> MapDevice::lines_of(const shm::WorldMap& map) {
+  std::vector<player::Segment> lines;
+  for (const shm::MapLine& line : map.lines) lines.push_back({line.x0, line.y0, line.x1, line.y1});
+  return lines;
 }
 
 std::optional<Answer> Map::answer(std::uint8_t subtype, const std::string& payload, const Later& later) {
-  constexpr std::uint8_t get_info = 1;
-  if (subtype != get_info) return tile(payload);
-  services_.errands.post(shm::ExportRequest{true}, [map = map_, later](const base::Result<shm::Reply>& reply) {
-    auto made = reply ? shm::make_map(reply->text, {}) : base::Result<shm::WorldMap>(reply.error());
-    if (!made) {
-      base::log(base::Level::warn, "player-gateway", "{}", made.error().message);
-      return later(nack());
-    }
-    *map = std::move(*made);
+  if (subtype == get_tile) return tile(payload);
+  make([later, subtype](const shm::WorldMap* map) {
+    if (map == nullptr) return later(nack());
     const auto& area = map->area;
-    later(ack(player::encode_map_info(area.resolution, static_cast<std::uint32_t>(area.width), static_cast<std::uint32_t>(area.height),
-                                      {area.x, area.y, 0})));
+    const std::string info = player::encode_map_info(area.resolution, static_cast<std::uint32_t>(area.width),
+                                                     static_cast<std::uint32_t>(area.height), {area.x, area.y, 0});
+    later(fitting(subtype == get_info ? info : player::encode_map_lines(lines_of(*map))));
+  });
+  return std::nullopt;
+}
+
+std::optional<Answer> VectorMap::answer(std::uint8_t subtype, const std::string& payload, const Later& later) {
+  if (subtype == get_layer) {
+    const auto name = player::decode_vectormap_layer(payload);
+    return name && *name == layer ? fitting(player::encode_vectormap_layer(layer, lines_of(*map_))) : nack();
+  }
+  make([later](const shm::WorldMap* map) {
+    if (map == nullptr) return later(nack());
+    const auto& area = map->area;
+    later(ack(player::encode_vectormap_info(
+        layer, {area.x, area.y, area.x + area.width * area.resolution, area.y + area.height * area.resolution})));
   });
   return std::nullopt;
 }

@@ -67,13 +67,48 @@ std::vector<ListedIface> ifaces_of(const std::string& robot, shm::IfaceType type
   return found;
 }
 
+// The two cameras of each multicamera sensor that has two, the left one first.
+std::vector<std::pair<ListedIface, ListedIface>> stereo_pairs(const std::string& robot, const std::vector<ListedIface>& ifaces) {
+  std::vector<std::pair<std::string, std::vector<ListedIface>>> sensors;
+  for (const ListedIface& iface : ifaces_of(robot, shm::IfaceType::camera, ifaces)) {
+    const std::string sensor = iface.name.substr(0, iface.name.rfind("::"));
+    if (sensor == iface.model || iface.name.ends_with("_map")) continue;  // a camera alone, or the maps of a segmentation camera
+    const auto known = std::ranges::find(sensors, sensor, &std::pair<std::string, std::vector<ListedIface>>::first);
+    (known == sensors.end() ? sensors.emplace_back(sensor, std::vector<ListedIface>()) : *known).second.push_back(iface);
+  }
+  std::vector<std::pair<ListedIface, ListedIface>> pairs;
+  for (auto& [sensor, eyes] : sensors) {
+    if (eyes.size() != 2) continue;
+    if (eyes[1].name.find("left", sensor.size()) != std::string::npos) std::swap(eyes[0], eyes[1]);
+    pairs.emplace_back(eyes[0], eyes[1]);
+  }
+  return pairs;
+}
+
+// Those that show more than one robot has, or show again what another device shows: on ports that name them.
+constexpr auto named_only =
+    std::to_array<player::Interface>({player::Interface::simulation, player::Interface::map, player::Interface::vectormap,
+                                      player::Interface::planner, player::Interface::opaque, player::Interface::dio});
+bool is_named_only(player::Interface interface) { return std::ranges::find(named_only, interface) != named_only.end(); }
+// Of these, what shows the whole world.
+bool is_of_world(player::Interface interface) {
+  return interface != player::Interface::simulation && can_show(interface, shm::IfaceType::simulation);
+}
+
 // All devices of a model, each interface numbered in world order. The first magnetometer is part of the first imu, and so on; those that
 // are left are devices of their own.
 void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces, std::vector<DevicePlan>& devices) {
   const auto imus = ifaces_of(robot, shm::IfaceType::imu, ifaces), magnetometers = ifaces_of(robot, shm::IfaceType::magnetometer, ifaces);
   Numbering numbering(devices);
   for (const DeviceKind& kind : device_kinds()) {
-    if (kind.interface == player::Interface::simulation) continue;
+    if (is_named_only(kind.interface)) continue;
+    if (kind.interface == player::Interface::stereo) {
+      for (const auto& [left, right] : stereo_pairs(robot, ifaces)) {
+        numbering.add(kind.interface, left);
+        devices.back().companion = right.name;
+      }
+      continue;
+    }
     for (const shm::IfaceType type : kind.shows) {
       std::size_t count = 0;
       for (const ListedIface& iface : ifaces_of(robot, type, ifaces)) {
@@ -85,7 +120,7 @@ void add_robot(const std::string& robot, const std::vector<ListedIface>& ifaces,
           continue;
         }
         numbering.add(kind.interface, iface);
-        if (type == shm::IfaceType::imu && which < magnetometers.size()) devices.back().magnetometer = magnetometers[which].name;
+        if (type == shm::IfaceType::imu && which < magnetometers.size()) devices.back().companion = magnetometers[which].name;
       }
     }
   }
@@ -142,11 +177,14 @@ player::Address address_of(const YAML::Node& node) {
 ConfiguredDevice device_of(const YAML::Node& key, const YAML::Node& value) {
   ConfiguredDevice device;
   device.address = address_of(key);
-  const bool is_pair = device.address.interface == player::Interface::imu && value.IsSequence() && value.size() == 2;
+  const bool is_stereo = device.address.interface == player::Interface::stereo;
+  const bool is_pair = (is_stereo || device.address.interface == player::Interface::imu) && value.IsSequence() && value.size() == 2;
+  if (is_stereo && !is_pair)
+    throw Wrong{value.Mark(), "stereo: expected a left and a right camera, as in [mast::eyes::left, mast::eyes::right]"};
   const bool has_joints = can_show(device.address.interface, shm::IfaceType::joints) && value.IsSequence() && value.size() > 1;
   device.iface = text_of(is_pair || has_joints ? value[0] : value, "the name of an iface");
   for (std::size_t i = 1; has_joints && i < value.size(); ++i) device.joints.push_back(text_of(value[i], "the name of a joint"));
-  if (is_pair) device.magnetometer = text_of(value[1], "the name of a magnetometer");
+  if (is_pair) device.companion = text_of(value[1], "the name of a second iface");
   // "sonar:pioneer::sonar": one colon ends a type, two separate names.
   const auto colon = device.iface.find(':');
   if (colon != std::string::npos && device.iface.compare(colon, 2, "::") != 0) {
@@ -307,9 +345,13 @@ std::vector<PortPlan> keep_ports(std::vector<PortPlan> plans, const std::vector<
 }
 
 namespace {
-bool is_magnetometer(const std::string& name, const std::vector<ListedIface>& ifaces) {
-  return std::any_of(ifaces.begin(), ifaces.end(),
-                     [&](const ListedIface& one) { return one.type == shm::IfaceType::magnetometer && one.name == name; });
+bool is_there(shm::IfaceType type, const std::string& name, const std::vector<ListedIface>& ifaces) {
+  return std::any_of(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) { return one.type == type && one.name == name; });
+}
+
+// Where the robot is by the world.
+std::string truth_of(const ListedIface& drive, const std::vector<ListedIface>& ifaces) {
+  return is_there(shm::IfaceType::truth, drive.model, ifaces) ? drive.model : robot_of(drive);
 }
 
 // Those of a model that an interface shows, in the order in which its devices are numbered.
@@ -351,13 +393,15 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
     PortPlan plan{port.port, base::join(port.robots, " "), {}};
     for (const ConfiguredDevice& device : port.devices) {
       const ListedIface* found = find_iface(device, ifaces);
-      if (device.iface == simulation_iface && device.address.interface == player::Interface::map) {
+      if (device.iface == simulation_iface && is_of_world(device.address.interface)) {
         plan.devices.push_back({device.address, shm::IfaceType::simulation, device.iface, {}});  // which is in no list
       } else if (found != nullptr) {
-        plan.devices.push_back({device.address, found->type, found->name, device.magnetometer, group_of(device, *found)});
-        if (!device.magnetometer.empty() && !is_magnetometer(device.magnetometer, ifaces))
-          missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no magnetometer " +
-                            base::in_quotes(device.magnetometer));
+        plan.devices.push_back({device.address, found->type, found->name, device.companion, group_of(device, *found)});
+        if (device.address.interface == player::Interface::planner) plan.devices.back().companion = truth_of(*found, ifaces);
+        const auto type = companion_type(device.address.interface);
+        if (!device.companion.empty() && !is_there(type, device.companion, ifaces))
+          missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no " +
+                            std::string(shm::to_text(type)) + " " + base::in_quotes(device.companion));
       } else if (device.address.interface != player::Interface::simulation) {
         const bool is_of_model = !device.model.empty() && (device.iface.empty() || device.iface == device.model);
         missing.push_back(

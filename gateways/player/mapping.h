@@ -18,8 +18,8 @@ struct DevicePlan {
   player::Address address;
   shm::IfaceType type = shm::IfaceType::laser;
   std::string iface;
-  std::string magnetometer;  // of an imu: the iface whose field it shows as well; empty: none
-  JointGroup group{};        // of a joints iface
+  std::string companion;  // the iface that it shows besides, of companion_type(); empty: none
+  JointGroup group{};     // of a joints iface
 };
 
 inline constexpr std::string_view no_robot = "no robot";
@@ -45,7 +45,7 @@ struct ConfiguredDevice {
   player::Address address;
   std::optional<shm::IfaceType> type;  // nothing: the first that the interface can show
   std::string iface;
-  std::string magnetometer;         // as in DevicePlan
+  std::string companion;            // as in DevicePlan
   std::string model;                // where no iface has the name: the one of this model that the interface shows, by its number
   std::size_t which = 0;            // from 0
   std::vector<std::string> joints;  // empty: those that the simulator lists for the interface, else all

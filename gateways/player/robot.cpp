@@ -16,8 +16,8 @@ void Robot::arrange(const PortPlan& plan, const FindSource& find_source) {
     if (!device) continue;
     device->choose(wanted.group);
     if (auto source = find_source(wanted.type, wanted.iface)) {
-      auto magnetometer = wanted.magnetometer.empty() ? nullptr : find_source(shm::IfaceType::magnetometer, wanted.magnetometer);
-      device->attach(std::move(source), std::move(magnetometer));
+      auto companion = wanted.companion.empty() ? nullptr : find_source(companion_type(wanted.address.interface), wanted.companion);
+      device->attach(std::move(source), std::move(companion));
     } else {
       device->detach();
     }

@@ -29,6 +29,9 @@ TEST(Suggestion, nothing_is_suggested_for_a_name_that_is_like_none) {
   EXPECT_EQ(nearest("", verbs), "");
   EXPECT_EQ(nearest("list", {}), "");
   EXPECT_EQ(suggestion("something", verbs), "");
+  EXPECT_EQ(nearest("nowhere.sdf", {"power.sdf", "empty.sdf", "worlds"}), "");
+  EXPECT_EQ(nearest("farm.sdf", {"arm.sdf"}), "arm.sdf");
+  EXPECT_EQ(nearest("must", {"list", "mast.yaml"}), "");
   EXPECT_EQ(nearest(std::string(100'000, 'l'), verbs), "");
 }
 

@@ -223,7 +223,7 @@ TEST(Mapping, each_robot_has_a_port_in_world_order) {
 std::string with_fields(const PortPlan& plan) {
   std::string text;
   for (const auto& device : plan.devices)
-    text += player::to_text(device.address) + "=" + device.iface + (device.magnetometer.empty() ? " " : "+" + device.magnetometer + " ");
+    text += player::to_text(device.address) + "=" + device.iface + (device.companion.empty() ? " " : "+" + device.companion + " ");
   return text;
 }
 
@@ -323,8 +323,10 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    lazer:0: x\n"), ":4: \"lazer\" is no interface of Player; did you mean laser?");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    Position2D:0: x\n"),
             ":4: \"Position2D\" is no interface of Player; did you mean position2d?");
-  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    stereo:0: x\n").substr(0, 78),
-            ":4: \"stereo\" is an interface of Player that is not served here; served are pos");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    stereo:0: x\n"),
+            ":4: stereo: expected a left and a right camera, as in [mast::eyes::left, mast::eyes::right]");
+  EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    audio:0: x\n").substr(0, 78),
+            ":4: \"audio\" is an interface of Player that is not served here; served are posi");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    colour:0: x\n").substr(0, 66),
             ":4: \"colour\" is no interface of Player; expected one of position2d");
   EXPECT_EQ(error("ports:\n- port: 1\n  devices:\n    laser:x: x\n"), ":4: expected INTERFACE:INDEX as in laser:0, got \"laser:x\"");

@@ -539,7 +539,7 @@ def map_tiles():
         assert len(cells) == width * height and 400 <= cells.count(1) <= 22 * 22 and cells[20 * width + 20] == 1 and cells[0] != 1, cells.count(1)
         client.refused(MAP, 0, 2, request(1, 0, width, 1))
         client.refused(MAP, 0, 2, b"")
-        client.refused(MAP, 0, 3)
+        client.refused(MAP, 0, 4)
 
 
 # Resets of an imu's orientation, JPEG of a camera, and what can be set of the world.

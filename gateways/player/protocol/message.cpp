@@ -34,13 +34,28 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::ranger, "ranger"},
     {Interface::fiducial, "fiducial"},
     {Interface::blobfinder, "blobfinder"},
+    {Interface::dio, "dio"},
+    {Interface::planner, "planner"},
+    {Interface::opaque, "opaque"},
+    {Interface::vectormap, "vectormap"},
+    {Interface::stereo, "stereo"},
 });
 
-constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>(
-    {{9, "audio"},         {12, "speech"},     {20, "dio"},        {22, "ir"},       {26, "mcom"},
-     {33, "blinkenlight"}, {44, "planner"},    {45, "log"},        {49, "joystick"}, {50, "speech_recognition"},
-     {51, "opaque"},       {52, "position1d"}, {55, "graphics2d"}, {57, "wsn"},      {58, "graphics3d"},
-     {59, "health"},       {63, "vectormap"},  {64, "blackboard"}, {65, "stereo"},   {66, "coopobject"}});
+constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>({{9, "audio"},
+                                                                                        {12, "speech"},
+                                                                                        {22, "ir"},
+                                                                                        {26, "mcom"},
+                                                                                        {33, "blinkenlight"},
+                                                                                        {45, "log"},
+                                                                                        {49, "joystick"},
+                                                                                        {50, "speech_recognition"},
+                                                                                        {52, "position1d"},
+                                                                                        {55, "graphics2d"},
+                                                                                        {57, "wsn"},
+                                                                                        {58, "graphics3d"},
+                                                                                        {59, "health"},
+                                                                                        {64, "blackboard"},
+                                                                                        {66, "coopobject"}});
 
 }  // namespace
 

@@ -28,6 +28,7 @@ enum class Interface : std::uint16_t {
   fiducial = 10,
   gps = 13,
   bumper = 14,
+  dio = 20,
   aio = 21,
   wifi = 23,
   localize = 25,
@@ -35,12 +36,16 @@ enum class Interface : std::uint16_t {
   simulation = 31,
   camera = 40,
   map = 42,
+  planner = 44,
+  opaque = 51,
   actarray = 53,
   limb = 54,
   rfid = 56,
   imu = 60,
   pointcloud3d = 61,
   ranger = 62,
+  vectormap = 63,
+  stereo = 65,
 };
 // "laser"; empty for what is not served.
 std::string_view to_text(Interface interface);

@@ -237,6 +237,7 @@ struct Image {
   std::string pixels;  // rows from the top, without gaps; or a JPEG file, when it is compressed
   bool is_compressed = false;
 };
+void put(XdrWriter& out, const Image& image);
 std::string encode(const Image& image);
 std::string encode_camera_source(std::string_view norm, std::int32_t source);
 
@@ -321,6 +322,39 @@ std::string encode_map_info(double scale, std::uint32_t width, std::uint32_t hei
 std::optional<MapTile> decode_map_tile(std::string_view payload);
 // `packed`: the cells as a stream of zlib.
 std::string encode_map_tile(const MapTile& tile, std::string_view packed);
+struct Segment {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+std::string encode_map_lines(const std::vector<Segment>& lines);
+
+// ---- vectormap ----
+// Of one layer, which has the extent of the map.
+std::string encode_vectormap_info(std::string_view layer, const Segment& extent);
+// Each line is a feature: a line string in well known binary.
+std::string encode_vectormap_layer(std::string_view layer, const std::vector<Segment>& lines);
+// The name of the layer that is asked for.
+std::optional<std::string> decode_vectormap_layer(std::string_view payload);
+
+// ---- planner ----
+struct PlannerState {
+  bool is_valid = false, is_done = false;
+  Pose2d pose, goal, waypoint;
+  std::int32_t index = -1;  // of the way point; -1: none
+  std::uint32_t count = 0;
+};
+std::string encode(const PlannerState& state);
+std::string encode_waypoints(double length, const std::vector<Pose2d>& waypoints);
+
+// ---- stereo ----
+// Without disparity and points.
+std::string encode_stereo(const Image& left, const Image& right);
+
+// ---- opaque ----
+std::optional<std::string> decode_opaque(std::string_view payload);
+std::string encode_opaque(std::string_view bytes);
+
+// ---- dio ----
+std::string encode_bits(const std::vector<bool>& bits);
 
 // ---- bumper ----
 std::string encode_bumpers(const std::vector<bool>& pressed);

@@ -128,13 +128,28 @@ std::string encode_points(const std::vector<Point3d>& points) {
 
 // ---- camera ----
 
+void put(XdrWriter& out, const Image& image) {
+  for (const std::uint32_t value : {image.width, image.height, image.bits, static_cast<std::uint32_t>(image.format)}) out.u32(value);
+  out.u32(1);  // fdiv
+  out.u32(image.is_compressed ? 1 : 0);
+  out.counted_bytes(image.pixels);
+}
+
 std::string encode(const Image& image) {
   return written([&](XdrWriter& out) {
     out.bytes().reserve(40 + image.pixels.size());
-    for (const std::uint32_t value : {image.width, image.height, image.bits, static_cast<std::uint32_t>(image.format)}) out.u32(value);
-    out.u32(1);  // fdiv
-    out.u32(image.is_compressed ? 1 : 0);
-    out.counted_bytes(image.pixels);
+    put(out, image);
+  });
+}
+
+std::string encode_stereo(const Image& left, const Image& right) {
+  return written([&](XdrWriter& out) {
+    out.bytes().reserve(120 + left.pixels.size() + right.pixels.size());
+    put(out, left);
+    put(out, right);
+    put(out, Image{});  // disparity
+    out.count(0);       // points
+    out.u32(0);         // how the images are sent: each for itself
   });
 }
 
@@ -233,33 +248,6 @@ std::string encode_particles(const std::vector<Hypothesis>& hypotheses) {
       put(out, one.mean);
       out.f64(one.weight);
     }
-  });
-}
-
-std::string encode_map_info(double scale, std::uint32_t width, std::uint32_t height, const Pose2d& origin) {
-  return written([&](XdrWriter& out) {
-    out.f32(static_cast<float>(scale));
-    out.u32(width);
-    out.u32(height);
-    put(out, origin);
-  });
-}
-
-std::optional<MapTile> decode_map_tile(std::string_view payload) {
-  return whole(payload, [](XdrReader& in) {
-    MapTile tile;
-    for (std::uint32_t* value : {&tile.column, &tile.row, &tile.width, &tile.height}) *value = in.u32();
-    for (int i = 0; i < 3; ++i) in.u32();  // cells and their range, which a request does not have
-    return tile;
-  });
-}
-
-std::string encode_map_tile(const MapTile& tile, std::string_view packed) {
-  constexpr std::uint32_t range = 1;
-  const auto size = static_cast<std::uint32_t>(packed.size());
-  return written([&](XdrWriter& out) {
-    for (const std::uint32_t value : {tile.column, tile.row, tile.width, tile.height, size, range, size}) out.u32(value);
-    out.raw(packed);
   });
 }
 

@@ -1,0 +1,188 @@
+# Player interfaces on ports that name them: maps as lines, ways over the map, two cameras as one, bytes between clients: player_world.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import random
+
+from player_rig import *
+
+room = f"""<sdf version="1.9"><world name="room">
+  <physics name="default" type="ode"><max_step_size>0.002</max_step_size></physics>
+  <include><uri>{source}/worlds/models/ground_plane</uri></include>
+  <include><uri>{source}/worlds/models/pioneer2dx_sick</uri><name>rover</name><pose>-2 0 0 0 0 1</pose></include>
+  <model name="wall"><static>true</static><pose>0 0 0.5 0 0 0</pose><link name="l">
+    <collision name="c"><geometry><box><size>0.2 4 1</size></box></geometry></collision></link></model>
+  <model name="box"><static>true</static><pose>0 6 0.5 0 0 0</pose><link name="l">
+    <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>
+  <model name="post"><pose>0 -6 0 0 0 0</pose><link name="l"><inertial><mass>1</mass><inertia><ixx>.01</ixx><iyy>.01</iyy><izz>.01</izz></inertia></inertial>
+    <collision name="c"><pose>0 0 0.2 0 0 0</pose><geometry><box><size>.4 .4 .4</size></box></geometry></collision>
+    <sensor name="bumper" type="contact"><update_rate>20</update_rate><contact><collision>c</collision></contact></sensor></link></model>
+</world></sdf>"""
+
+
+def named(*devices, world=room, rtf="1"):
+    rig = Rig()
+    with open(f"{rig.work}/room.sdf", "w") as file:
+        file.write(world)
+    with open(f"{rig.work}/ports.yaml", "w") as file:
+        file.write("ports:\n  - port: 0\n    devices: {" + ", ".join(devices) + "}\n")
+    rig.sim("--rtf", rtf, world=f"{rig.work}/room.sdf")
+    rig.gateway("--config", f"{rig.work}/ports.yaml", robots=1)
+    return rig
+
+
+def layer(name):
+    return text(name) + struct.pack(">II", 0, 0)
+
+
+# The outlines of a wall and a box are eight lines, as segments of the map and as well known binary of the only layer.
+def lines_of_the_map():
+    with named("'map:0': world", "'vectormap:0': world") as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(MAP)
+        client.subscribe(VECTORMAP)
+        fields = Fields(client.demand(MAP, 0, 3))
+        extent = fields.take("4f")
+        lines = fields.many("4d")
+        fields.finish()
+        assert all(abs(a - b) < 1e-5 for a, b in zip(extent, (-0.5, 0.5, -2, 6.5))), extent
+        assert len(lines) == 8 and abs(sum(math.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1 in lines) - (8.4 + 4)) < 1e-3, lines
+        client.refused(VECTORMAP, 0, 3, layer("roofs"))
+        fields = Fields(client.demand(VECTORMAP, 0, 1))
+        assert fields.take("I") == 0 and fields.count() == 1 and fields.raw() == b"walls\0"
+        extent = fields.take("4d")
+        assert fields.take("4d") == extent and extent[0] < -0.5 < 0.5 < extent[2] and extent[1] < -2 < 6.5 < extent[3], extent
+        fields.finish()
+        fields = Fields(client.demand(VECTORMAP, 0, 3, layer("walls")))
+        assert fields.raw() == b"walls\0"
+        found = []
+        for _ in range(fields.count()):
+            assert fields.raw() == b"wall\0"
+            binary = fields.raw()
+            assert fields.raw() == b"\0" and struct.unpack_from("<BII", binary) == (1, 2, 2) and len(binary) == 41
+            found.append(struct.unpack_from("<4d", binary, 9))
+        fields.finish()
+        assert sorted(found) == sorted(lines)
+        for wrong in (b"", bytes(3), bytes(400), layer("walls")[:-4], text("walls") + struct.pack(">II", 5, 5)):
+            client.refused(VECTORMAP, 0, 3, wrong)
+        client.refused(VECTORMAP, 0, 2)
+        client.refused(VECTORMAP, 0, 4, layer("walls"))
+
+
+# A map that takes long to make delays nobody else: other devices answer meanwhile.
+def maps_delay_nobody():
+    ring = "".join(f'<model name="p{i}"><static>true</static><pose>{150 * math.cos(i)} {150 * math.sin(i)} 0.3 0 0 {i}</pose><link name="l"><collision name="c"><geometry><sphere>'
+                   f'<radius>{3 + i % 7}</radius></sphere></geometry></collision></link></model>' for i in range(60))
+    with named("'map:0': world", "'laser:0': rover::laser", world=room.replace("</world>", ring + "</world>")) as rig:
+        client, other = Client(rig.ports[0]), Client(rig.ports[0])
+        client.subscribe(MAP)
+        other.subscribe(LASER)
+        client.send(message(MAP, 0, REQ, 1))
+        answers = 0
+        client.socket.settimeout(0.001)
+        got = None
+        while got is None:
+            other.demand(LASER, 0, 1)
+            answers += 1
+            try:
+                got = client.next()
+            except TimeoutError:
+                pass
+        assert got.kind == ACK and answers > 20, (got, answers)
+        scale, width, height = struct.unpack_from(">fII", got.payload)
+        assert max(width, height) <= 4096 and scale >= 0.05, (scale, width, height)
+
+
+class Plan:
+    def __init__(self, payload):
+        values = struct.unpack(">II9diI", payload)
+        self.valid, self.done, self.pose, self.goal, self.waypoint = values[0], values[1], values[2:5], values[5:8], values[8:11]
+        self.index, self.count = values[11:]
+
+
+# The robot goes round a wall to the goal that it is given in the world; the way is straight legs; disabled it stands; a goal in the wall has no way.
+def planner():
+    with named("'planner:0': rover::position2d", "'position2d:0': rover::position2d", rtf="4") as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(PLANNER)
+        idle = Plan(client.read_until(PLANNER))
+        assert (idle.valid, idle.done, idle.index, idle.count) == (0, 0, -1, 0) and math.dist(idle.pose, (-2, 0, 1)) < 0.05, idle.pose
+        for wrong in (b"", bytes(20), struct.pack(">3d", math.nan, 0, 0), struct.pack(">3d", 0, math.inf, 0)):
+            client.command(PLANNER, 0, 1, wrong)
+        client.command(PLANNER, 0, 1, struct.pack(">3d", 0, 1, 0))
+        await_("the reason", lambda: "planner of rover::position2d: the goal (0, 1) is nearer than" in rig.log(rig.process))
+        client.command(PLANNER, 0, 1, struct.pack(">3d", 1e300, 0, 0))
+        await_("the reason", lambda: "planner of rover::position2d: the goal is more than 10000 m away" in rig.log(rig.process))
+        client.command(PLANNER, 0, 1, struct.pack(">3d", 2, 0, -0.5))
+        plan = Plan(client.read_until(PLANNER, good=lambda p: Plan(p).valid and Plan(p).index == 0))
+        assert plan.goal == (2, 0, -0.5) and 3 <= plan.count <= 8, (plan.goal, plan.count)
+        fields = Fields(client.demand(PLANNER, 0, 1))
+        length = fields.take("d")
+        points = fields.many("3d")
+        fields.finish()
+        assert len(points) == plan.count and points[-1] == (2, 0, -0.5) and max(abs(y) for _, y, _ in points) > 2.3 and 2 < length < 8, (length, points)
+        client.demand(PLANNER, 0, 2, struct.pack(">I", 0))
+        stopped = lambda: rig.json_echo("rover::position2d")["velocity"]
+        await_("the robot to stand", lambda: max(map(abs, stopped())) < 0.01)
+        client.demand(PLANNER, 0, 2, struct.pack(">I", 1))
+        client.refused(PLANNER, 0, 2, b"")
+        done = Plan(client.read_until(PLANNER, good=lambda p: Plan(p).done))
+        assert math.dist(done.pose[:2], (2, 0)) < 0.05 and abs(done.pose[2] + 0.5) < 0.05 and done.index == -1, done.pose
+        # A client that goes stops the robot that it has sent away.
+        client.command(PLANNER, 0, 1, struct.pack(">3d", -2, 0, 0))
+        client.read_until(PLANNER, good=lambda p: Plan(p).valid and not Plan(p).done and math.dist(Plan(p).pose[:2], (2, 0)) > 0.3)
+        client.close()
+        await_("the robot to stand", lambda: max(map(abs, stopped())) < 0.01)
+
+
+# Left and right picture of the same time, and nothing in the place of disparity and points.
+def stereo():
+    with Rig() as rig:
+        rig.sim(world=f"{source}/worlds/devices.sdf")
+        rig.gateway(robots=1)
+        port, words = next((port, words) for port, robot, words in rig.lines() if robot == "mast")
+        assert "stereo:0=mast::stereo::left+mast::stereo::right" in words.split(), words
+        client = Client(int(port))
+        client.subscribe(STEREO)
+        for _ in range(3):
+            fields = Fields(client.read_until(STEREO))
+            pictures = []
+            for size in (320 * 240 * 3, 320 * 240 * 3, 0):
+                head = fields.take("6I")
+                pictures.append(fields.raw())
+                assert head[:2] == ((320, 240) if size else (0, 0)) and len(pictures[-1]) == size, head
+            assert fields.count() == 0 and fields.take("I") == 0
+            fields.finish()
+        # What is near is further left in the right picture: the blue ball at 2.6 m by 17 pixels.
+        def middle(picture):
+            blue = [i % 320 for i in range(320 * 240) if picture[3 * i + 2] > 60 and picture[3 * i + 2] > 2 * picture[3 * i]]
+            return sum(blue) / len(blue)
+        assert abs(middle(pictures[0]) - middle(pictures[1]) - 233.9 * 0.12 / 2.6) < 2, (middle(pictures[0]), middle(pictures[1]))
+        client.refused(STEREO, 0, 1)
+
+
+# What a client says the others hear, and it does not hear itself; nonsense is no data.
+def opaque():
+    with named("'opaque:0': world") as rig:
+        clients = [Client(rig.ports[0]) for _ in range(3)]
+        for client in clients:
+            client.subscribe(OPAQUE)
+        said = random.randbytes(1001)
+        pack = lambda data: struct.pack(">II", len(data), len(data)) + data + bytes(-len(data) % 4)
+        for wrong in (b"", bytes(3), struct.pack(">II", 5, 5), struct.pack(">II", 0xFFFFFFFF, 0xFFFFFFFF), pack(said) + bytes(4)):
+            clients[0].command(OPAQUE, 0, 1, wrong)
+        clients[0].command(OPAQUE, 0, 1, pack(said))
+        for client in clients[1:]:
+            assert client.read_until(OPAQUE) == pack(said)
+        clients[1].command(OPAQUE, 0, 1, pack(b""))
+        assert clients[0].read_until(OPAQUE) == pack(b"")
+
+
+# The bit of a bumper follows what touches it.
+def dio():
+    with named("'dio:0': post::bumper") as rig:
+        client = Client(rig.ports[0])
+        client.subscribe(DIO)
+        client.read_until(DIO, good=lambda p: p == struct.pack(">II", 1, 1))
+        rig.simctl("pose", "post", "0", "-6", "2", "0")
+        client.read_until(DIO, good=lambda p: p == struct.pack(">II", 1, 0))
+
+
+run(lines_of_the_map, maps_delay_nobody, planner, stereo, opaque, dio)
