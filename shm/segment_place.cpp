@@ -135,8 +135,9 @@ std::vector<SegmentPlace> read_places() {
                       std::string_view(place.in_refuge));
   };
   std::ranges::sort(places, {}, key);
-  const auto same = std::ranges::unique(places, {}, &SegmentPlace::name);
-  places.erase(same.begin(), same.end());
+  // Not std::ranges::unique: clang 14 does not compile its result.
+  const auto have_one_name = [](const SegmentPlace& a, const SegmentPlace& b) { return a.name == b.name; };
+  places.erase(std::unique(places.begin(), places.end(), have_one_name), places.end());
   return places;
 }
 

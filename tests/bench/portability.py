@@ -33,7 +33,9 @@ def build(name):
     if not (folder / "CMakeCache.txt").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", folder, f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS_RELEASE=-{level} -DNDEBUG", "-DRTMSIM_COLD_BUILD=ON",
                         "-DRTMSIM_TESTS=OFF", "-DRTMSIM_BENCH=OFF", "-DRTMSIM_STUDIO=OFF"], cwd=source, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", folder, "-j", str(options.jobs), "--target", *targets], check=True, stdout=subprocess.DEVNULL)
+    built = subprocess.run(["cmake", "--build", folder, "-j", str(options.jobs), "--target", *targets], capture_output=True, text=True)
+    if built.returncode != 0:
+        sys.exit(f"portability: {name} cannot be built:\n" + "\n".join(built.stdout.splitlines()[-30:]))
     return folder
 
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <unordered_map>
 
@@ -52,9 +51,9 @@ Result<std::vector<ComponentView>> Session::peers_of(const ComponentView& compon
       NamingTree::read(orb_, elsewhere ? address->segments.front() : server_, call_timeout_, {.address = nullptr, .ids = &instances});
   if (!found) return found.error();
   auto components = read_components(*found, {}, call_timeout_);
-  const bool has_all = std::ranges::all_of(std::views::iota(std::size_t{0}, ports.size()), [&](std::size_t i) {
-    return names[i].empty() || owner_of(ports[i], components).component != nullptr;
-  });
+  bool has_all = true;
+  for (std::size_t i = 0; i < ports.size() && has_all; ++i)
+    has_all = names[i].empty() || owner_of(ports[i], components).component != nullptr;
   if (has_all) return components;
   // Some are registered under other names than their own.
   const auto all = tree(path);

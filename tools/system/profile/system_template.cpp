@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <ranges>
 #include <set>
 
 #include "base/text.h"
@@ -128,27 +127,27 @@ base::Result<void> check_names(const SavedSystem& system, const std::string& fil
 
 base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::string>& lists, const std::string& file) {
   std::set<std::string> names;
-  for (const auto& text : std::views::reverse(lists)) {  // the first list is the outer one
-    const auto list = base::NameList::parse(text);
+  for (auto text = lists.rbegin(); text != lists.rend(); ++text) {  // the first list is the outer one
+    const auto list = base::NameList::parse(*text);
     if (!list) return list.error();
-    if (!names.insert(list->name).second) return base::Error{"--for " + base::in_quotes(text) + ": " + list->name + " has a list already"};
+    if (!names.insert(list->name).second) return base::Error{"--for " + base::in_quotes(*text) + ": " + list->name + " has a list already"};
     bool is_used = false;
     const bool fits = repeat(system.components, *list, is_used) && repeat(system.connectors, *list, is_used) &&
                       repeat(system.start_up, *list, is_used) && repeat(system.shut_down, *list, is_used);
-    if (!fits) return base::Error{"--for " + base::in_quotes(text) + ": makes more than 1000000 components or connections"};
+    if (!fits) return base::Error{"--for " + base::in_quotes(*text) + ": makes more than 1000000 components or connections"};
     if (!is_used)
-      return base::Error{"--for " + base::in_quotes(text) + ": system " + base::in_quotes(file) + " does not contain {" + list->name + "}"};
+      return base::Error{"--for " + base::in_quotes(*text) + ": system " + base::in_quotes(file) + " does not contain {" + list->name + "}"};
   }
   if (const auto good = check_names(system, file); !good) return good.error();
   return system;
 }
 
 base::Result<std::vector<std::string>> filled_in(std::vector<std::string> texts, const std::vector<std::string>& lists) {
-  for (const auto& text : std::views::reverse(lists)) {  // the first list is the outer one
-    const auto list = base::NameList::parse(text);
+  for (auto text = lists.rbegin(); text != lists.rend(); ++text) {  // the first list is the outer one
+    const auto list = base::NameList::parse(*text);
     if (!list) return list.error();
     bool is_used = false;  // need not be: the names of the system count
-    if (!repeat(texts, *list, is_used)) return base::Error{"--for " + base::in_quotes(text) + ": makes more than 1000000 texts"};
+    if (!repeat(texts, *list, is_used)) return base::Error{"--for " + base::in_quotes(*text) + ": makes more than 1000000 texts"};
   }
   return texts;
 }
