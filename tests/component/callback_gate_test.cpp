@@ -132,7 +132,7 @@ TEST(CallbackGate, who_gives_up_does_not_hold_those_behind) {
   CallbackGate gate;
   Insider insider(gate);
   ASSERT_EQ(insider.answer(), Answer::inside);
-  Waiter with_timeout(gate, Caller::local, std::chrono::steady_clock::now() + 20ms);
+  Waiter impatient(gate, Caller::local, std::chrono::steady_clock::now() + 20ms);
   while (!impatient.is_asking) std::this_thread::yield();
   Insider behind(gate, "onReset");
   EXPECT_EQ(impatient.answer.get(), Answer::busy);

@@ -157,7 +157,7 @@ TEST_F(Hostile, a_call_with_a_sample_waits_no_longer_than_calls_of_its_connectio
   EXPECT_EQ(getting.get(), OpenRTM::BUFFER_TIMEOUT);
 }
 
-TEST_F(Hostile, a_connection_asks_for_no_more_patience_than_a_minute_or_what_the_process_has) {
+TEST_F(Hostile, a_connection_asks_for_no_longer_timeout_than_a_minute_or_what_the_process_has) {
   rt::ConnectorSettings settings;
   const auto usual = corba::port_call_timeout();
   EXPECT_EQ(corba::line_of(settings).call_timeout, usual);
