@@ -1,4 +1,4 @@
-rtmsim_test(joint_gains_test world/joint_gains_test.cpp world/gripper_test.cpp LIBRARIES simworld LABELS world)
+rtmsim_test(joint_gains_test world/joint_elements_test.cpp world/joint_gains_test.cpp world/gripper_test.cpp LIBRARIES simworld LABELS world)
 rtmsim_test(urdf_test world/urdf_test.cpp LIBRARIES simworld LABELS world)
 rtmsim_test(floor_plan_test world/floor_plan_test.cpp LIBRARIES simworld LABELS world)
 # Writes its files by libtiff.

@@ -45,7 +45,13 @@ void add_named(pugi::xml_node node, const std::string& name, const std::string& 
   }
   const pugi::xml_node palm = node.child("palm_link");
   gripper.palm = (palm ? link(palm) : std::nullopt).value_or(gripper.fingers.front());
-  const auto count = [&](const char* path, int otherwise) { return std::clamp(integer_at(node, path, otherwise), 1, 1'000'000); };
+  const auto count = [&](const char* path, int otherwise) {
+    const int written = integer_at(node, path, otherwise), within = std::clamp(written, 1, 1'000'000);
+    if (within != written)
+      complaints.warn(node, std::string(path) + " of " + describe_in_context(node) + " must be from 1 to 1000000, got " +
+                                std::to_string(written) + "; " + std::to_string(within) + " is taken");
+    return within;
+  };
   gripper.attach_checks = count("grasp_check/attach_steps", gripper.attach_checks);
   gripper.detach_checks = count("grasp_check/detach_steps", gripper.detach_checks);
   gripper.contacts = count("grasp_check/min_contact_count", gripper.contacts);

@@ -91,6 +91,7 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
         node, describe_in_context(node) +
                   " is not commanded: its joints keep the position or speed that it starts with, until a client of the iface joints "
                   "commands them");
+    check_numbers(node, plugin, context.complaints);
   } else if (kind_of(plugin) == PluginKind::unknown ||
              ((kind_of(plugin) == PluginKind::buoyancy || kind_of(plugin) == PluginKind::link_wrench) &&
               std::string_view(node.parent().name()) != "world")) {
@@ -128,6 +129,27 @@ class ModelBuilder {
     }
     for (pugi::xml_node gripper : node.children("gripper")) add_gripper(gripper, scope, model_, context_.complaints);
     for (pugi::xml_node plugin : node.children("plugin")) add_grasp_fix(plugin, scope, model_, context_.complaints);
+  }
+
+  // Joints that follow one that is not there, themselves, or in a ring: these would hold each other, and none could be commanded.
+  void check_mimics() {
+    const auto find = [&](const std::string& name) -> JointDef* {
+      const auto found = std::find_if(model_.joints.begin(), model_.joints.end(), [&](const JointDef& one) { return one.name == name; });
+      return found == model_.joints.end() ? nullptr : &*found;
+    };
+    for (const auto& [name, node] : followers_) {
+      JointDef& joint = *find(name);
+      const std::string leader = joint.mimic->leader;
+      const JointDef* next = find(leader);
+      const bool leads = next != nullptr && next->axes.size() == 1;
+      for (std::size_t i = 0; leads && next != nullptr && next != &joint && next->mimic && i < model_.joints.size(); ++i)
+        next = find(next->mimic->leader);
+      if (leads && next != &joint) continue;
+      context_.complaints.warn(node, describe_in_context(node) + " does not mimic joint " + base::in_quotes(leader) + ": " +
+                                         (leads ? "it would follow itself" : "there is no such joint with one axis") +
+                                         "; it moves on its own");
+      joint.mimic.reset();
+    }
   }
 
   // Wheels without <inertial>: those of a small robot would keep it from turning with the specification's 1 kg m^2.
@@ -392,6 +414,7 @@ class ModelBuilder {
         joint.sensors.push_back(std::move(*built));
       }
     }
+    if (joint.mimic) followers_.emplace_back(joint.name, node);
     model_.joints.push_back(std::move(joint));
   }
 
@@ -399,7 +422,8 @@ class ModelBuilder {
   BuildContext& context_;
   std::size_t weighed_ = 0;  // links whose inertia is that of their shapes
   pugi::xml_node first_weighed_;
-  std::map<std::string, pugi::xml_node> weightless_;  // links without <inertial>
+  std::map<std::string, pugi::xml_node> weightless_;               // links without <inertial>
+  std::vector<std::pair<std::string, pugi::xml_node>> followers_;  // joints with a <mimic>
 };
 
 }  // namespace
@@ -430,6 +454,7 @@ ModelDef build_model(pugi::xml_node node, const ResolvedModel& resolved, BuildCo
   model.source = context.complaints.place_of(node).text();
   ModelBuilder builder(model, context);
   builder.add(node, resolved, {}, Eigen::Isometry3d::Identity());
+  builder.check_mimics();
   builder.weigh_wheels();
   builder.tell_of_inertias();
   model.canonical_link = resolved.canonical_link;

@@ -83,7 +83,7 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
       return base::Error{file_name + ": " + (fault ? "the URDF robot cannot be read: " + *fault : robot.error().message)};
     }
     robot->child("sdf").append_attribute(file_mark) = complaints_.add_file(file_name);
-    for (const std::string& line : carry_mimics(written, robot->child("sdf"))) complaints_.warn(robot->child("sdf"), line);
+    carry_mimics(written, robot->child("sdf"), complaints_);
     carry_initial_positions(written, robot->child("sdf").child("model"), complaints_);
     carry_mimic_plugins(robot->child("sdf").child("model"), complaints_);
     return robot;

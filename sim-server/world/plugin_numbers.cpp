@@ -14,11 +14,12 @@
 namespace sim {
 namespace {
 
-enum class Must { number, positive, not_negative, not_positive, not_zero, one_or_minus_one, vector, vector_not_negative };
+enum class Must { number, gain, positive, not_negative, not_positive, not_zero, one_or_minus_one, vector, vector_not_negative };
 
 struct NumberRow {
   std::string_view element;
   Must must;
+  std::string_view otherwise = {};  // what counts instead of an impossible one that has a place in a list of joints; empty: it is removed
 };
 
 using enum Must;
@@ -149,6 +150,31 @@ constexpr std::array slip_rows{
     NumberRow{"slip_compliance_longitudinal", not_negative},
 };
 
+// Elements of trajectory controllers come once for each joint.
+constexpr std::array joint_rows{
+    NumberRow{"p_gain", gain},
+    NumberRow{"i_gain", gain},
+    NumberRow{"d_gain", gain},
+    NumberRow{"i_max", number},
+    NumberRow{"i_min", number},
+    NumberRow{"cmd_max", number},
+    NumberRow{"cmd_min", number},
+    NumberRow{"cmd_offset", number},
+    NumberRow{"position_p_gain", gain, "0"},
+    NumberRow{"position_i_gain", gain, "0"},
+    NumberRow{"position_d_gain", gain, "0"},
+    NumberRow{"position_i_max", number, "-1"},
+    NumberRow{"position_i_min", number, "0"},
+    NumberRow{"position_cmd_max", number, "-1"},
+    NumberRow{"position_cmd_min", number, "0"},
+    NumberRow{"position_cmd_offset", number, "0"},
+    NumberRow{"velocity_p_gain", gain, "0"},
+    NumberRow{"velocity_i_gain", gain, "0"},
+    NumberRow{"velocity_d_gain", gain, "0"},
+    NumberRow{"initial_position", number, "0"},
+    NumberRow{"initial_velocity", number, "0"},
+};
+
 std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
   if (is_wheel_drive(kind)) return {wheel_rows, drive_rows};
   switch (kind) {
@@ -173,6 +199,8 @@ std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
       return {wrench_rows};
     case PluginKind::wheel_slip:
       return {slip_rows};
+    case PluginKind::joint_controller:
+      return {joint_rows};
     default:
       return {};
   }
@@ -191,7 +219,10 @@ std::string_view expectation_failed(Must must, const std::string& text) {
   const bool is_number = numbers && numbers->size() == 1 && !std::isnan(numbers->front()) &&
                          (must == not_negative || must == not_positive || std::isfinite(numbers->front()));
   const double value = is_number ? numbers->front() : 0;
+  constexpr double largest_gain = 1e12;
   switch (must) {
+    case gain:
+      return is_number && value >= 0 && value <= largest_gain ? "" : "a number from 0 to 1e12";
     case positive:
       return is_number && value > 0 ? "" : "a positive number";
     case not_negative:
@@ -230,18 +261,22 @@ class NumberChecks {
   }
 
  private:
-  bool is_impossible(pugi::xml_node element, const ParameterNode& parameter) {
-    std::string_view expected;
+  bool is_impossible(pugi::xml_node element, ParameterNode& parameter) {
+    std::string_view expected, otherwise;
     for (const auto rows : rows_) {
       const auto row = std::ranges::find(rows, parameter.name, &NumberRow::element);
-      if (row != rows.end() && expected.empty()) expected = expectation_failed(row->must, parameter.text);
+      if (row == rows.end() || !expected.empty()) continue;
+      expected = expectation_failed(row->must, parameter.text);
+      otherwise = row->otherwise;
     }
     const std::string lower = base::to_lower(parameter.text);
     if (expected.empty() && (lower == "nan" || lower == "-nan" || lower == "+nan")) expected = "a number";
     if (expected.empty()) return false;
+    const std::string taken = otherwise.empty() ? "its default is taken" : std::string(otherwise) + " is taken";
     complaints_.warn(element, "<" + parameter.name + "> of " + about_ + " must be " + std::string(expected) + ", got " +
-                                  base::in_quotes(parameter.text) + "; its default is taken");
-    return true;
+                                  base::in_quotes(parameter.text) + "; " + taken);
+    parameter.text = otherwise;
+    return otherwise.empty();
   }
 
   std::array<std::span<const NumberRow>, 2> rows_;

@@ -125,11 +125,14 @@ void mark_initial_position(pugi::xml_node node, Complaints& complaints) {
   node.remove_child(written);
 }
 
-void take_mimic(pugi::xml_node node) {
+void take_mimic(pugi::xml_node node, Complaints& complaints) {
   const pugi::xml_node written = node.child("mimic");
   if (!written || std::string_view(node.name()) != "axis") return;
-  mark_mimic(node, written.attribute("joint").value(), number_at(written, "multiplier", 1), number_at(written, "offset", 0),
-             number_at(written, "reference", 0));
+  const auto number = [&](const char* key, double otherwise) {
+    return number_of_mimic(written, describe_in_context(node.parent()), key, text_at(written, key), otherwise, complaints);
+  };
+  const double multiplier = number("multiplier", 1), offset = number("offset", 0), reference = number("reference", 0);
+  mark_mimic(node, written.attribute("joint").value(), multiplier, offset, reference);
   node.remove_child(written);
 }
 
@@ -179,13 +182,24 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     mark_added_mass(child);
     mark_automatic_inertia(child);
     mark_initial_position(child, complaints);
-    take_mimic(child);
+    take_mimic(child, complaints);
     repair(child, complaints);
     if (name == "model") carry_initial_positions(child, child, complaints), carry_mimic_plugins(child, complaints);
   }
 }
 
 }  // namespace
+
+double number_of_mimic(pugi::xml_node node, const std::string& joint, const char* key, const std::string& text, double otherwise,
+                       Complaints& complaints) {
+  constexpr double most = 1e6;
+  if (base::trim(text).empty()) return otherwise;
+  const auto value = base::parse_number(text);
+  if (value && std::abs(*value) <= most) return *value;
+  complaints.warn(node, std::string("the ") + key + " of the <mimic> of " + joint + " must be a number up to 1e6, got " +
+                            base::in_quotes(text) + "; " + base::format_number(otherwise) + " is taken");
+  return otherwise;
+}
 
 void mark_mimic(pugi::xml_node axis, const std::string& leader, double multiplier, double offset, double reference) {
   axis.append_attribute(mimic_mark) = leader.c_str();

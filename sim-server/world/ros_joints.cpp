@@ -77,7 +77,11 @@ void carry_mimic_plugins(pugi::xml_node model, Complaints& complaints) {
       complaints.warn(plugin, "joint " + base::in_quotes(follower) + " does not mimic joint " + base::in_quotes(leader) +
                                   ": one of them does not exist or does not move");
     } else if (!axis.attribute(mimic_mark) && !axis.child("mimic")) {
-      mark_mimic(axis, leader, number_at(plugin, "multiplier", 1), number_at(plugin, "offset", 0), 0);
+      const auto number = [&](const char* key, double otherwise) {
+        return number_of_mimic(plugin, "joint " + base::in_quotes(follower), key, text_at(plugin, key), otherwise, complaints);
+      };
+      const double multiplier = number("multiplier", 1), offset = number("offset", 0);
+      mark_mimic(axis, leader, multiplier, offset, 0);
     }
   }
 }

@@ -198,10 +198,10 @@ std::string snake_case(const std::string& name) {
   return out;
 }
 
-// Elements that newer versions or ROS know and that only name topics and frames of messages.
+// Elements that newer versions or ROS know: names of topics and frames of messages, and controllers outside of the simulator.
 bool means_nothing_here(std::string_view name) {
   for (std::string_view known : {"gz_frame_id", "ignition_frame_id", "optical_frame_id", "camera_info_topic", "trigger_topic",
-                                 "enable_metrics", "robotNamespace", "topicName", "frameName"}) {
+                                 "enable_metrics", "robotNamespace", "topicName", "frameName", "ros2_control"}) {
     if (name == known) return true;
   }
   return false;

@@ -104,8 +104,7 @@ void mend_urdf(pugi::xml_node robot) {
   }
 }
 
-std::vector<std::string> carry_mimics(pugi::xml_node robot, pugi::xml_node sdf) {
-  std::vector<std::string> lines;
+void carry_mimics(pugi::xml_node robot, pugi::xml_node sdf, Complaints& complaints) {
   const auto axis_of = [&](std::string_view name) {
     return sdf.child("model")
         .find_child([&](pugi::xml_node node) { return node.name() == std::string_view("joint") && urdf_name(node) == name; })
@@ -115,17 +114,17 @@ std::vector<std::string> carry_mimics(pugi::xml_node robot, pugi::xml_node sdf) 
     const pugi::xml_node mimic = joint.child("mimic");
     if (!mimic) continue;
     const std::string leader = mimic.attribute("joint").value();
+    const std::string own = "joint " + base::in_quotes(urdf_name(joint));
     const auto number = [&](const char* key, double otherwise) {
-      return base::parse_number(mimic.attribute(key).value()).value_or(otherwise);
+      return number_of_mimic(sdf, own, key, mimic.attribute(key).value(), otherwise, complaints);
     };
     if (const pugi::xml_node axis = axis_of(urdf_name(joint)); axis && axis_of(leader)) {
-      mark_mimic(axis, leader, number("multiplier", 1), number("offset", 0), 0);
+      const double multiplier = number("multiplier", 1), offset = number("offset", 0);
+      mark_mimic(axis, leader, multiplier, offset, 0);
       continue;
     }
-    lines.push_back("joint " + base::in_quotes(urdf_name(joint)) + " does not mimic joint " + base::in_quotes(leader) +
-                    ": one of them does not move; it moves on its own");
+    complaints.warn(sdf, own + " does not mimic joint " + base::in_quotes(leader) + ": one of them does not move; it moves on its own");
   }
-  return lines;
 }
 
 std::optional<std::string> fault_of_urdf(pugi::xml_node robot) {

@@ -5,7 +5,8 @@
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
-#include <vector>
+
+#include "world/complaints.h"
 
 namespace sim {
 
@@ -13,8 +14,8 @@ namespace sim {
 // on.
 void mend_urdf(pugi::xml_node robot);
 
-// Puts the <mimic> of joints, which the library leaves out in silence, into its translation. One line for each that means nothing.
-std::vector<std::string> carry_mimics(pugi::xml_node robot, pugi::xml_node sdf);
+// Puts the <mimic> of joints, which the library leaves out in silence, into its translation. A finding for each that means nothing.
+void carry_mimics(pugi::xml_node robot, pugi::xml_node sdf, Complaints& complaints);
 
 // The first thing in it that URDF does not allow; in lower case, no full stop.
 std::optional<std::string> fault_of_urdf(pugi::xml_node robot);

@@ -45,6 +45,15 @@ std::vector<double> numbers_of(const ParameterNode& parameters, std::string_view
   return numbers;
 }
 
+double within_limits(const JointDef& joint, double target, const PluginDef& plugin, std::vector<std::string>& left_out) {
+  const AxisDef& axis = joint.axes[0];
+  const double within = std::clamp(target, axis.lower, std::max(axis.lower, axis.upper));
+  if (within != target)
+    left_out.push_back(fmt::format("{}: plugin {}: the initial position of joint {} must be within {:g} and {:g}, got {:g}; {:g} is taken",
+                                   plugin.source, plugin.name, joint.name, axis.lower, axis.upper, target, within));
+  return within;
+}
+
 // The joints that the plugin names; those of arms (with limits on both sides) for one that names none.
 std::vector<std::uint32_t> joints_of(const ModelDef& model, const PluginDef& plugin, std::string& missing) {
   std::vector<std::uint32_t> joints;
@@ -86,7 +95,7 @@ std::vector<JointHold> joint_holds_of(const Physics& physics, ModelId model, std
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (!is_driveable(def.joints[joints[i]])) continue;
       JointHold hold = hold_of(def, model, joints[i]);
-      if (i < targets.size()) hold.target = targets[i];
+      if (i < targets.size()) hold.target = within_limits(def.joints[joints[i]], targets[i], plugin, left_out);
       if (i < velocities.size() && velocities[i] != 0) hold.has_target = false, hold.velocity = velocities[i];
       // Who comes first has the joint.
       if (std::none_of(holds.begin(), holds.end(), [&](const JointHold& other) { return other.joint.joint == hold.joint.joint; }))
