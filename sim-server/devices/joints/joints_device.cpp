@@ -85,6 +85,7 @@ JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDy
     axes_.push_back({std::move(listed), servo});
     if (propellers_) axes_.back().propeller = propellers_->find(axes_.back().listed.joint);
   }
+  states_.resize(axes_.size());
   positions_.resize(axes_.size());
   gravity_.resize(axes_.size());
 }
@@ -188,13 +189,13 @@ void JointsDevice::before_step(const Moment& moment) {
   if (is_active_) brake_lost_joints();
   if (propellers_) turn_propellers(moment);
   if (!is_active_) return;
-  for (std::size_t i = 0; i < axes_.size(); ++i) positions_[i] = state_of(axes_[i]).position;
+  for (std::size_t i = 0; i < axes_.size(); ++i) states_[i] = state_of(axes_[i]), positions_[i] = states_[i].position;
   compute_gravity();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     if (!axis.servo.is_active() || axis.propeller) continue;
     const bool was_disabled = axis.servo.mode() == JointMode::disabled;
-    const JointRow row = axis.servo.row(state_of(axis), axis.servo.wants_gravity() ? gravity_[i] : 0, moment.dt);
+    const JointRow row = axis.servo.row(states_[i], axis.servo.wants_gravity() ? gravity_[i] : 0, moment.dt);
     if (!was_disabled && axis.servo.mode() == JointMode::disabled)
       warn(fmt::format("joint {}: its position or command is no number; it is disabled until a reset", name_of(axis)));
     world().physics.set_row({model(), axis.listed.joint}, row);

@@ -76,6 +76,8 @@ class JointsDevice final : public Sensor {
   bool is_active_ = false;                  // a joint has been commanded
   bool has_power_ = true;
   std::uint32_t owners_seen_ = 0;
+  // Before the step.
+  std::vector<JointState> states_;
   std::vector<double> positions_, gravity_;
 };
 
