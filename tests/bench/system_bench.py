@@ -31,6 +31,15 @@ def timed_steps(s, steps):
     return time.perf_counter() - began
 
 
+# [s] of processor time that the processes have used.
+def processor_time(*processes):
+    ticks = 0
+    for process in processes:
+        with open(f"/proc/{process.pid}/stat") as file:
+            ticks += sum(int(number) for number in file.read().rsplit(")", 1)[1].split()[11:13])
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
 # Robots that drive and scan, nothing else: [s] for `steps` steps.
 def bare(world, robots, steps):
     with System(bin_dir, lib_dir) as s:
@@ -103,22 +112,25 @@ def three_processes(world, steps, kind):
         return seconds
 
 
-# The arm of worlds/arm.sdf stacks boxes: RTCManipulator in every step, BoxStacker at 100 Hz, RTCPTZ at 20 Hz, in one process.
+# The arm of worlds/arm.sdf stacks boxes: RTCManipulator in every step, BoxStacker at 100 Hz, RTCPTZ at 20 Hz, in one process. Wall-clock
+# time and processor time of simulator and components [s].
 def stacking_arm(steps):
     with System(bin_dir, lib_dir) as s:
         s.naming()
-        s.server(str(source / "worlds/arm.sdf"), "--paused", "--rtf", "0", "--lockstep")
+        simulator = s.server(str(source / "worlds/arm.sdf"), "--paused", "--rtf", "0", "--lockstep")
         names = ["RTCManipulator0", "BoxStacker0", "RTCPTZ0"]
         server = f"conf.default.server_id={s.server_id}"
-        s.host(f"RTCManipulator?exec_cxt.periodic.rate=1000&{server}&conf.default.force=15", "BoxStacker?exec_cxt.periodic.rate=100", f"RTCPTZ?exec_cxt.periodic.rate=20&{server}")
+        host = s.host(f"RTCManipulator?exec_cxt.periodic.rate=1000&{server}&conf.default.force=15", "BoxStacker?exec_cxt.periodic.rate=100", f"RTCPTZ?exec_cxt.periodic.rate=20&{server}")
         s.rtse("wait", *names, "--state", "any", "--timeout", "60")
         for port in ("common", "middle"):
             s.rtse("con", f"BoxStacker0:{port}", f"RTCManipulator0:{port}")
         s.rtse("act", *names)
         s.until("participants", lambda: len(s.participants()) == len(names))
+        before = processor_time(simulator, host)
         seconds = timed_steps(s, steps)
+        used = processor_time(simulator, host) - before
         print("  tick of each component: " + ", ".join(f"{p['name']} {p['mean_us']:.0f} us" for p in s.participants()), flush=True)
-        return seconds
+        return seconds, used
 
 
 def compare(world, robots, steps, apart):
@@ -143,7 +155,9 @@ with tempfile.TemporaryDirectory() as work:
         row(f"three processes {what}, 10 Hz, 1 ms: times real time", steps * 0.001 / seconds, "x", limit)
         row("  speed / bare, whose robot drives and scans as well", alone / seconds, "", "")
     steps = 20000
-    row("an arm that stacks boxes, 6 axes, gripper, 3 components, 1 ms: times real time", steps * 0.001 / min(stacking_arm(steps) for _ in range(rounds)), "x", ">= 40")
+    seconds, used = (min(times) for times in zip(*(stacking_arm(steps) for _ in range(rounds))))
+    row("an arm that stacks boxes, 6 axes, gripper, 3 components, 1 ms: times real time", steps * 0.001 / seconds, "x", ">= 40")
+    row("  by the processor time of simulator and components", steps * 0.001 / used, "x", ">= 40")
     ten = f"{work}/ten.sdf"
     subprocess.run([sys.executable, str(source / "worlds/make_arena.py"), "10", ten], check=True)
     steps = 6000
