@@ -27,7 +27,7 @@ foreach(case seen identity configure power estimates settings meters_and_depths 
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case lines_of_the_map maps_delay_nobody planner stereo opaque dio)
+foreach(case lines_of_the_map maps_delay_nobody planner stereo opaque dio graphics)
   add_test(NAME player.${case}
     COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_world.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -103,6 +103,7 @@ class Device {
   // False for devices that never have data.
   virtual bool has_data() const { return true; }
 
+  std::uint32_t port() const { return robot_; }
   shm::Iface& iface() const { return source_->iface(); }
   // What is shown just now is shown to a newcomer alone, who should not wait.
   bool is_for_newcomer() const { return newcomer_ != nullptr; }

@@ -8,6 +8,7 @@
 #include "camera_device.h"
 #include "drive_devices.h"
 #include "estimate_devices.h"
+#include "graphics_devices.h"
 #include "joint_devices.h"
 #include "limb_device.h"
 #include "map_device.h"
@@ -64,6 +65,8 @@ constexpr std::array kinds{
     row<Stereo>(stereo),
     row<Opaque>(opaque),
     row<Digital>(dio),
+    row<Graphics2d>(graphics2d),
+    row<Graphics3d>(graphics3d),
 };
 
 std::string names_of(std::span<const shm::IfaceType> types) {

@@ -86,9 +86,9 @@ std::vector<std::pair<ListedIface, ListedIface>> stereo_pairs(const std::string&
 }
 
 // Those that show more than one robot has, or show again what another device shows: on ports that name them.
-constexpr auto named_only =
-    std::to_array<player::Interface>({player::Interface::simulation, player::Interface::map, player::Interface::vectormap,
-                                      player::Interface::planner, player::Interface::opaque, player::Interface::dio});
+constexpr auto named_only = std::to_array<player::Interface>(
+    {player::Interface::simulation, player::Interface::map, player::Interface::vectormap, player::Interface::planner,
+     player::Interface::opaque, player::Interface::dio, player::Interface::graphics2d, player::Interface::graphics3d});
 bool is_named_only(player::Interface interface) { return std::ranges::find(named_only, interface) != named_only.end(); }
 // Of these, what shows the whole world.
 bool is_of_world(player::Interface interface) {
@@ -349,6 +349,11 @@ bool is_there(shm::IfaceType type, const std::string& name, const std::vector<Li
   return std::any_of(ifaces.begin(), ifaces.end(), [&](const ListedIface& one) { return one.type == type && one.name == name; });
 }
 
+// Of a configuration file of Player, which cannot name two cameras.
+bool is_stereo_of_model(const ConfiguredDevice& device) {
+  return device.address.interface == player::Interface::stereo && device.companion.empty();
+}
+
 // Where the robot is by the world.
 std::string truth_of(const ListedIface& drive, const std::vector<ListedIface>& ifaces) {
   return is_there(shm::IfaceType::truth, drive.model, ifaces) ? drive.model : robot_of(drive);
@@ -393,9 +398,13 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
     PortPlan plan{port.port, base::join(port.robots, " "), {}};
     for (const ConfiguredDevice& device : port.devices) {
       const ListedIface* found = find_iface(device, ifaces);
+      const auto pairs = is_stereo_of_model(device) ? stereo_pairs(device.model, ifaces) : decltype(stereo_pairs("", ifaces))();
       if (device.iface == simulation_iface && is_of_world(device.address.interface)) {
         plan.devices.push_back({device.address, shm::IfaceType::simulation, device.iface, {}});  // which is in no list
-      } else if (found != nullptr) {
+      } else if (device.which < pairs.size()) {
+        const auto& [left, right] = pairs[device.which];
+        plan.devices.push_back({device.address, left.type, left.name, right.name});
+      } else if (found != nullptr && !is_stereo_of_model(device)) {
         plan.devices.push_back({device.address, found->type, found->name, device.companion, group_of(device, *found)});
         if (device.address.interface == player::Interface::planner) plan.devices.back().companion = truth_of(*found, ifaces);
         const auto type = companion_type(device.address.interface);

@@ -194,6 +194,7 @@ class Ports {
 
   void add(const Driver& driver) {
     const auto& provided = driver.list("provides");
+    if (driver.text("name") == "mapfile") return add_maps(driver);
     if (!is_of_simulator(driver)) {
       notes_.push_back(driver.place + ": driver " + base::in_quotes(driver.text("name")) + " is not started here; " +
                        (provided.empty() ? "it is left out" : "not served: " + base::join(provided, " ")));
@@ -204,6 +205,19 @@ class Ports {
   std::vector<ConfiguredPort> take() { return std::move(ports_); }
 
  private:
+  // In place of the picture that the driver would read.
+  void add_maps(const Driver& driver) {
+    for (const std::string& text : driver.list("provides")) {
+      const CfgAddress address = cfg_address_of(text, driver.place);
+      if (address.interface != player::to_text(player::Interface::map)) continue;
+      ConfiguredDevice device;
+      device.address = {player::Interface::map, address.index};
+      device.iface = "world";
+      add_to_port(address.port, std::move(device), driver.place);
+      notes_.push_back(driver.place + ": " + text + " is the map of the simulated world, not " + base::in_quotes(driver.text("filename")));
+    }
+  }
+
   void add_device(const Driver& driver, const std::string& text) {
     const CfgAddress address = cfg_address_of(text, driver.place);
     const auto interface = player::parse_interface(address.interface);
@@ -222,11 +236,14 @@ class Ports {
       if (device.model.empty()) throw CfgError{driver.place, text + ": the driver has no model (or gz_id)"};
       device.which = used_[{device.model, *interface}]++;
     }
-    ConfiguredPort& port = port_of(address.port);
+    add_to_port(address.port, std::move(device), driver.place);
+  }
+
+  void add_to_port(std::uint16_t number, ConfiguredDevice device, const std::string& place) {
+    ConfiguredPort& port = port_of(number);
     const bool is_twice =
         std::any_of(port.devices.begin(), port.devices.end(), [&](const auto& one) { return one.address == device.address; });
-    if (is_twice)
-      throw CfgError{driver.place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " appears twice"};
+    if (is_twice) throw CfgError{place, player::to_text(device.address) + " of port " + std::to_string(port.port) + " appears twice"};
     port.devices.push_back(std::move(device));
   }
 

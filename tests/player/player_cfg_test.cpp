@@ -13,8 +13,9 @@ namespace {
 using enum shm::IfaceType;
 
 const std::vector<ListedIface> world{
-    {position2d, "r0::position2d", "r0"}, {laser, "r0::laser", "r0"},           {laser, "r0::rear", "r0"},  {sonar, "r0::sonar", "r0"},
-    {camera, "r0::camera", "r0"},         {position2d, "r1::position2d", "r1"}, {laser, "r1::laser", "r1"}, {battery, "r1::battery", "r1"}};
+    {position2d, "r0::position2d", "r0"}, {laser, "r0::laser", "r0"},        {laser, "r0::rear", "r0"},        {sonar, "r0::sonar", "r0"},
+    {camera, "r0::camera", "r0"},         {camera, "r0::eyes::right", "r0"}, {camera, "r0::eyes::left", "r0"}, {truth, "r0", "r0"},
+    {position2d, "r1::position2d", "r1"}, {laser, "r1::laser", "r1"},        {battery, "r1::battery", "r1"}};
 
 class PlayerConfig : public testing::Test {
  protected:
@@ -32,7 +33,8 @@ class PlayerConfig : public testing::Test {
     for (const auto& plan : plan_by_config(*ports, world, missing)) {
       shown += std::to_string(plan.port) + ":";
       for (const auto& device : plan.devices) {
-        if (device.address.interface != player::Interface::simulation) shown += " " + player::to_text(device.address) + "=" + device.iface;
+        if (device.address.interface == player::Interface::simulation) continue;
+        shown += " " + player::to_text(device.address) + "=" + device.iface + (device.companion.empty() ? "" : "+" + device.companion);
       }
       shown += "\n";
     }
@@ -65,6 +67,20 @@ driver ( name "stage" provides ["6666:position2d:0" "6666:laser:0" "6666:power:0
             "6666: position2d:0=r1::position2d laser:0=r1::laser power:0=r1::battery\n");
   EXPECT_EQ(notes, std::vector<std::string>());
   EXPECT_EQ(missing, std::vector<std::string>());
+}
+
+TEST_F(PlayerConfig, what_shows_the_world_and_what_shows_two_things) {
+  EXPECT_EQ(served(R"(
+driver ( name "mapfile" provides ["map:0"] filename "cave.png" resolution 0.05 )
+driver ( name "stage" provides ["planner:0" "graphics2d:0" "stereo:0" "stereo:1"] model "r0" )
+)"),
+            "6665: map:0=world planner:0=r0::position2d+r0 graphics2d:0=r0::position2d stereo:0=r0::eyes::left+r0::eyes::right\n");
+  EXPECT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes.at(0).find("map:0 is the map of the simulated world, not \"cave.png\""), std::string::npos) << notes.at(0);
+  EXPECT_EQ(missing, std::vector<std::string>{"stereo:1 of port 6665: no such device of model \"r0\""});
+  EXPECT_NE(served("driver ( name \"mapfile\" provides [\"map:0\"] )\ndriver ( name \"mapfile\" provides [\"map:0\"] )")
+                .find("map:0 of port 6665 is there twice"),
+            std::string::npos);
 }
 
 TEST_F(PlayerConfig, of_gazebo_names_ifaces_or_models) {

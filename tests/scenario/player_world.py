@@ -1,6 +1,8 @@
 # Player interfaces on ports that name them: maps as lines, ways over the map, two cameras as one, bytes between clients: player_world.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import random
 
+import pixels
+
 from player_rig import *
 
 room = f"""<sdf version="1.9"><world name="room">
@@ -185,4 +187,64 @@ def dio():
         client.read_until(DIO, good=lambda p: p == struct.pack(">II", 1, 0))
 
 
-run(lines_of_the_map, maps_delay_nobody, planner, stereo, opaque, dio)
+def view(rig):
+    path = f"{rig.work}/view.png"
+    rig.simctl("screenshot", path, "--top", "--size", "300x300")
+    width, height, data = pixels.png(path)
+    return [data[i : i + 3] for i in range(0, 3 * width * height, 3)]
+
+
+def count(picture, wanted):
+    return sum(1 for rgb in picture if all(abs(a - b) < 60 for a, b in zip(rgb, wanted)))
+
+
+def shape(points, *colors, filled=None):
+    flat = [value for point in points for value in point]
+    return struct.pack(f">II{len(flat)}d", len(points), len(points), *flat) + b"".join(struct.pack(">4I", *color) for color in colors) + (b"" if filled is None else struct.pack(">I", filled))
+
+
+# What clients draw is a model that pictures show and scanners do not: in 2D and 3D, of a robot where the robot is; cleared, and gone with its client.
+def graphics():
+    with named("'graphics2d:0': rover::position2d", "'graphics3d:0': world", "'laser:0': rover::laser") as rig:
+        models = lambda: re.findall(r"player_\S+", rig.simctl("tree"))
+        part_count = lambda: rig.simctl("tree").count("drawing")
+        client = Client(rig.ports[0])
+        client.subscribe(LASER)
+        before = Laser(client.read_until(LASER)).ranges
+        client.subscribe(GRAPHICS2D)
+        client.subscribe(GRAPHICS3D)
+        red, green = (255, 255, 0, 0), (0, 0, 255, 0)
+        for wrong in (b"", bytes(7), shape([(0, 0)], red)[:-4], struct.pack(">II", 0xFFFFFFFF, 0xFFFFFFFF), shape([(0, 0)], (0, 0, 256, 0)), shape([(math.nan, 0)], red), shape([(1e300, 0), (0, 0)], red)):
+            client.command(GRAPHICS2D, 0, 2, wrong)
+            client.command(GRAPHICS2D, 0, 3, wrong)
+            client.command(GRAPHICS3D, 0, 2, struct.pack(">I", 3) + wrong)
+            client.command(GRAPHICS3D, 0, 4, wrong)
+        client.command(GRAPHICS2D, 0, 4, shape([(0.5, -1), (2.5, -1), (2.5, 1), (0.5, 1)], red, red, filled=1))  # before the laser
+        client.command(GRAPHICS2D, 0, 3, shape([(0, 0), (1, 0), (1, 1)], red))
+        client.command(GRAPHICS2D, 0, 5, shape([(0, 0), (1, 0), (1, 1)], red))
+        client.command(GRAPHICS2D, 0, 2, shape([(0, 0), (1, 0), (1, 1)], red))
+        drawn = await_("the drawing", lambda: [one for one in models() if "graphics2d" in one])[0]
+        pose = [float(word) for word in rig.simctl("pose", drawn).split()[:3]]
+        assert all(abs(a - b) < 0.05 for a, b in zip(pose, rig.truth("rover"))), (pose, rig.truth("rover"))
+        client.command(GRAPHICS3D, 0, 5)
+        client.command(GRAPHICS3D, 0, 3, struct.pack(">3d", -3, -3, 1))
+        client.command(GRAPHICS3D, 0, 4, struct.pack(">4d", math.pi / 2, 0, 0, 1))
+        for mode in range(10):
+            client.command(GRAPHICS3D, 0, 2, struct.pack(">I", mode) + shape([(0, 0, 0), (2, 0, 0), (0, 2, 0), (2, 2, 0)], green))
+        client.command(GRAPHICS3D, 0, 6)
+        client.command(GRAPHICS3D, 0, 6)
+        await_("a green square", lambda: count(view(rig), (0, 255, 0)) > 100)
+        assert count(view(rig), (255, 0, 0)) > 50
+        after = Laser(client.read_until(LASER)).ranges
+        assert all(abs(a - b) < 0.05 for a, b in zip(before, after))
+        client.command(GRAPHICS2D, 0, 1)
+        await_("no drawing in 2D", lambda: not [one for one in models() if "graphics2d" in one])
+        assert len([one for one in models() if "graphics3d" in one]) == 1
+        client.command(GRAPHICS3D, 0, 2, struct.pack(">I", 0) + shape([(i % 40, i // 40, 1) for i in range(1100)], green))
+        await_("a limit", lambda: "graphics3d:0: more than 1000 points, lines and faces are not drawn" in rig.log(rig.process))
+        client.close()
+        await_("no drawing", lambda: not models())
+        rig.is_alive()
+
+
+run(lines_of_the_map, maps_delay_nobody, planner, stereo, opaque, dio, graphics)

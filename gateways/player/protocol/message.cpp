@@ -39,23 +39,25 @@ constexpr auto names = std::to_array<std::pair<Interface, std::string_view>>({
     {Interface::opaque, "opaque"},
     {Interface::vectormap, "vectormap"},
     {Interface::stereo, "stereo"},
+    {Interface::graphics2d, "graphics2d"},
+    {Interface::graphics3d, "graphics3d"},
 });
 
-constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>({{9, "audio"},
-                                                                                        {12, "speech"},
-                                                                                        {22, "ir"},
-                                                                                        {26, "mcom"},
-                                                                                        {33, "blinkenlight"},
-                                                                                        {45, "log"},
-                                                                                        {49, "joystick"},
-                                                                                        {50, "speech_recognition"},
-                                                                                        {52, "position1d"},
-                                                                                        {55, "graphics2d"},
-                                                                                        {57, "wsn"},
-                                                                                        {58, "graphics3d"},
-                                                                                        {59, "health"},
-                                                                                        {64, "blackboard"},
-                                                                                        {66, "coopobject"}});
+constexpr auto other_names = std::to_array<std::pair<std::uint16_t, std::string_view>>({
+    {9, "audio"},
+    {12, "speech"},
+    {22, "ir"},
+    {26, "mcom"},
+    {33, "blinkenlight"},
+    {45, "log"},
+    {49, "joystick"},
+    {50, "speech_recognition"},
+    {52, "position1d"},
+    {57, "wsn"},
+    {59, "health"},
+    {64, "blackboard"},
+    {66, "coopobject"},
+});
 
 }  // namespace
 

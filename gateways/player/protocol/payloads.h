@@ -353,6 +353,44 @@ std::string encode_stereo(const Image& left, const Image& right);
 std::optional<std::string> decode_opaque(std::string_view payload);
 std::string encode_opaque(std::string_view bytes);
 
+// ---- graphics2d, graphics3d ----
+struct Color {
+  std::uint8_t alpha = 255, red = 0, green = 0, blue = 0;
+};
+struct Point2d {
+  double x = 0, y = 0;
+};
+struct Shape2d {
+  std::vector<Point2d> points;
+  Color color, fill;  // of a polygon
+  bool is_filled = false;
+};
+// Also of a polyline and of lines.
+std::optional<Shape2d> decode_points(std::string_view payload);
+std::optional<Shape2d> decode_polygon(std::string_view payload);
+struct Drawing {
+  enum class Mode : std::uint32_t {
+    points,
+    lines,
+    line_strip,
+    line_loop,
+    triangles,
+    triangle_strip,
+    triangle_fan,
+    quads,
+    quad_strip,
+    polygon
+  } mode = Mode::points;
+  std::vector<Point3d> points;
+  Color color;
+};
+std::optional<Drawing> decode_drawing(std::string_view payload);
+struct Rotation {
+  double angle = 0;
+  Point3d axis;
+};
+std::optional<Rotation> decode_rotation(std::string_view payload);
+
 // ---- dio ----
 std::string encode_bits(const std::vector<bool>& bits);
 

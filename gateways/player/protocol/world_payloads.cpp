@@ -36,6 +36,23 @@ std::string wkb_of(const Segment& line) {
   return bytes;
 }
 
+Color take_color(XdrReader& in) {
+  Color color;
+  for (std::uint8_t* channel : {&color.alpha, &color.red, &color.green, &color.blue}) *channel = static_cast<std::uint8_t>(in.small(255));
+  return color;
+}
+
+Shape2d take_shape(XdrReader& in) {
+  Shape2d shape;
+  shape.points.resize(in.count(16, max_message / 16));
+  for (Point2d& point : shape.points) {
+    point.x = in.f64();
+    point.y = in.f64();
+  }
+  shape.color = take_color(in);
+  return shape;
+}
+
 }  // namespace
 
 // ---- map ----
@@ -126,6 +143,40 @@ std::string encode_waypoints(double length, const std::vector<Pose2d>& waypoints
     out.f64(length);
     out.count(waypoints.size());
     for (const Pose2d& pose : waypoints) put(out, pose);
+  });
+}
+
+// ---- graphics2d, graphics3d ----
+
+std::optional<Shape2d> decode_points(std::string_view payload) { return whole(payload, take_shape); }
+
+std::optional<Shape2d> decode_polygon(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Shape2d shape = take_shape(in);
+    shape.fill = take_color(in);
+    shape.is_filled = in.boolean();
+    return shape;
+  });
+}
+
+std::optional<Drawing> decode_drawing(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Drawing drawing;
+    drawing.mode = static_cast<Drawing::Mode>(in.small(static_cast<std::uint32_t>(Drawing::Mode::polygon)));
+    drawing.points.resize(in.count(24, max_message / 24));
+    for (Point3d& point : drawing.points) {
+      for (double* value : {&point.x, &point.y, &point.z}) *value = in.f64();
+    }
+    drawing.color = take_color(in);
+    return drawing;
+  });
+}
+
+std::optional<Rotation> decode_rotation(std::string_view payload) {
+  return whole(payload, [](XdrReader& in) {
+    Rotation rotation;
+    for (double* value : {&rotation.angle, &rotation.axis.x, &rotation.axis.y, &rotation.axis.z}) *value = in.f64();
+    return rotation;
   });
 }
 
