@@ -20,10 +20,18 @@ RTC::ReturnCode_t RTCBumper::onInitialize() {
   addOutPort("contact", contact_out_);
   addOutPort("force", force_out_);
   service_port_.registerProvider("bumper", "RTC::Bumper", service_);
+  service_port_.registerProvider("dio", "RTC::DIO", bit_);
   addPort(service_port_);
   bindDevice();
   return RTC::RTC_OK;
 }
+
+CORBA::Boolean ContactBit::GetBit(CORBA::UShort index) {
+  if (index != 0) throw CORBA::BAD_PARAM();
+  return is_set_.load(std::memory_order_relaxed);
+}
+
+void ContactBit::SetBit(CORBA::UShort, CORBA::Boolean) { throw CORBA::NO_PERMISSION(); }
 
 void RTCBumper::describe(const shm::Iface& bumper) {
   const auto& info = bumper.info<shm::BumperInfo>();
@@ -35,6 +43,7 @@ void RTCBumper::publish(const shm::Iface& bumper) {
   contact_.tm = force_.tm = iface::to_time(view.sample->stamp.sim_time_ns);
   contact_.data.length(1);
   contact_.data[0] = view.sample->total > 0;
+  bit_.show(view.sample->total > 0);
   force_.data.length(static_cast<CORBA::ULong>(3 * view.contacts.size()));
   for (std::size_t i = 0; i < view.contacts.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) force_.data[static_cast<CORBA::ULong>(3 * i + axis)] = view.contacts[i].force[axis];

@@ -2,9 +2,13 @@
 
 #include <base/text.h>
 #include <shm/control.h>
+#include <shm/map_path.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+
+#include "conversions.h"
 
 static const iface::Specification specification{
     .type_name = "RTCMap",
@@ -15,6 +19,7 @@ static const iface::Specification specification{
                    {"highest", "0.5", "double", "text"},
                    {"area", "", "string", "text"},
                    {"movable", "0", "int", "radio", "(0,1)"},
+                   {"radius", "0.3", "double", "text", "0<x<=100"},
                    {"row_order", "bottom_up", "string", "radio", "(bottom_up,top_down)"},
                    {"values", "grey", "string", "radio", "(grey,percent)"}},
 };
@@ -79,6 +84,66 @@ MapSource::Map MapSource::fresh() {
   return map;
 }
 
+namespace {
+
+// In front of the target: the places of the way to it, which may be passed in any heading.
+void append_way(const std::vector<shm::MapPlace>& way, const RTC::Waypoint2D& target, RTC::Waypoint2DList& path) {
+  constexpr double near_a_corner = 0.15, any_heading = 4;  // [m], [rad]
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    RTC::Waypoint2D point = target;
+    if (i + 1 < way.size()) {
+      point.target = {{way[i][0], way[i][1]}, std::atan2(way[i + 1][1] - way[i][1], way[i + 1][0] - way[i][0])};
+      point.distanceTolerance = near_a_corner;
+      point.headingTolerance = any_heading;
+    }
+    const CORBA::ULong at = path.length();
+    path.length(at + 1);
+    path[at] = point;
+  }
+}
+
+}  // namespace
+
+base::Result<RTC::Path2D> MapSource::plan(const RTC::Waypoint2DList& task) const {
+  constexpr CORBA::ULong most = 1000;
+  constexpr double farthest = 1e5;  // [m]
+  if (task.length() < 2 || task.length() > most)
+    return base::Error{"planner: expected 2 to 1000 way points, got " + std::to_string(task.length())};
+  MapSettings wanted = settings();
+  wanted.options.most_cells = 2000;
+  wanted.options.may_coarsen = true;
+  for (CORBA::ULong i = 0; i < task.length(); ++i) {
+    const auto& [position, heading] = task[i].target;
+    if (!(std::abs(position.x) <= farthest && std::abs(position.y) <= farthest && std::isfinite(heading)))
+      return base::Error{"planner: way point " + std::to_string(i) + " is no pose within 1e5 m"};
+    wanted.options.places.push_back({position.x, position.y});
+  }
+  auto requester = shm::Requester::open(static_cast<std::uint32_t>(wanted.server_id));
+  if (!requester) return requester.error();
+  const auto reply = shm::ask_for(*requester, shm::ExportRequest{true}, map_timeout);
+  if (!reply) return reply.error();
+  const auto map = shm::make_map(reply->text, wanted.options);
+  if (!map) return map.error();
+  RTC::Path2D path;
+  path.tm = iface::to_time(reply->sim_time_ns);
+  for (CORBA::ULong i = 1; i < task.length(); ++i) {
+    const auto way = shm::plan_path(*map, wanted.options.places[i - 1], wanted.options.places[i], wanted.radius);
+    if (!way) return base::Error{"planner: " + way.error().message};
+    append_way(*way, task[i], path.waypoints);
+  }
+  return path;
+}
+
+void PathPlannerService::SetTask(const RTC::Waypoint2DList& task) {
+  auto path = source_.plan(task);
+  if (path) {
+    *path_.lock() = std::move(*path);
+    return;
+  }
+  say_(path.error().message);
+  throw CORBA::BAD_PARAM();
+}
+
 MapSource::Map MapSource::latest() {
   if (Map known = *latest_.lock()) return known;
   return fresh();
@@ -119,11 +184,15 @@ RTCMap::RTCMap(RTC::Manager* manager)
       source_([this](const std::string& line) { RTC_ERROR(("%s", line.c_str())); }),
       map_(source_),
       server_(source_),
+      planner_(source_, [this](const std::string& line) { RTC_WARN(("%s", line.c_str())); }),
+      path_out_("path", path_),
       service_port_("map") {}
 
 RTC::ReturnCode_t RTCMap::onInitialize() {
   service_port_.registerProvider("map", "RTC::OGMap", map_);
   service_port_.registerProvider("server", "RTC::OGMapServer", server_);
+  service_port_.registerProvider("planner", "RTC::PathPlanner2D", planner_);
+  addOutPort("path", path_out_);
   addPort(service_port_);
   bindParameter("server_id", settings_.server_id, std::to_string(iface::default_server()).c_str());
   bindParameter("resolution", settings_.options.resolution, specification.value_of("resolution"));
@@ -131,6 +200,7 @@ RTC::ReturnCode_t RTCMap::onInitialize() {
   bindParameter("highest", highest_, specification.value_of("highest"));
   bindParameter("area", area_, specification.value_of("area"));
   bindParameter("movable", movable_, specification.value_of("movable"));
+  bindParameter("radius", settings_.radius, specification.value_of("radius"));
   bindParameter("row_order", row_order_, specification.value_of("row_order"));
   bindParameter("values", values_, specification.value_of("values"));
   follow_configuration();
@@ -159,6 +229,10 @@ RTC::ReturnCode_t RTCMap::onActivated(RTC::UniqueId) {
 
 RTC::ReturnCode_t RTCMap::onExecute(RTC::UniqueId) {
   follow_configuration();
+  if (auto path = planner_.take()) {
+    path_ = std::move(*path);
+    path_out_.write();
+  }
   return RTC::RTC_OK;
 }
 

@@ -18,6 +18,7 @@ RTCPosition2d::RTCPosition2d(RTC::Manager* manager)
       pose_in_("pose_control", pose_),
       heading_in_("heading_control", heading_),
       car_in_("carlike_control", car_),
+      path_in_("path", path_),
       odometry_out_("odometry", odometry_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
       odometry_service_([this](const RTC::Pose2D& pose) {
@@ -32,6 +33,7 @@ RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   addInPort("pose_control", pose_in_);
   addInPort("heading_control", heading_in_);
   addInPort("carlike_control", car_in_);
+  addInPort("path", path_in_);
   addOutPort("odometry", odometry_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
   service_port().registerProvider("odometry", "RTC::Odometry2D", odometry_service_);
@@ -39,6 +41,7 @@ RTC::ReturnCode_t RTCPosition2d::onInitialize() {
   service_port().registerProvider("pose_control", "RTC::PoseControl2D", pose_service_);
   service_port().registerProvider("heading_control", "RTC::HeadingControl2D", heading_service_);
   service_port().registerProvider("carlike_control", "RTC::CarlikeControl", car_service_);
+  service_port().registerProvider("path_follower", "RTC::PathFollower2D", path_follower_);
   bindDrive();
   return RTC::RTC_OK;
 }
@@ -74,6 +77,7 @@ void RTCPosition2d::give_up() {
 // Values that are no numbers are ignored with a line: the robot goes on as before.
 void RTCPosition2d::read_goals() {
   read_car();
+  read_path();
   bool has_pose = false, has_heading = false;
   while (pose_in_.isNew()) has_pose = pose_in_.read() || has_pose;
   while (heading_in_.isNew()) has_heading = heading_in_.read() || has_heading;
@@ -114,6 +118,21 @@ void RTCPosition2d::read_car() {
   if (iface::in_simulated_time()) commander().drive(values, shm::CommandKind::car);
 }
 
+void RTCPosition2d::read_path() {
+  bool has_path = false;
+  while (path_in_.isNew()) has_path = path_in_.read() || has_path;
+  if (has_path && !path_follower_.set(path_.waypoints)) RTC_WARN(("path: expected finite numbers and at most 10000 way points; ignored"));
+  if (!path_follower_.take_news()) return;
+  if (robot_.drive == RTMSIM_DRIVE_CAR) {
+    RTC_WARN(("path: a car cannot turn on the spot; ignored"));
+    path_follower_.end();
+    return;
+  }
+  give_up();
+  goal_ = Following{};
+  resets_.reset();
+}
+
 void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2dSample& sample) {
   const bool was_set = was_odometry_set_.exchange(false, std::memory_order_acquire);  // pairs with SetOdometry
   if (was_set || resets_.value_or(sample.stamp.resets) != sample.stamp.resets) give_up();
@@ -126,6 +145,10 @@ void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2
     const double velocity[] = {heading->speed, 0, shm::turn_towards(odometry.a, heading->angle, shm::within({}, robot))};
     commander().drive(velocity);
   }
+  if (!std::holds_alternative<Following>(goal_)) return path_follower_.end();
+  const auto velocity = path_follower_.next(odometry, robot);
+  command(velocity.value_or(shm::PlanarPose{}));
+  if (!velocity) goal_ = {};
 }
 
 void RTCPosition2d::publish(const shm::Iface& robot) {

@@ -1,5 +1,8 @@
 #include "rtc_position3d.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "conversions.h"
 #include "specification.h"
 
@@ -13,6 +16,8 @@ static const iface::Specification specification{
 
 RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position3d),
+      pose_in_("pose_control", wanted_pose_),
+      heading_in_("heading_control", heading_),
       pose_out_("pose", pose_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
       odometry_service_([this](const RTC::Pose3D& pose) {
@@ -21,14 +26,19 @@ RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
         request.is_3d = true;
         request.pose = shm::euler_pose(at.x, at.y, at.z, turn.r, turn.p, turn.y);
         set_odometry(std::move(request));
+        was_odometry_set_.store(true, std::memory_order_release);  // pairs with go_on
       }) {}
 
 RTC::ReturnCode_t RTCPosition3d::onInitialize() {
   addVelocityPort();
+  addInPort("pose_control", pose_in_);
+  addInPort("heading_control", heading_in_);
   addOutPort("pose", pose_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
   service_port().registerProvider("odometry", "RTC::Odometry3D", odometry_service_);
   service_port().registerProvider("velocity_control", "RTC::VelocityControl3D", velocity_service_);
+  service_port().registerProvider("pose_control", "RTC::PoseControl3D", pose_service_);
+  service_port().registerProvider("heading_control", "RTC::HeadingControl3D", heading_service_);
   bindDrive();
   return RTC::RTC_OK;
 }
@@ -38,10 +48,76 @@ void RTCPosition3d::describe(const shm::Iface& robot) {
   const auto& info = robot.info<shm::Position3dInfo>();
   odometry_service_.describe(iface::to_geometry(info.pose, info.size));
   velocity_service_.describe(iface::to_geometry(info.pose, info.size));
+  pose_service_.describe(iface::to_geometry(info.pose, info.size));
+  heading_service_.describe(iface::to_geometry(info.pose, info.size));
+}
+
+void RTCPosition3d::detaching() {
+  goal_ = {};
+  DriveComponent::detaching();
+}
+
+void RTCPosition3d::command(const std::array<double, 6>& values, shm::CommandKind kind) {
+  commander().received(values, kind);  // in real time it drives
+  if (iface::in_simulated_time()) commander().drive(values, kind);
+}
+
+// Values that are no numbers are ignored with a line: the robot goes on as before.
+void RTCPosition3d::read_goals() {
+  const auto are_numbers = [](std::initializer_list<double> values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
+  bool has_pose = false, has_heading = false;
+  while (pose_in_.isNew()) has_pose = pose_in_.read() || has_pose;
+  while (heading_in_.isNew()) has_heading = heading_in_.read() || has_heading;
+  if (has_heading) {
+    const auto& [speed, direction] = heading_.data;
+    if (are_numbers({speed, direction.p, direction.y})) {
+      goal_ = Heading{speed, direction.p, direction.y};
+      resets_.reset();
+      command({}, shm::CommandKind::velocity);  // command_timeout stops the robot when no more come
+    } else {
+      RTC_WARN(
+          ("heading_control: expected finite numbers, got %g m/s, pitch %g rad and yaw %g rad; ignored", speed, direction.p, direction.y));
+    }
+  }
+  if (has_pose) {
+    const auto& [at, turn] = wanted_pose_.data;
+    if (are_numbers({at.x, at.y, at.z, turn.r, turn.p, turn.y})) {
+      goal_ = Goal{at.x, at.y, at.z, turn.r, turn.p, turn.y};
+      resets_.reset();
+    } else {
+      RTC_WARN(("pose_control: expected finite numbers, got position %g, %g, %g m; ignored", at.x, at.y, at.z));
+    }
+  }
+}
+
+void RTCPosition3d::go_on(const shm::Position3dSample& sample) {
+  constexpr double fastest_turn = 1, gain = 2;                                                        // [rad/s], [1/s]
+  const bool was_set = was_odometry_set_.exchange(false, std::memory_order_acquire);                  // pairs with SetOdometry
+  const bool is_elsewhere = was_set || resets_.value_or(sample.stamp.resets) != sample.stamp.resets;  // what the goal was
+  resets_ = sample.stamp.resets;
+  if (is_elsewhere && !std::holds_alternative<std::monostate>(goal_)) {
+    goal_ = {};
+    commander().stop();
+  }
+  if (const auto* pose = std::get_if<Goal>(&goal_)) {
+    command(*pose, shm::CommandKind::pose);
+  } else if (const auto* heading = std::get_if<Heading>(&goal_)) {
+    const double error = std::remainder(heading->yaw - shm::yaw_of(sample.odometry), 2 * std::acos(-1.0));
+    const double velocity[] = {heading->speed * std::cos(heading->pitch),
+                               0,
+                               -heading->speed * std::sin(heading->pitch),
+                               0,
+                               0,
+                               std::clamp(gain * error, -fastest_turn, fastest_turn)};
+    commander().drive(velocity);
+  }
 }
 
 void RTCPosition3d::publish(const shm::Iface& robot) {
   const auto& sample = robot.sample<shm::Position3dSample>();
+  go_on(sample);
   pose_.tm = iface::to_time(sample.stamp.sim_time_ns);
   pose_.data = iface::to_pose(sample.odometry);
   pose_out_.write();

@@ -107,6 +107,7 @@ def bumper():
         return len(force) >= 9 and abs(abs(sum(force[2::3])) - 3 * 9.8) < 1
 
     await_("the floor carrying the box", weight)
+    call("pressed")
     rig.simctl("pause")
     rig.simctl("pose", "robot", "-4", "3", "50", "0")
     rig.simctl("run")
@@ -203,6 +204,17 @@ def inject(port, data):
 def goals():
     up("RTCPosition2d", beside=("DeviceProbe",))
     at = lambda: (odometry := rig.robot()["odometry"])[:2] + [math.remainder(odometry[2], 2 * math.pi)]
+    rig.rtse("con", "DeviceProbe0:drive", "RTCPosition2d0:drive")
+    is_at = lambda *goal: all(abs(got - wanted) < 0.03 for got, wanted in zip(at(), goal))
+    call("path_done")
+    call("path")
+    await_("a robot at the end of its path", lambda: is_at(0.3, 0.3, 1.5))
+    call("path_done")
+    call("path_on_hold")
+    call("path_nan")
+    call("path_huge")
+    rig.rtse("inject", "RTCPosition2d0:path", json.dumps({"waypoints": [{"target": {"position": {"x": 0.3, "y": 0.1}, "heading": 0}}]}))
+    assert is_at(0.3, 0.3, 1.5)  # still on hold
     goal = [-0.8, 0.5, 2.0]
     inject("pose_control", {"position": {"x": goal[0], "y": goal[1]}, "heading": goal[2]})
     await_("a robot at its goal", lambda: all(abs(got - wanted) < 0.03 for got, wanted in zip(at(), goal)))
@@ -217,7 +229,6 @@ def goals():
     await_("a robot that stands", lambda: abs(rig.robot()["velocity"][2]) < 0.01)
     inject("carlike_control", {"speed": 1, "steeringAngle": 0.3})
     await_("a line that it is no car", lambda: "the drive is not steered" in rig.log(rig.running[-1]))
-    rig.rtse("con", "DeviceProbe0:drive", "RTCPosition2d0:drive")
     inject("pose_control", {"position": {"x": -3, "y": -3}, "heading": 0})
     await_("a robot on its way", lambda: abs(rig.robot()["velocity"][2]) > 0.1)
     call("odometry")  # the goal is no longer where it was
@@ -516,6 +527,13 @@ def drone():
     pose = sample("RTCPosition3d0:pose")["data"]
     close([pose["position"]["x"], pose["position"]["y"], pose["orientation"]["r"], pose["orientation"]["p"]], [0, 0, 0, 0], 0.05)
     await_("a drone that stands when nobody commands", lambda: abs(rig.robot("drone::position3d")["velocity"][2]) < 0.01)
+    odometry = lambda: (pose := sample("RTCPosition3d0:pose")["data"])["position"] | {"yaw": pose["orientation"]["y"]}
+    start = odometry()
+    order = lambda port, data: rig.rtse("inject", f"RTCPosition3d0:{port}", json.dumps({"data": data}))
+    order("pose_control", {"position": {"x": start["x"] + 0.5, "y": start["y"], "z": start["z"] + 0.5}, "orientation": {"r": 0, "p": 0, "y": 0.5}})
+    await_("a drone at its goal", lambda: all(abs(odometry()[key] - start[key] - way) < 0.05 for key, way in (("x", 0.5), ("z", 0.5), ("yaw", 0.5))))
+    await_("a drone in another direction", lambda: order("heading_control", {"speed": 0.2, "direction": {"r": 0, "p": 0, "y": -0.5}}) or abs(odometry()["yaw"] + 0.5) < 0.1)
+    await_("a drone that stands when nobody commands", lambda: max(map(abs, rig.robot("drone::position3d")["velocity"])) < 0.01)
 
 
 # What each says when its device is not there, and that it gets well.

@@ -6,9 +6,11 @@
 #include <rtm/Manager.h>
 #include <rtm/ext/BumperSkel.h>
 #include <rtm/ext/CameraSkel.h>
+#include <rtm/ext/DIOSkel.h>
 #include <rtm/ext/GPSSkel.h>
 #include <rtm/ext/IMUSkel.h>
 #include <rtm/ext/OdometrySkel.h>
+#include <rtm/ext/PathFollowerSkel.h>
 #include <rtm/ext/RFIDSkel.h>
 #include <rtm/ext/RangerSkel.h>
 #include <rtm/ext/VelocityControlSkel.h>
@@ -44,6 +46,8 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     gps_port_.registerConsumer("gps", "RTC::GPS", gps_);
     rfid_port_.registerConsumer("rfid", "RTC::RFID", rfid_);
     bumper_port_.registerConsumer("bumper", "RTC::Bumper", bumper_);
+    bumper_port_.registerConsumer("dio", "RTC::DIO", dio_);
+    drive_port_.registerConsumer("path_follower", "RTC::PathFollower2D", path_);
     drive_port_.registerConsumer("odometry", "RTC::Odometry2D", odometry_);
     drive_port_.registerConsumer("velocity_control", "RTC::VelocityControl2D", velocity_);
     for (auto* port : {&ranger_port_, &camera_port_, &imu_port_, &gps_port_, &rfid_port_, &bumper_port_, &drive_port_}) addPort(*port);
@@ -70,6 +74,20 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
          [this] {
            const RTC::BumperGeometry shape = bumper_->GetGeometry();
            return is_near(shape.size.l, 0.3) && is_near(shape.size.h, 0.3) && is_near(shape.roc, 0);
+         }},
+        {"pressed", [this] { return is_pressed(); }},
+        {"path", [this] { return path_->SetPath(a_path(0.3)), path_->Enable(true), path_->GetCurrentWaypointIndex() == 0; }},
+        {"path_on_hold",
+         [this] { return path_->SetPath(a_path(0.6)), path_->Enable(false), is_near(path_->GetCurrentWaypoint().target.position.x, 0.6); }},
+        {"path_done", [this] { return has_no_path(); }},
+        {"path_nan", [this] { return refuses([this] { path_->SetPath(a_path(std::nan(""))); }); }},
+        {"path_huge",
+         [this] {
+           return refuses([this] {
+             RTC::Waypoint2DList many;
+             many.length(20000);
+             path_->SetPath(many);
+           });
          }},
         {"odometry",
          [this] {
@@ -99,6 +117,41 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     change(config);
     ranger_->SetConfig(config);
     return true;
+  }
+
+  // A corner that is passed in any heading, and a pose to the left of it.
+  static RTC::Waypoint2DList a_path(double x) {
+    RTC::Waypoint2DList path;
+    path.length(2);
+    path[0] = {{{x, 0}, 0}, 0.1, 4, {0, 0}, {0.3, 0, 0}};
+    path[1] = {{{x, 0.3}, 1.5}, 0, 0, {0, 0}, {0, 0, 0}};
+    return path;
+  }
+  static bool refuses(const std::function<void()>& act) {
+    try {
+      act();
+      return false;
+    } catch (const CORBA::BAD_PARAM&) {
+      return true;
+    }
+  }
+  bool has_no_path() {
+    if (path_->GetCurrentWaypointIndex() != 65535) return false;
+    try {
+      path_->GetCurrentWaypoint();
+      return false;
+    } catch (const CORBA::BAD_INV_ORDER&) {
+      return true;
+    }
+  }
+  // The only bit, which cannot be written.
+  bool is_pressed() {
+    try {
+      dio_->SetBit(0, false);
+      return false;
+    } catch (const CORBA::NO_PERMISSION&) {
+    }
+    return dio_->NumBits() == 1 && dio_->GetBit(0) && refuses([this] { dio_->GetBit(1); });
   }
 
   bool is_laser(const RTC::RangerConfig& config) {
@@ -146,6 +199,8 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
   RTC::CorbaConsumer<RTC::GPS> gps_;
   RTC::CorbaConsumer<RTC::RFID> rfid_;
   RTC::CorbaConsumer<RTC::Bumper> bumper_;
+  RTC::CorbaConsumer<RTC::DIO> dio_;
+  RTC::CorbaConsumer<RTC::PathFollower2D> path_;
   RTC::CorbaConsumer<RTC::Odometry2D> odometry_;
   RTC::CorbaConsumer<RTC::VelocityControl2D> velocity_;
 };

@@ -3,16 +3,20 @@
 #include <rtm/CorbaConsumer.h>
 #include <rtm/CorbaPort.h>
 #include <rtm/DataFlowComponentBase.h>
+#include <rtm/DataInPort.h>
 #include <rtm/Manager.h>
 #include <rtm/ext/FiducialSkel.h>
 #include <rtm/ext/MulticameraSkel.h>
 #include <rtm/ext/OGMapServerSkel.h>
 #include <rtm/ext/OGMapSkel.h>
+#include <rtm/ext/PathPlannerSkel.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <string>
+#include <thread>
 
 namespace {
 
@@ -23,13 +27,19 @@ bool is_near(double got, double wanted) { return std::abs(got - wanted) < 1e-6; 
 class SeenProbe : public RTC::DataFlowComponentBase {
  public:
   explicit SeenProbe(RTC::Manager* manager)
-      : RTC::DataFlowComponentBase(manager), fiducial_port_("fiducial"), multicamera_port_("multicamera"), map_port_("map") {}
+      : RTC::DataFlowComponentBase(manager),
+        fiducial_port_("fiducial"),
+        multicamera_port_("multicamera"),
+        map_port_("map"),
+        path_in_("path", path_) {}
 
   RTC::ReturnCode_t onInitialize() override {
     fiducial_port_.registerConsumer("fiducial", "RTC::Fiducial", fiducial_);
     multicamera_port_.registerConsumer("multicamera", "RTC::Multicamera", multicamera_);
     map_port_.registerConsumer("map", "RTC::OGMap", map_);
     map_port_.registerConsumer("server", "RTC::OGMapServer", server_);
+    map_port_.registerConsumer("planner", "RTC::PathPlanner2D", planner_);
+    addInPort("path", path_in_);
     for (auto* port : {&fiducial_port_, &multicamera_port_, &map_port_}) addPort(*port);
     bindParameter("call", call_, "");
     return RTC::RTC_OK;
@@ -48,6 +58,10 @@ class SeenProbe : public RTC::DataFlowComponentBase {
          }},
         {"stereo", [this] { return is_stereo(); }},
         {"map", [this] { return is_map(); }},
+        {"plan", [this] { return planner_->SetTask(a_task(4)), is_planned(); }},
+        {"plan_into_the_box", [this] { return refuses(a_task(2)); }},
+        {"plan_nan", [this] { return refuses(a_task(std::nan(""))); }},
+        {"plan_nothing", [this] { return refuses({}); }},
         {"server", [this] { return is_served_map(); }},
     };
     try {
@@ -99,6 +113,36 @@ class SeenProbe : public RTC::DataFlowComponentBase {
     return is_near(config.xScale, 0.05) && tile->width == config.width && has_box(tile.in(), config, false);
   }
 
+  // Past the box at (2, 3).
+  static RTC::Waypoint2DList a_task(double x) {
+    RTC::Waypoint2DList task;
+    task.length(2);
+    task[0] = {{{0, 3}, 0}, 0, 0, {0, 0}, {0, 0, 0}};
+    task[1] = {{{x, 3}, 0.7}, 0.02, 0.03, {0, 0}, {0.2, 0, 0}};
+    return task;
+  }
+  bool refuses(const RTC::Waypoint2DList& task) {
+    try {
+      planner_->SetTask(task);
+      return false;
+    } catch (const CORBA::BAD_PARAM&) {
+      return true;
+    }
+  }
+  bool is_planned() {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!path_in_.isNew()) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    path_in_.read();
+    const auto& points = path_.waypoints;
+    if (points.length() < 2) return false;
+    const RTC::Waypoint2D &corner = points[0], &last = points[points.length() - 1];
+    return std::abs(corner.target.position.y - 3) > 0.75 && corner.headingTolerance > 3 && last.target.position.x == 4 &&
+           last.target.heading == 0.7 && last.distanceTolerance == 0.02 && last.maxSpeed.vx == 0.2;
+  }
+
   bool is_served_map() {
     MobileRobot::OGMap_var map;
     return server_->requestCurrentBuiltMap(map.out()) == MobileRobot::RETVAL_OK && has_box(map->map, map->config, true);
@@ -109,6 +153,9 @@ class SeenProbe : public RTC::DataFlowComponentBase {
   RTC::CorbaConsumer<RTC::Fiducial> fiducial_;
   RTC::CorbaConsumer<RTC::Multicamera> multicamera_;
   RTC::CorbaConsumer<RTC::OGMap> map_;
+  RTC::CorbaConsumer<RTC::PathPlanner2D> planner_;
+  RTC::Path2D path_;
+  RTC::InPort<RTC::Path2D> path_in_;
   RTC::CorbaConsumer<MobileRobot::OGMapServer> server_;
 };
 
