@@ -7,19 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "ros/messages.h"
+#include "ros/plain_messages.h"
 
 namespace ros {
 
-struct PoseStamped {
-  static constexpr std::string_view name = "geometry_msgs/msg/PoseStamped";
-  Header header{};
-  Pose pose{};
-  static void fields(auto& m, auto& visit) {
-    visit("header", m.header);
-    visit("pose", m.pose);
-  }
-};
 struct Accel {
   static constexpr std::string_view name = "geometry_msgs/msg/Accel";
   Vector3 linear{};
@@ -27,35 +18,6 @@ struct Accel {
   static void fields(auto& m, auto& visit) {
     visit("linear", m.linear);
     visit("angular", m.angular);
-  }
-};
-struct MultiArrayDimension {
-  static constexpr std::string_view name = "std_msgs/msg/MultiArrayDimension";
-  std::string label{};
-  std::uint32_t size = 0;
-  std::uint32_t stride = 0;
-  static void fields(auto& m, auto& visit) {
-    visit("label", m.label);
-    visit("size", m.size);
-    visit("stride", m.stride);
-  }
-};
-struct MultiArrayLayout {
-  static constexpr std::string_view name = "std_msgs/msg/MultiArrayLayout";
-  std::vector<MultiArrayDimension> dim{};
-  std::uint32_t data_offset = 0;
-  static void fields(auto& m, auto& visit) {
-    visit("dim", m.dim);
-    visit("data_offset", m.data_offset);
-  }
-};
-struct Float64MultiArray {
-  static constexpr std::string_view name = "std_msgs/msg/Float64MultiArray";
-  MultiArrayLayout layout{};
-  std::vector<double> data{};
-  static void fields(auto& m, auto& visit) {
-    visit("layout", m.layout);
-    visit("data", m.data);
   }
 };
 struct JointTrajectoryPoint {

@@ -7,15 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "ros/messages.h"
+#include "ros/plain_messages.h"
 
 namespace ros {
 
-struct UInt32 {
-  static constexpr std::string_view name = "std_msgs/msg/UInt32";
-  std::uint32_t data = 0;
-  static void fields(auto& m, auto& visit) { visit("data", m.data); }
-};
 struct Entity {
   static constexpr std::string_view name = "ros_gz_interfaces/msg/Entity";
   static constexpr std::uint8_t collision = 5;

@@ -1,5 +1,7 @@
 // Reads messages of ROS 2 from bytes of the network: plain CDR of either byte order behind a head of four bytes. Every length is compared
 // with the bytes that are left before memory is allocated; surplus bytes at the end are ignored. Pure; any thread.
+//
+// Spans of bytes point into the bytes that are read. Spans of numbers point into memory of the decoder.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,6 +37,11 @@ class Decoder {
 
   // False after the first value that did not fit.
   bool is_good() const { return is_good_; }
+  template <Message T>
+  bool read(T& message) {
+    take(message);
+    return is_good_;
+  }
 
   template <class T>
   void operator()(std::string_view, T& value) {
@@ -101,6 +109,29 @@ class Decoder {
     for (std::uint32_t i = 0; i < count; ++i) values[i] = body_[at_ + i] != 0;
     at_ += count;
   }
+  template <Number T>
+  void take(std::span<const T>& values) {
+    std::uint32_t count = 0;
+    take(count);
+    values = {};
+    if (!is_good_ || count == 0) return;
+    if (!align(sizeof(T)) || count > left() / sizeof(T)) {
+      is_good_ = false;
+      return;
+    }
+    if constexpr (sizeof(T) == 1) {
+      values = {reinterpret_cast<const T*>(body_.data() + at_), count};
+    } else {
+      const auto copy = std::make_shared<std::vector<T>>(count);
+      std::memcpy(copy->data(), body_.data() + at_, count * sizeof(T));
+      if (is_swapped_) {
+        for (T& value : *copy) std::ranges::reverse(std::span(reinterpret_cast<std::uint8_t*>(&value), sizeof value));
+      }
+      values = *copy;
+      kept_.push_back(copy);
+    }
+    at_ += count * sizeof(T);
+  }
   template <class T, std::size_t size>
   void take(std::array<T, size>& values) {
     for (T& value : values) take(value);
@@ -114,15 +145,15 @@ class Decoder {
   std::size_t at_ = 0;
   bool is_swapped_ = false;
   bool is_good_ = true;
+  std::vector<std::shared_ptr<void>> kept_;  // what spans of numbers point into
 };
 
-// Nothing when the bytes are no such message.
+// Nothing when the bytes are no such message. Not for messages with spans of numbers, which end with the decoder.
 template <Message T>
 std::optional<T> decode(std::span<const std::uint8_t> bytes) {
   Decoder decoder(bytes);
   T message{};
-  if (decoder.is_good()) T::fields(message, decoder);
-  if (!decoder.is_good()) return std::nullopt;
+  if (!decoder.read(message)) return std::nullopt;
   return message;
 }
 

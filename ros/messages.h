@@ -2,6 +2,7 @@
 // s; x forward, y left, z up. Values.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -25,7 +26,11 @@ struct Time {
   }
 };
 // Since time 0, which is never negative.
-Time to_time(std::chrono::nanoseconds time);
+inline Time to_time(std::chrono::nanoseconds time) {
+  constexpr std::int64_t second = 1'000'000'000;
+  const std::int64_t ns = std::max<std::int64_t>(time.count(), 0);
+  return {static_cast<std::int32_t>(std::min<std::int64_t>(ns / second, INT32_MAX)), static_cast<std::uint32_t>(ns % second)};
+}
 
 struct Duration {
   static constexpr std::string_view name = "builtin_interfaces/msg/Duration";
@@ -56,12 +61,6 @@ struct ColorRGBA {
     visit("b", m.b);
     visit("a", m.a);
   }
-};
-
-struct Float64 {
-  static constexpr std::string_view name = "std_msgs/msg/Float64";
-  double data = 0;
-  static void fields(auto& m, auto& visit) { visit("data", m.data); }
 };
 
 struct Text {

@@ -20,13 +20,19 @@ class TypeHash {
  public:
   template <Message T>
   static std::string of() {
+    return of_text(text_of<T>());
+  }
+  static std::string of_text(const std::string& text) { return "RIHS01_" + sha256(text); }
+  // What the hash is made of. Needs no library.
+  template <Message T>
+  static std::string text_of() {
     TypeHash hash;
     std::string own = hash.describe<T>();
     std::string referenced;
     for (const auto& [name, text] : hash.others_) {
       if (name != T::name) referenced += (referenced.empty() ? "" : ", ") + text;
     }
-    return "RIHS01_" + sha256("{\"type_description\": " + own + ", \"referenced_type_descriptions\": [" + referenced + "]}");
+    return "{\"type_description\": " + own + ", \"referenced_type_descriptions\": [" + referenced + "]}";
   }
 
  private:

@@ -115,7 +115,7 @@ void Graph::tend(Time now) {
   }
   std::erase_if(doubts_, [&](const Doubt& doubt) {
     if (now < doubt.due) return false;
-    base::log(base::Level::warn, "ros2-gateway", "{} of {}", doubt.words, node_of(doubt.peer));
+    base::log(base::Level::warn, participant_.settings().log_name, "{} of {}", doubt.words, node_of(doubt.peer));
     return true;
   });
 }
@@ -170,13 +170,14 @@ void Graph::judge_family(const Peer& peer) {
   const char* name = seen == Family::humble ? "Humble" : "Iron, Jazzy or later";
   if (!family_) {
     family_ = seen;
-    base::log(base::Level::info, "ros2-gateway", "the domain has nodes of {}", name);
+    base::log(base::Level::info, participant_.settings().log_name, "the domain has nodes of {}", name);
   } else if (seen != *family_ && !is_mixed_) {
     is_mixed_ = true;
     base::log(
-        base::Level::error, "ros2-gateway",
-        "the domain has a node of {}, but this gateway serves {} ({}). Nodes of both cannot share a domain: use another ROS_DOMAIN_ID",
-        name, *family_ == Family::humble ? "Humble" : "Iron and later", is_set_ ? "--distro" : "the first node that it saw");
+        base::Level::error, participant_.settings().log_name,
+        "the domain has a node of {}, but this program serves {} ({}). Nodes of both cannot share a domain: use another ROS_DOMAIN_ID",
+        name, *family_ == Family::humble ? "Humble" : "Iron and later",
+        is_set_ ? participant_.settings().distro_setting.c_str() : "the first node that it saw");
   }
 }
 
@@ -193,7 +194,9 @@ void Graph::judge_fit(const Peer& peer) {
       if (!has_twin) words = "has type " + type_of_ros(peer.type) + ", expected " + type_of_ros(own.settings.type) + ", in an endpoint";
     } else if (own.is_writer && peer.is_transient && !own.settings.is_transient) {
       words = "is offered as volatile, but transient local is requested by a reader";
-    } else if (!own.is_writer && !peer.is_reliable) {
+    } else if (own.is_writer && peer.is_reliable && !own.settings.is_reliable) {
+      words = "is offered as best effort, but reliable is requested by a reader";
+    } else if (!own.is_writer && own.settings.is_reliable && !peer.is_reliable) {
       words = "is requested as reliable, but best effort is offered by a writer";
     } else if (!own.is_writer && own.settings.is_transient && !peer.is_transient) {
       words = "is requested as transient local, but volatile is offered by a writer";

@@ -20,7 +20,7 @@ Node::~Node() {
 Writer* Node::add_writer(EndpointSettings settings, std::function<void()> on_match) {
   auto writer = participant_.make_writer(std::move(settings), std::move(on_match));
   if (!writer) {
-    base::log(base::Level::error, "ros2-gateway", "{}", writer.error().message);
+    base::log(base::Level::error, participant_.settings().log_name, "{}", writer.error().message);
     return nullptr;
   }
   graph_.add_endpoint(name_, (*writer)->guid(), (*writer)->settings(), true);
@@ -31,7 +31,7 @@ Writer* Node::add_writer(EndpointSettings settings, std::function<void()> on_mat
 Reader* Node::add_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) {
   auto reader = participant_.make_reader(std::move(settings), std::move(on_sample));
   if (!reader) {
-    base::log(base::Level::error, "ros2-gateway", "{}", reader.error().message);
+    base::log(base::Level::error, participant_.settings().log_name, "{}", reader.error().message);
     return nullptr;
   }
   graph_.add_endpoint(name_, (*reader)->guid(), (*reader)->settings(), false);
@@ -42,7 +42,7 @@ Reader* Node::add_reader(EndpointSettings settings, std::function<void(Received&
 void Node::add_service(const std::string& name, ServiceTypes types, OnRequest on_request) {
   auto service = Service::open(participant_, graph_, name_, name, std::move(types), std::move(on_request));
   if (!service) {
-    base::log(base::Level::error, "ros2-gateway", "{}", service.error().message);
+    base::log(base::Level::error, participant_.settings().log_name, "{}", service.error().message);
     return;
   }
   services_.push_back(std::move(*service));

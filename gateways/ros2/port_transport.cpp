@@ -3,67 +3,24 @@
 #include <rtm/InPortConsumer.h>
 #include <rtm/InPortProvider.h>
 #include <rtm/Manager.h>
-#include <rtm/idl/BasicDataTypeSkel.h>
-#include <rtm/idl/ExtendedDataTypesSkel.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/log.h"
 #include "base/text.h"
+#include "mappings/mappings.h"
 #include "names.h"
 #include "port_domain.h"
-#include "port_mapping.h"
-#include "ros/messages.h"
+#include "port_qos.h"
+#include "ros2/port_mapping.h"
 
 namespace ros2 {
 namespace {
-
-struct VelocityAndTwist {
-  using Data = RTC::TimedVelocity2D;
-  using Message = ros::Twist;
-  static Message to_ros(const Data& data) { return {{data.data.vx, data.data.vy, 0}, {0, 0, data.data.va}}; }
-  static void from_ros(const Message& twist, Data& data) {
-    data.tm = {};  // the message has none
-    data.data = {twist.linear.x, twist.linear.y, twist.angular.z};
-  }
-};
-
-struct VelocityAndStampedTwist {
-  using Data = RTC::TimedVelocity2D;
-  using Message = ros::TwistStamped;
-  static Message to_ros(const Data& data) {
-    Message message;
-    message.header.stamp = {static_cast<std::int32_t>(data.tm.sec), data.tm.nsec};
-    message.twist = VelocityAndTwist::to_ros(data);
-    return message;
-  }
-  static void from_ros(const Message& message, Data& data) {
-    VelocityAndTwist::from_ros(message.twist, data);
-    data.tm = {static_cast<CORBA::ULong>(message.header.stamp.sec), message.header.stamp.nanosec};
-  }
-};
-
-struct Int32 {
-  static constexpr std::string_view name = "std_msgs/msg/Int32";
-  std::int32_t data = 0;
-  static void fields(auto& m, auto& visit) { visit("data", m.data); }
-};
-
-// A number with time, and one without.
-template <class Timed, ros::Message T>
-struct NumberAndNumber {
-  using Data = Timed;
-  using Message = T;
-  static Message to_ros(const Data& data) { return {data.data}; }
-  static void from_ros(const Message& message, Data& data) {
-    data.tm = {};
-    data.data = message.data;
-  }
-};
 
 // ---- the settings of a connection ----
 
@@ -74,34 +31,32 @@ std::string text_of_one_side(const coil::Properties& connection, bool is_writer,
   return std::string(base::trim(own.empty() ? connection.getProperty(key) : own));
 }
 
-// The value of the first key that is there.
-std::string first_text(const coil::Properties& connection, const std::vector<std::string>& keys) {
-  for (const auto& key : keys) {
-    if (const std::string& value = connection.getProperty(key); !value.empty()) return std::string(base::trim(value));
+bool is_large(const std::string& type) {
+  for (const char* large : {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}) {
+    if (type == large) return true;
   }
-  return {};
+  return false;
 }
 
-base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, EndpointSettings& endpoint) {
-  const std::string python = name + (is_writer ? ".writer_qos." : ".reader_qos.");
-  const std::string cpp = name + (is_writer ? ".publisher." : ".subscriber.");
-  const auto durability = first_text(connection, {python + "durability.kind", cpp + "qos.durability.kind"});
-  endpoint.is_transient = durability == "TRANSIENT_LOCAL_DURABILITY_QOS";
-  if (!durability.empty() && !endpoint.is_transient && durability != "VOLATILE_DURABILITY_QOS")
-    return base::Error{python + "durability.kind must be VOLATILE_DURABILITY_QOS or TRANSIENT_LOCAL_DURABILITY_QOS, got " +
-                       base::in_quotes(durability)};
-  const auto reliability = first_text(connection, {python + "reliability.kind", cpp + "qos.reliability.kind"});
-  // A reliable writer fits every reader.
-  const bool fits =
-      reliability.empty() || reliability == "RELIABLE_RELIABILITY_QOS" || (is_writer && reliability == "BEST_EFFORT_RELIABILITY_QOS");
-  if (!fits) return base::Error{python + "reliability.kind must be RELIABLE_RELIABILITY_QOS, got " + base::in_quotes(reliability)};
-  const auto depth = first_text(connection, {python + "history.depth", cpp + "topic.historyQos.depth"});
-  if (depth.empty()) return {};
-  const auto number = base::parse_integer(depth);
-  if (!number || *number < 1 || *number > 10'000)
-    return base::Error{python + "history.depth must be from 1 to 10000, got " + base::in_quotes(depth)};
-  endpoint.depth = static_cast<std::size_t>(*number);
-  return {};
+// The message of a connection: that of marshaling_type, or the default one of the data type.
+base::Result<EndpointSettings> endpoint_of_type(const coil::Properties& connection, bool is_writer) {
+  std::string marshaling = text_of_one_side(connection, is_writer, "marshaling_type");
+  if (marshaling.empty()) marshaling = default_mapping;
+  const std::string prefix = std::string(default_mapping) + ":";
+  const std::string type_name = marshaling.starts_with(prefix)  ? marshaling.substr(prefix.size())
+                                : marshaling == default_mapping ? text_of_one_side(connection, is_writer, "data_type")
+                                                                : "";
+  auto& types = MessageTypes::instance();
+  MessageType* made = types.hasFactory(type_name) ? types.createObject(type_name) : nullptr;
+  if (made == nullptr)
+    return base::Error{"marshaling_type must be ros2:PKG/TYPE of a mapped message, or must be left out, got " +
+                       base::in_quotes(marshaling)};
+  EndpointSettings endpoint;
+  endpoint.type = type_on_wire(made->name());
+  endpoint.user_data = "typehash=" + ros::TypeHash::of_text(made->definition()) + ";";
+  endpoint.is_large = is_writer && is_large(made->name());
+  types.deleteObject(made);
+  return endpoint;
 }
 
 // The topic of a connection as it is on the wire.
@@ -111,19 +66,10 @@ base::Result<EndpointSettings> endpoint_of(const coil::Properties& connection, b
   if (topic.empty()) return base::Error{name + ".topic is missing: expected a topic, as in " + name + ".topic=/cmd_vel"};
   if (topic.front() != '/') topic.insert(0, "/");
   if (const auto problem = problem_of_name(topic)) return base::Error{name + ".topic " + *problem};
-  const std::string marshaling = text_of_one_side(connection, is_writer, "marshaling_type");
-  auto& types = coil::GlobalFactory<MessageType>::instance();
-  const std::string type_name = marshaling.starts_with(mapping_prefix) ? marshaling.substr(std::string(mapping_prefix).size()) : "";
-  MessageType* made = types.hasFactory(type_name) ? types.createObject(type_name) : nullptr;
-  if (made == nullptr)
-    return base::Error{"marshaling_type must be ros2:PKG/TYPE of a mapped message for interface_type " + name + ", got " +
-                       base::in_quotes(marshaling)};
-  EndpointSettings endpoint;
-  endpoint.topic = topic_on_wire(topic);
-  endpoint.type = type_on_wire(made->name());
-  endpoint.user_data = "typehash=" + made->hash() + ";";
-  types.deleteObject(made);
-  if (auto read = read_qos(connection, name, is_writer, endpoint); !read) return read.error();
+  auto endpoint = endpoint_of_type(connection, is_writer);
+  if (!endpoint) return endpoint;
+  endpoint->topic = topic_on_wire(topic);
+  if (auto read = read_qos(connection, name, is_writer, *endpoint); !read) return read.error();
   return endpoint;
 }
 
@@ -149,6 +95,8 @@ base::Result<PortDomainSettings> settings_of_process() {
   if (!settings.family && !distro.empty() && distro != "auto")
     return base::Error{"ros2.distro must be auto, humble or jazzy, got " + base::in_quotes(distro)};
   const std::string node = setting_of_process("ros2.node.name");
+  settings.dds.log_name = "ros2";
+  settings.dds.distro_setting = "ros2.distro";
   settings.node.name = token(node.empty() ? "rtm_" + std::to_string(::getpid()) : node);
   return settings;
 }
@@ -216,21 +164,20 @@ class TopicReader final : public RTC::InPortProvider {
   std::unique_ptr<Subscription> subscription_;
 };
 
+// A connection that has no marshaling_type has the default mapping of its data type.
 template <class End, class Made>
 void add_end() {
-  for (const char* name : interface_names) {
-    coil::GlobalFactory<End>::instance().addFactory(name, coil::Creator<End, Made>, coil::Destructor<End, Made>);
-  }
+  coil::Properties options;
+  options.setProperty("marshaling_type", std::string(default_mapping));
+  for (const char* name : interface_names)
+    coil::GlobalFactory<End>::instance().addFactory(name, coil::Creator<End, Made>, coil::Destructor<End, Made>, options);
 }
 
 }  // namespace
 }  // namespace ros2
 
 extern "C" void ROS2TransportInit(RTC::Manager*) {
-  ros2::add_mapping<ros2::VelocityAndTwist>();
-  ros2::add_mapping<ros2::VelocityAndStampedTwist>();
-  ros2::add_mapping<ros2::NumberAndNumber<RTC::TimedDouble, ros::Float64>>();
-  ros2::add_mapping<ros2::NumberAndNumber<RTC::TimedLong, ros2::Int32>>();
+  ros2::add_mappings();
   ros2::add_end<RTC::InPortConsumer, ros2::TopicWriter>();
   ros2::add_end<RTC::InPortProvider, ros2::TopicReader>();
 }

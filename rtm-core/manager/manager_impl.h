@@ -136,6 +136,8 @@ class ManagerImpl {
   void publish_ports(const Managed& component);
   void subscribe_ports(const Managed& component);
   bool load_and_create(const std::string& module);
+  // Where the manager of this process would find a module; empty if nowhere, or if there is no manager.
+  static std::string module_file(const std::string& module);
 
   Manager& facade;
   Logger rtclog{"manager"};

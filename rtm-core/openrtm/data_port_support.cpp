@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "corba/orb/nv_list.h"
 #include "corba/ports/connector_keys.h"
+#include "manager/transport_modules.h"
 #include "openrtm/interface_plugins.h"
 #include "rtm/CORBA_SeqUtil.h"
 #include "rtm/NVUtil.h"
@@ -26,7 +27,10 @@ const char* port_type(rt::Side side) { return side == rt::Side::in ? "DataInPort
 }  // namespace
 
 void show_interfaces_of_authors(PortProfile& profile, rt::Side side) {
-  const auto names = interfaces_of_authors(side);
+  auto names = interfaces_of_authors(side);
+  for (auto& name : transports_of_modules()) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+  }
   if (names.empty()) return;
   corba::set_text(profile.properties, "dataport.interface_type", std::string(interfaces) + "," + base::join(names, ","));
   for (const std::string& name : names) {
@@ -60,6 +64,35 @@ void complete_data_profile(ConnectorProfile& profile) {
   }
 }
 
+namespace {
+
+// A transport that is not registered may come as a module. The encoding of a connection that names none is that of its transport.
+rt::ConnectorSettingsOutcome read_settings(const rt::KeyValues& values, rt::Side side) {
+  const std::string own_side = side == rt::Side::in ? "dataport.inport." : "dataport.outport.";
+  const auto text = [&](const std::string& key) {
+    for (const auto& full : {own_side + key, "dataport." + key}) {
+      if (const auto found = values.find(full); found != values.end()) return std::string(base::trim(found->second));
+    }
+    return std::string();
+  };
+  const std::string interface = text("interface_type");
+  auto transports = interfaces_of_authors(side);
+  std::string missing;
+  if (std::ranges::find(transports, interface) == transports.end()) {
+    missing = load_transport_module(interface);
+    transports = interfaces_of_authors(side);
+  }
+  auto outcome = rt::read_connector_settings(values, side, transports);
+  if (!missing.empty()) outcome.refusal.reason += ": " + missing;
+  if (outcome.settings.interface == rt::Interface::foreign && text("marshaling_type").empty()) {
+    const std::string usual = options_of_author_interface(interface, side).getProperty("marshaling_type");
+    if (!usual.empty()) outcome.settings.marshaling = usual;
+  }
+  return outcome;
+}
+
+}  // namespace
+
 rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const coil::Properties& port, rt::Side side) {
   rt::KeyValues values;
   for (const auto& name : port.propertyNames()) {
@@ -70,7 +103,7 @@ rt::ConnectorSettingsOutcome settings_of(const ConnectorProfile& profile, const 
   for (auto& [name, value] : corba::to_key_values(profile.properties)) {
     if (!value.empty()) values[name] = value;
   }
-  return rt::read_connector_settings(values, side, interfaces_of_authors(side));
+  return read_settings(values, side);
 }
 
 void share_port_properties(ConnectorProfile& profile, const coil::Properties& port) {
@@ -111,7 +144,14 @@ ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSett
     return static_cast<ReturnCode_t>(outcome.refusal.code);
   }
   const std::string& marshaling = outcome.settings.marshaling;
-  if (std::ranges::find(own.marshalings, marshaling) == own.marshalings.end()) {
+  const bool is_known = std::ranges::find(own.marshalings, marshaling) != own.marshalings.end();
+  if (!is_known && outcome.settings.interface == rt::Interface::foreign &&
+      marshaling == options_of_author_interface(outcome.settings.foreign_interface, side).getProperty("marshaling_type")) {
+    RTC_WARN_STR("connection refused: interface_type " + outcome.settings.foreign_interface + " has no encoding of " + own.type_id +
+                 "; dataport.marshaling_type may name one of " + base::join(own.marshalings, ", "));
+    return RTC_ERROR;
+  }
+  if (!is_known) {
     RTC_WARN_STR("connection refused: dataport.marshaling_type must be " + base::join(own.marshalings, " or ") + " for a " + own.type_id +
                  ", got " + base::in_quotes(marshaling));
     return RTC_ERROR;

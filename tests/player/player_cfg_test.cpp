@@ -79,7 +79,7 @@ driver ( name "stage" provides ["planner:0" "graphics2d:0" "stereo:0" "stereo:1"
   EXPECT_NE(notes.at(0).find("map:0 is the map of the simulated world, not \"cave.png\""), std::string::npos) << notes.at(0);
   EXPECT_EQ(missing, std::vector<std::string>{"stereo:1 of port 6665: no such device of model \"r0\""});
   EXPECT_NE(served("driver ( name \"mapfile\" provides [\"map:0\"] )\ndriver ( name \"mapfile\" provides [\"map:0\"] )")
-                .find("map:0 of port 6665 is there twice"),
+                .find("map:0 of port 6665 appears twice"),
             std::string::npos);
 }
 

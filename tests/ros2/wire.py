@@ -8,11 +8,32 @@ builtin_interfaces/Duration: i32 sec, u32 nanosec
 std_msgs/Header: builtin_interfaces/Time stamp, str frame_id
 std_msgs/String: str data
 std_msgs/UInt32: u32 data
+std_msgs/Bool: bool data
+std_msgs/Int8: i8 data
+std_msgs/Int16: i16 data
 std_msgs/Int32: i32 data
+std_msgs/Int64: i64 data
+std_msgs/UInt8: u8 data
+std_msgs/UInt16: u16 data
+std_msgs/UInt64: u64 data
+std_msgs/Float32: f32 data
 std_msgs/Float64: f64 data
 std_msgs/MultiArrayDimension: str label, u32 size, u32 stride
 std_msgs/MultiArrayLayout: std_msgs/MultiArrayDimension[] dim, u32 data_offset
+std_msgs/Int8MultiArray: std_msgs/MultiArrayLayout layout, i8[] data
+std_msgs/Int16MultiArray: std_msgs/MultiArrayLayout layout, i16[] data
+std_msgs/Int32MultiArray: std_msgs/MultiArrayLayout layout, i32[] data
+std_msgs/Int64MultiArray: std_msgs/MultiArrayLayout layout, i64[] data
+std_msgs/UInt8MultiArray: std_msgs/MultiArrayLayout layout, u8[] data
+std_msgs/UInt16MultiArray: std_msgs/MultiArrayLayout layout, u16[] data
+std_msgs/UInt32MultiArray: std_msgs/MultiArrayLayout layout, u32[] data
+std_msgs/UInt64MultiArray: std_msgs/MultiArrayLayout layout, u64[] data
+std_msgs/Float32MultiArray: std_msgs/MultiArrayLayout layout, f32[] data
 std_msgs/Float64MultiArray: std_msgs/MultiArrayLayout layout, f64[] data
+geometry_msgs/PointStamped: std_msgs/Header header, geometry_msgs/Point point
+geometry_msgs/Vector3Stamped: std_msgs/Header header, geometry_msgs/Vector3 vector
+geometry_msgs/QuaternionStamped: std_msgs/Header header, geometry_msgs/Quaternion quaternion
+shop_msgs/Label: std_msgs/Header header, str text
 geometry_msgs/Vector3: f64 x, f64 y, f64 z
 geometry_msgs/Point: f64 x, f64 y, f64 z
 geometry_msgs/Quaternion: f64 x, f64 y, f64 z, f64 w
@@ -27,6 +48,24 @@ geometry_msgs/Transform: geometry_msgs/Vector3 translation, geometry_msgs/Quater
 geometry_msgs/TransformStamped: std_msgs/Header header, str child_frame_id, geometry_msgs/Transform transform
 geometry_msgs/Wrench: geometry_msgs/Vector3 force, geometry_msgs/Vector3 torque
 geometry_msgs/WrenchStamped: std_msgs/Header header, geometry_msgs/Wrench wrench
+geometry_msgs/TwistWithCovarianceStamped: std_msgs/Header header, geometry_msgs/TwistWithCovariance twist
+geometry_msgs/PoseWithCovarianceStamped: std_msgs/Header header, geometry_msgs/PoseWithCovariance pose
+sensor_msgs/BatteryState: std_msgs/Header header, f32 voltage, f32 temperature, f32 current, f32 charge, f32 capacity, f32 design_capacity, f32 percentage, u8 power_supply_status, u8 power_supply_health, u8 power_supply_technology, bool present, f32[] cell_voltage, f32[] cell_temperature, str location, str serial_number
+std_msgs/ColorRGBA: f32 r, f32 g, f32 b, f32 a
+visualization_msgs/UVCoordinate: f32 u, f32 v
+visualization_msgs/MeshFile: str filename, u8[] data
+visualization_msgs/Marker: std_msgs/Header header, str ns, i32 id, i32 type, i32 action, geometry_msgs/Pose pose, geometry_msgs/Vector3 scale, std_msgs/ColorRGBA color, builtin_interfaces/Duration lifetime, bool frame_locked, geometry_msgs/Point[] points, std_msgs/ColorRGBA[] colors, str texture_resource, sensor_msgs/CompressedImage texture, visualization_msgs/UVCoordinate[] uv_coordinates, str text, str mesh_resource, visualization_msgs/MeshFile mesh_file, bool mesh_use_embedded_materials
+visualization_msgs/MarkerArray: visualization_msgs/Marker[] markers
+vision_msgs/Point2D: f64 x, f64 y
+vision_msgs/Pose2D: vision_msgs/Point2D position, f64 theta
+vision_msgs/BoundingBox2D: vision_msgs/Pose2D center, f64 size_x, f64 size_y
+vision_msgs/BoundingBox3D: geometry_msgs/Pose center, geometry_msgs/Vector3 size
+vision_msgs/ObjectHypothesis: str class_id, f64 score
+vision_msgs/ObjectHypothesisWithPose: vision_msgs/ObjectHypothesis hypothesis, geometry_msgs/PoseWithCovariance pose
+vision_msgs/Detection2D: std_msgs/Header header, vision_msgs/ObjectHypothesisWithPose[] results, vision_msgs/BoundingBox2D bbox, str id
+vision_msgs/Detection2DArray: std_msgs/Header header, vision_msgs/Detection2D[] detections
+vision_msgs/Detection3D: std_msgs/Header header, vision_msgs/ObjectHypothesisWithPose[] results, vision_msgs/BoundingBox3D bbox, str id
+vision_msgs/Detection3DArray: std_msgs/Header header, vision_msgs/Detection3D[] detections
 tf2_msgs/TFMessage: geometry_msgs/TransformStamped[] transforms
 rosgraph_msgs/Clock: builtin_interfaces/Time clock
 nav_msgs/Odometry: std_msgs/Header header, str child_frame_id, geometry_msgs/PoseWithCovariance pose, geometry_msgs/TwistWithCovariance twist
@@ -79,12 +118,18 @@ simulation_interfaces/EntityRequest: str entity
 simulation_interfaces/GetEntityStateResponse: simulation_interfaces/Result result, simulation_interfaces/EntityState state
 simulation_interfaces/SetEntityStateRequest: str entity, simulation_interfaces/EntityState state
 simulation_interfaces/SpawnEntityRequest: str name, bool allow_renaming, str uri, str resource_string, str entity_namespace, geometry_msgs/PoseStamped initial_pose
+simulation_interfaces/GetSpawnablesRequest: str[] sources
+simulation_interfaces/Spawnable: str uri, str description, simulation_interfaces/Bounds spawn_bounds
+simulation_interfaces/GetSpawnablesResponse: simulation_interfaces/Result result, simulation_interfaces/Spawnable[] spawnables
+simulation_interfaces/Resource: str uri, str resource_string
+simulation_interfaces/Spawnable2: simulation_interfaces/Resource entity_resource, str description, simulation_interfaces/Bounds spawn_bounds
+simulation_interfaces/GetSpawnablesResponse2: simulation_interfaces/Result result, simulation_interfaces/Spawnable2[] spawnables
 simulation_interfaces/SpawnEntityResponse: simulation_interfaces/Result result, str entity_name
 """.strip().splitlines():
     name, fields = line.split(": ", 1)
     FIELDS[name] = [field.split() for field in fields.split(", ")]
 
-NUMBERS = {"bool": "?", "i8": "b", "u8": "B", "u16": "H", "i32": "i", "u32": "I", "i64": "q", "u64": "Q", "f32": "f", "f64": "d"}
+NUMBERS = {"bool": "?", "i8": "b", "u8": "B", "i16": "h", "u16": "H", "i32": "i", "u32": "I", "i64": "q", "u64": "Q", "f32": "f", "f64": "d"}
 
 
 def type_on_wire(name):

@@ -96,6 +96,8 @@ void collect_connectors(const Session& session, const std::vector<ComponentView>
           if (!owner.port && absent.empty()) absent = absent_port(connector.ports[i]);
         }
         if (!absent.empty() && is_tap(connector)) continue;  // somebody looks on
+        // To a topic: the file format wants two ends.
+        if (owners.size() == 1 && connector.ports.length() == 1) owners.push_back(owners[0]);
         if (!absent.empty() || owners.size() < 2) {
           snapshot.left_out.push_back({"connection " + connector.id + " of port " + port.full_name + ": leads to " +
                                        (absent.empty() ? "no other port" : absent) + "; it is left out"});
@@ -162,7 +164,7 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   for (const auto& connector : source->connectors) {
     if (connector.id == saved.id && same_connection(connector, *source, *target)) return {};  // it stands
   }
-  changes.actions.push_back("connect " + source->full_name + " to " + target->full_name);
+  changes.actions.push_back("connect " + source->full_name + (source == target ? " to a topic" : " to " + target->full_name));
   if (dry_run) return {};
   for (const auto* port : {source, target}) {
     if (const auto done = clear_leftovers(*port, saved.id); !done) return done;

@@ -144,7 +144,7 @@ eprosima::fastrtps::TopicAttributes topic_of(const EndpointSettings& settings) {
 
 template <class Qos>
 void describe(Qos& qos, const EndpointSettings& settings) {
-  qos.m_reliability.kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.m_reliability.kind = settings.is_reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.m_durability.kind = settings.is_transient ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   const std::vector<rtps::octet> data(settings.user_data.begin(), settings.user_data.end());
   static_cast<dds::GenericDataQosPolicy&>(qos.m_userData) = data;
@@ -154,7 +154,8 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
  public:
   FastWriter(EndpointSettings settings, Inbox& inbox, Endpoints& endpoints, std::uint64_t id, std::function<void()> on_match)
       : settings_(std::move(settings)),
-        capacity_(settings_.is_transient || settings_.is_large ? settings_.depth : std::max(settings_.depth, least_capacity)),
+        capacity_(settings_.is_transient || settings_.is_large || !settings_.is_reliable ? settings_.depth
+                                                                                         : std::max(settings_.depth, least_capacity)),
         inbox_(inbox),
         endpoints_(endpoints),
         id_(id) {
@@ -171,7 +172,7 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
     const rtps::HistoryAttributes attributes(rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, 256, std::min(most, 10), most);
     history_ = std::make_unique<rtps::WriterHistory>(attributes);
     rtps::WriterAttributes wanted;
-    wanted.endpoint.reliabilityKind = rtps::RELIABLE;
+    wanted.endpoint.reliabilityKind = settings_.is_reliable ? rtps::RELIABLE : rtps::BEST_EFFORT;
     wanted.endpoint.durabilityKind = settings_.is_transient ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
     wanted.endpoint.topicKind = rtps::NO_KEY;
     wanted.times.heartbeatPeriod = {0, 50'000'000};
@@ -222,10 +223,10 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
   void make_room() {
     rtps::CacheChange_t* oldest = nullptr;
     while (history_->get_min_change(&oldest)) {
-      const bool is_confirmed = writer_->is_acked_by_all(oldest);
+      const bool is_confirmed = settings_.is_reliable && writer_->is_acked_by_all(oldest);
       const bool is_full = history_->getHistorySize() >= capacity_;
       if (!is_full && (settings_.is_transient || !is_confirmed)) return;
-      if (!is_confirmed) ++lost_;
+      if (settings_.is_reliable && !is_confirmed) ++lost_;
       if (!history_->remove_min_change()) return;
     }
   }
@@ -271,7 +272,7 @@ class FastReader final : public Reader, private rtps::ReaderListener {
     const rtps::HistoryAttributes attributes(rtps::DYNAMIC_RESERVE_MEMORY_MODE, 256, 1, 1000);
     history_ = std::make_unique<rtps::ReaderHistory>(attributes);
     rtps::ReaderAttributes wanted;
-    wanted.endpoint.reliabilityKind = rtps::RELIABLE;
+    wanted.endpoint.reliabilityKind = settings_.is_reliable ? rtps::RELIABLE : rtps::BEST_EFFORT;
     wanted.endpoint.durabilityKind = settings_.is_transient ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
     wanted.endpoint.topicKind = rtps::NO_KEY;
     reader_ = rtps::RTPSDomain::createRTPSReader(&participant, wanted, history_.get(), this);
@@ -321,15 +322,17 @@ class FastReader final : public Reader, private rtps::ReaderListener {
 
 class LogLines final : public dds::LogConsumer {
  public:
+  explicit LogLines(std::string name) : name_(std::move(name)) {}
   // Of one thread of Fast DDS. Damaged packets could fill a disk with lines, so only the first lines are logged.
   void Consume(const dds::Log::Entry& entry) override {
     constexpr int most = 20;
     if (entry.kind == dds::Log::Kind::Info || count_ > most) return;
     const bool is_last = ++count_ > most;
-    base::log(base::Level::warn, "ros2-gateway", "DDS: {}{}", entry.message, is_last ? " (no further lines)" : "");
+    base::log(base::Level::warn, name_, "DDS: {}{}", entry.message, is_last ? " (no further lines)" : "");
   }
 
  private:
+  const std::string name_;
   int count_ = 0;
 };
 
@@ -391,12 +394,14 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   }
 
   bool start(const ParticipantSettings& settings) {
+    settings_ = settings;
     participant_ = rtps::RTPSDomain::createParticipant(settings.domain, true, attributes_of(settings), this);
     if (participant_ != nullptr) guid_ = to_guid(participant_->getGuid());
     return participant_ != nullptr;
   }
 
   const Guid& guid() const override { return guid_; }
+  const ParticipantSettings& settings() const override { return settings_; }
 
   base::Result<std::unique_ptr<Writer>> make_writer(EndpointSettings settings, std::function<void()> on_match) override {
     const std::string topic = settings.topic;
@@ -456,6 +461,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
     put_peer(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
   }
 
+  ParticipantSettings settings_;
   Inbox inbox_;
   Endpoints endpoints_;
   std::uint64_t last_id_ = 0;
@@ -468,7 +474,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
 
 base::Result<std::unique_ptr<Participant>> Participant::open(const ParticipantSettings& settings) {
   dds::Log::ClearConsumers();
-  dds::Log::RegisterConsumer(std::make_unique<LogLines>());
+  dds::Log::RegisterConsumer(std::make_unique<LogLines>(settings.log_name));
   auto participant = std::make_unique<FastParticipant>();
   if (!participant->start(settings))
     return base::Error{"cannot create a DDS participant in domain " + std::to_string(settings.domain) +

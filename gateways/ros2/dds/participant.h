@@ -1,7 +1,7 @@
 // A participant of DDS that writes and reads messages that are encoded already. The only part that includes Fast DDS. One thread at a time:
 // Fast DDS's own threads put what they receive into a queue, and deliver() hands it on.
 //
-// Writers are reliable and keep the last samples. They never wait: a sample that gives way before every reader has confirmed it is counted.
+// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted.
 // Errors name what could not be made.
 #pragma once
 
@@ -41,6 +41,8 @@ struct ParticipantSettings {
   std::uint32_t domain = 0;  // 0..232
   Network network = Network::host;
   std::string user_data = "enclave=/;";
+  std::string log_name = "ros2-gateway";    // of the lines that are logged
+  std::string distro_setting = "--distro";  // where a user chooses the family of ROS 2
 };
 
 struct EndpointSettings {
@@ -50,6 +52,7 @@ struct EndpointSettings {
   std::size_t depth = 10;     // samples that are kept; readers: all, as deliver() takes them
   bool is_large = false;      // sent by a thread of its own
   bool is_local_ignored = false;
+  bool is_reliable = true;    // a reader that is not takes the samples of all writers
 };
 
 // An endpoint of another participant.
@@ -104,6 +107,7 @@ class Participant {
   virtual ~Participant() = default;  // after its writers and readers
 
   virtual const Guid& guid() const = 0;
+  virtual const ParticipantSettings& settings() const = 0;
   // `on_match` is called by deliver() when a reader comes or goes.
   virtual base::Result<std::unique_ptr<Writer>> make_writer(EndpointSettings settings, std::function<void()> on_match = {}) = 0;
   virtual base::Result<std::unique_ptr<Reader>> make_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) = 0;

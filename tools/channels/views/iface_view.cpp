@@ -11,6 +11,7 @@
 #include "base/jpeg.h"
 #include "channels/views/seen_view.h"
 #include "channels/views/view_parts.h"
+#include "ros/plain_messages.h"
 
 namespace channels {
 

@@ -33,6 +33,7 @@ Properties restored_properties(const SavedConnector& saved) {
 }
 
 bool same_connection(const ConnectorView& connector, const PortView& source, const PortView& target) {
+  if (&source == &target) return connector.ports.length() == 1 && connector.ports[0]->_is_equivalent(source.object);
   bool has_source = false;
   bool has_target = false;
   for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {

@@ -1,0 +1,22 @@
+// The QoS of a port on a topic, from the properties of its connection. NAME is the transport: ros2, fast-rtps, cyclone-dds. Of these
+// spellings the first that has a value counts:
+//
+//   NAME.writer_qos.* and NAME.reader_qos.*             as OpenRTM's ROS2Transport of Python
+//   NAME.publisher.qos.* and NAME.subscriber.qos.*      as OpenRTM's FastRTPSTransport of C++
+//   NAME.reliability, NAME.durability, NAME.depth       for both directions: reliable, best_effort; volatile, transient_local; a number
+//
+// Policies that OpenRTM has and this transport does not are named in a warning. Pure, except for that line; any thread.
+#pragma once
+
+#include <coil/Properties.h>
+
+#include <string>
+
+#include "base/result.h"
+#include "dds/participant.h"
+
+namespace ros2 {
+
+base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, EndpointSettings& endpoint);
+
+}  // namespace ros2
