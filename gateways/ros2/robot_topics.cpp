@@ -8,21 +8,13 @@
 #include "base/log.h"
 #include "description.h"
 #include "ros/contact_messages.h"
+#include "ros/from_device.h"
+#include "ros/rotation.h"
 
 namespace ros2 {
 namespace {
 
 using shm::HeldFrame;
-
-// Covariances that filters can use: what wheels measure, and what they don't.
-constexpr double flat_variance = 1e-5, yaw_variance = 1e-3, unknown_variance = 1e12;
-
-std::array<double, 36> wheel_covariance() {
-  std::array<double, 36> covariance{};
-  const std::array<double, 6> diagonal = {flat_variance, flat_variance, unknown_variance, unknown_variance, unknown_variance, yaw_variance};
-  for (std::size_t i = 0; i < 6; ++i) covariance[i * 7] = diagonal[i];
-  return covariance;
-}
 
 std::string leaf_of(const std::string& iface, const std::string& model) {
   return iface.starts_with(model + "::") ? iface.substr(model.size() + 2) : iface;
@@ -33,32 +25,18 @@ void publish_if(Writer* writer, const T& message) {
   if (writer != nullptr && !writer->readers().empty()) publish(*writer, message);
 }
 
+template <ros::Message T>
+void publish_made(Writer& writer, const T& message) {
+  publish(writer, message);
+}
+template <ros::Message T>
+void publish_made(Writer& writer, const std::optional<T>& message) {
+  if (message) publish(writer, *message);
+}
+
 std::vector<Writer*> without_null(std::vector<Writer*> writers) {
   std::erase(writers, nullptr);
   return writers;
-}
-
-ros::Contacts contacts_message(const shm::Iface& iface, const std::string& frame) {
-  const auto view = iface.bumper();
-  ros::Contacts message{ros::header_of(view.sample->stamp, frame), {}};
-  const std::string own = iface.name();
-  for (const shm::Contact& contact : view.contacts) {
-    ros::Contact one;
-    one.collision1 = {0, own, ros::Entity::collision};
-    one.collision2 = {0, ros::text_of(contact.other), ros::Entity::collision};
-    one.positions.push_back(ros::vector_of(contact.position));
-    one.normals.push_back(ros::vector_of(contact.normal));
-    one.depths.push_back(contact.depth);
-    ros::JointWrench wrench;
-    wrench.header = message.header;
-    wrench.body_1_name.data = own;
-    wrench.body_2_name.data = one.collision2.label;
-    wrench.body_1_wrench.force = ros::vector_of(contact.force);
-    wrench.body_2_wrench.force = {-contact.force[0], -contact.force[1], -contact.force[2]};
-    one.wrenches.push_back(std::move(wrench));
-    message.contacts.push_back(std::move(one));
-  }
-  return message;
 }
 
 // What moves a link along or about its joint's axis.
@@ -86,7 +64,7 @@ std::vector<ServedRow> served_rows() {
   using enum shm::IfaceType;
   return {
       {laser, "scan; of several layers: points", "sensor_msgs/msg/LaserScan; PointCloud2 (x y z intensity ring time)"},
-      {sonar, "SENSOR/0, SENSOR/1, ...", "sensor_msgs/msg/Range"},
+      {sonar, "SENSOR/range_0, SENSOR/range_1, ...", "sensor_msgs/msg/Range"},
       {camera, "SENSOR/image_raw, SENSOR/image_raw/compressed, SENSOR/camera_info", "sensor_msgs/msg/Image, CompressedImage, CameraInfo"},
       {depth, "SENSOR/depth/image_raw, SENSOR/depth/camera_info", "sensor_msgs/msg/Image (32FC1), CameraInfo"},
       {points, "SENSOR/points", "sensor_msgs/msg/PointCloud2"},
@@ -97,6 +75,18 @@ std::vector<ServedRow> served_rows() {
       {altimeter, "altimeter", "ros_gz_interfaces/msg/Altimeter"},
       {force_torque, "SENSOR/wrench", "geometry_msgs/msg/WrenchStamped"},
       {bumper, "SENSOR/contacts", "ros_gz_interfaces/msg/Contacts"},
+      {battery, "battery_state", "sensor_msgs/msg/BatteryState"},
+      {dvl, "SENSOR/velocity", "geometry_msgs/msg/TwistWithCovarianceStamped"},
+      {air_speed, "air_speed", "sensor_msgs/msg/FluidPressure (of the air that flows in)"},
+      {ins, "SENSOR/fix, SENSOR/orientation, SENSOR/velocity",
+       "sensor_msgs/msg/NavSatFix, sensor_msgs/msg/Imu, geometry_msgs/msg/TwistStamped"},
+      {rfid, "SENSOR/tags", "std_msgs/msg/String (a line for each tag)"},
+      {wireless, "SENSOR/transmitters", "std_msgs/msg/String (a line for each: dBm, MHz, name)"},
+      {wheels, "SENSOR/wheel_states", "sensor_msgs/msg/JointState"},
+      {localization, "SENSOR/pose", "geometry_msgs/msg/PoseWithCovarianceStamped"},
+      {logical_camera, "SENSOR/models", "visualization_msgs/msg/MarkerArray"},
+      {fiducial, "SENSOR/markers", "visualization_msgs/msg/MarkerArray"},
+      {boxes, "SENSOR/detections", "vision_msgs/msg/Detection2DArray; of oriented boxes: Detection3DArray"},
       {joints, "joint_states, /tf", "sensor_msgs/msg/JointState, tf2_msgs/msg/TFMessage"},
       {position2d, "odom, ground_truth/odom, /tf", "nav_msgs/msg/Odometry, tf2_msgs/msg/TFMessage"},
       {position3d, "odom, ground_truth/odom, /tf", "nav_msgs/msg/Odometry, tf2_msgs/msg/TFMessage"},
@@ -166,20 +156,8 @@ void RobotTopics::add(const ListedIface& listed, bool is_only) {
       return add_meter<ros::FluidPressure, shm::MeterInfo>(place, place.front + "air_pressure", ros::pressure_message);
     case force_torque:
       return add_meter<ros::WrenchStamped, shm::MeterInfo>(place, place.leaf + "/wrench", ros::wrench_message);
-    case logical_camera:  // no topics yet; recordings have them
-    case boxes:
-    case fiducial:
-    case battery:
-    case dvl:
-    case air_speed:
-    case ins:
-    case rfid:
-    case wireless:
-    case wheels:
-    case localization:
-    case truth:
-    case simulation:
-      break;
+    default:
+      return add_device(place);
   }
 }
 
@@ -208,6 +186,9 @@ Outlet& RobotTopics::outlet(const Place& place, std::vector<Writer*> writers) {
 }
 
 void RobotTopics::put_frame(const std::string& parent, const std::string& child, const shm::Pose& pose) {
+  // A camera that recognises boxes is two ifaces with one frame.
+  if (std::ranges::find(robot_.static_transforms_, child, &ros::TransformStamped::child_frame_id) != robot_.static_transforms_.end())
+    return;
   robot_.static_transforms_.push_back(ros::transform_of({}, parent, child, pose));
 }
 
@@ -236,8 +217,15 @@ void RobotTopics::add_meter(Place& place, const std::string& topic, Make make) {
   Writer* writer = advertise<Message>(place, topic);
   if (writer == nullptr) return;
   outlet(place, {writer}).show = [writer, make, frame = place.frame](Iface& iface, const HeldFrame*) {
-    publish(*writer, make(iface, frame));
+    publish_made(*writer, make(iface, frame));
   };
+}
+
+template <class Message, class Make>
+void RobotTopics::add_placeless(Place& place, const std::string& topic, const std::string& frame, Make make) {
+  Writer* writer = advertise<Message>(place, topic);
+  if (writer == nullptr) return;
+  outlet(place, {writer}).show = [writer, make, frame](Iface& iface, const HeldFrame*) { publish_made(*writer, make(iface, frame)); };
 }
 
 // ---- range finders ----
@@ -303,8 +291,7 @@ void RobotTopics::add_sonar(Place& place) {
 void RobotTopics::add_camera(Place& place, const std::string& topic) {
   const auto& info = place.source->iface().info<shm::CameraInfo>();
   put_sensor_frame(place, info.pose);
-  const std::string optical = place.frame + "_optical_frame";
-  put_frame(place.frame, optical, {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
+  const std::string optical = put_optical_frame(place);
   const auto pixels = ros::jpeg_pixels(static_cast<shm::Format>(info.format));
   Writer* raw = advertise<ros::Image>(place, topic + "/image_raw", true);
   Writer* compressed = pixels ? advertise<ros::CompressedImage>(place, topic + "/image_raw/compressed", true) : nullptr;
@@ -339,8 +326,10 @@ void RobotTopics::add_position2d(Place& place) {
   Writer* writer = advertise<ros::Odometry>(place, place.front + "odom");
   Writer* truth = advertise<ros::Odometry>(place, place.front + "ground_truth/odom");
   Writer* tf = robot_.tf();
-  ros::Odometry message{.header = {{}, odom}, .child_frame_id = base()};
-  message.pose.covariance = message.twist.covariance = wheel_covariance();
+  ros::Odometry message;
+  message.header.frame_id = odom;
+  message.child_frame_id = base();
+  message.pose.covariance = message.twist.covariance = ros::wheel_covariance();
   Outlet& made = outlet(place, {writer, truth, tf});
   made.is_first = true;
   made.show = [=](Iface& iface, const HeldFrame*) mutable {
@@ -417,7 +406,7 @@ void RobotTopics::add_joints(Place& place) {
 void RobotTopics::add_bumper(Place& place) {
   Writer* writer = advertise<ros::Contacts>(place, place.leaf + "/contacts");
   if (writer == nullptr) return;
-  outlet(place, {writer}).show = [writer](Iface& iface, const HeldFrame*) { publish(*writer, contacts_message(iface, "world")); };
+  outlet(place, {writer}).show = [writer](Iface& iface, const HeldFrame*) { publish(*writer, ros::contacts_message(iface, "world")); };
 }
 
 void RobotTopics::add_altimeter(Place& place) {
@@ -425,6 +414,62 @@ void RobotTopics::add_altimeter(Place& place) {
     const auto& sample = iface.sample<shm::AltimeterSample>();
     return ros::Altimeter{ros::header_of(sample.stamp, frame), sample.height, sample.climb, iface.info<shm::MeterInfo>().reference};
   });
+}
+
+std::string RobotTopics::put_optical_frame(const Place& place) {
+  const std::string optical = place.frame + "_optical_frame";
+  put_frame(place.frame, optical, {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
+  return optical;
+}
+
+void RobotTopics::add_ins(Place& place) {
+  put_sensor_frame(place, place.source->iface().info<shm::InsInfo>().pose);
+  Writer* fix = advertise<ros::NavSatFix>(place, place.leaf + "/fix");
+  Writer* orientation = advertise<ros::Imu>(place, place.leaf + "/orientation");
+  Writer* velocity = advertise<ros::TwistStamped>(place, place.leaf + "/velocity");
+  outlet(place, {fix, orientation, velocity}).show = [=, frame = place.frame](Iface& iface, const HeldFrame*) {
+    publish_if(fix, ros::ins_fix(iface, frame));
+    publish_if(orientation, ros::ins_orientation(iface, frame));
+    publish_if(velocity, ros::ins_velocity(iface, frame));
+  };
+}
+
+void RobotTopics::add_boxes(Place& place) {
+  const auto& info = place.source->iface().info<shm::BoxesInfo>();
+  put_sensor_frame(place, info.pose);
+  const std::string topic = place.leaf + "/detections";
+  if (info.kind == RTMSIM_BOX_ORIENTED) return add_placeless<ros::Detection3DArray>(place, topic, place.frame, ros::oriented_boxes_message);
+  add_placeless<ros::Detection2DArray>(place, topic, put_optical_frame(place), ros::image_boxes_message);
+}
+
+void RobotTopics::add_device(Place& place) {
+  using enum shm::IfaceType;
+  switch (place.source->iface().type()) {
+    case battery:
+      return add_placeless<ros::BatteryState>(place, place.front + "battery_state", base(), ros::battery_message);
+    case wheels:
+      return add_placeless<ros::JointState>(place, place.leaf + "/wheel_states", base(), ros::wheels_message);
+    case localization:
+      return add_placeless<ros::PoseWithCovarianceStamped>(place, place.leaf + "/pose", "world", ros::localization_message);
+    case dvl:
+      return add_meter<ros::TwistWithCovarianceStamped, shm::DvlInfo>(place, place.leaf + "/velocity", ros::dvl_message);
+    case air_speed:
+      return add_meter<ros::FluidPressure, shm::MeterInfo>(place, place.front + "air_speed", ros::air_speed_message);
+    case ins:
+      return add_ins(place);
+    case rfid:
+      return add_meter<ros::Text, shm::RfidInfo>(place, place.leaf + "/tags", ros::rfid_message);
+    case wireless:
+      return add_meter<ros::Text, shm::WirelessInfo>(place, place.leaf + "/transmitters", ros::wireless_message);
+    case logical_camera:
+      return add_meter<ros::MarkerArray, shm::LogicalCameraInfo>(place, place.leaf + "/models", ros::seen_models_message);
+    case fiducial:
+      return add_meter<ros::MarkerArray, shm::FiducialInfo>(place, place.leaf + "/markers", ros::marks_message);
+    case boxes:
+      return add_boxes(place);
+    default:
+      break;
+  }
 }
 
 void RobotTopics::add_description() {

@@ -50,6 +50,14 @@ class RobotTopics {
   void add_position3d(Place& place);
   void add_joints(Place& place);
   void add_bumper(Place& place);
+  // Batteries, radio, wheels, estimates, what cameras recognise.
+  void add_device(Place& place);
+  void add_ins(Place& place);
+  void add_boxes(Place& place);
+  std::string put_optical_frame(const Place& place);
+  // Of a device without a frame of its own. `make` makes a message of a sample, or nothing.
+  template <class Message, class Make>
+  void add_placeless(Place& place, const std::string& topic, const std::string& frame, Make make);
   void add_altimeter(Place& place);
   void add_description();
   template <class Message, class Info, class Make>

@@ -116,6 +116,66 @@ def sensors():
         await_("all sensors rest", lambda: all(one["subscribers"] == 0 for one in json.loads(rig.simctl("--json", "list")) if one["type"] != "simulation"), 0.1)
 
 
+# Devices of every other kind: each has a topic, with every field of its message. No kind is left without one.
+def devices():
+    with Rig() as rig:
+        rig.sim(f"{source}/tests/worlds/every_device.sdf")
+        rig.gateway(robots=4)
+        peer = rig.peer()
+
+        def first(topic, kind, good=lambda message: True):
+            peer.subscribe(topic, kind)
+            return peer.message(topic, kind, good)
+
+        battery = first("/rover/battery_state", "sensor_msgs/BatteryState")
+        info = json.loads(rig.simctl("--json", "echo", "rover::battery", "-n", "1"))
+        assert abs(battery["voltage"] - info["voltage"]) < 0.1 and 0 <= battery["percentage"] <= 1 and battery["present"], (battery, info)
+        assert math.isnan(battery["temperature"]) and battery["power_supply_status"] in (1, 2, 3, 4) and battery["location"], battery
+        wheels = first("/rover/encoders/wheel_states", "sensor_msgs/JointState")
+        assert len(wheels["name"]) == len(wheels["position"]) == len(wheels["velocity"]) > 0 and not wheels["effort"], wheels
+        pose = first("/rig/estimate/pose", "geometry_msgs/PoseWithCovarianceStamped")
+        assert pose["header"]["frame_id"] == "world" and len(pose["pose"]["covariance"]) == 36, pose
+        assert first("/rig/air_speed", "sensor_msgs/FluidPressure")["header"]["frame_id"] == "rig/pitot"
+        fix = first("/rig/navigation/fix", "sensor_msgs/NavSatFix")
+        assert fix["header"]["frame_id"] == "rig/navigation" and abs(fix["latitude"]) <= 90
+        turn = first("/rig/navigation/orientation", "sensor_msgs/Imu")
+        assert turn["angular_velocity_covariance"][0] == turn["linear_acceleration_covariance"][0] == -1, turn
+        assert first("/rig/navigation/velocity", "geometry_msgs/TwistStamped")["header"]["stamp"]["nanosec"] < 10**9
+        for topic, kind in (("reader/tags", "std_msgs/String"), ("receiver/transmitters", "std_msgs/String"), ("models/models", "visualization_msgs/MarkerArray"),
+                            ("marks/markers", "visualization_msgs/MarkerArray"), ("boxes/detections", "vision_msgs/Detection2DArray")):
+            first(f"/rig/{topic}", kind)
+        peer.subscribe("/rig/log/velocity", "geometry_msgs/TwistWithCovarianceStamped")
+        peer.await_matched("/rig/log/velocity")
+        table = rig.call(f"{bin_dir}/ros2-gateway", "--interfaces")
+        kinds = {one["type"] for one in json.loads(rig.simctl("--json", "list"))} - {"simulation", "truth"}
+        assert all(f"| `{kind}` |" in table for kind in kinds), kinds
+
+
+# What cameras recognise, with numbers: boxes in the image and in the world, models and marks.
+def seen():
+    with Rig() as rig:
+        rig.sim(f"{source}/worlds/devices.sdf")
+        rig.gateway()
+        peer = rig.peer()
+        flat, solid, models, marks = "/mast/boxes/detections", "/mast/oriented_boxes/detections", "/mast/models/models", "/mast/marks/markers"
+        peer.subscribe(flat, "vision_msgs/Detection2DArray")
+        peer.subscribe(solid, "vision_msgs/Detection3DArray")
+        peer.subscribe(models, "visualization_msgs/MarkerArray")
+        peer.subscribe(marks, "visualization_msgs/MarkerArray")
+        found = {one["id"]: one for one in peer.message(flat, "vision_msgs/Detection2DArray", lambda m: m["detections"])["detections"]}
+        ball = found["ball"]
+        focal = 320 / math.tan(0.6)  # the ball of 0.2 m is at (2.6, -0.6, 0.2), the camera 0.9 m high
+        center = ball["bbox"]["center"]["position"]
+        assert ball["results"][0]["hypothesis"] == {"class_id": "2", "score": 1.0} and ball["header"]["frame_id"] == "mast/boxes_optical_frame", ball
+        assert abs(center["x"] - (320 + focal * 0.6 / 2.6)) < 3 and abs(center["y"] - (240 + focal * 0.7 / 2.6)) < 3, ball
+        crate = next(one for one in peer.message(solid, "vision_msgs/Detection3DArray", lambda m: m["detections"])["detections"] if one["id"] == "crate_near")
+        assert all(abs(size - 0.6) < 1e-3 for size in crate["bbox"]["size"].values()) and crate["header"]["frame_id"] == "mast/oriented_boxes", crate
+        texts = [one["text"] for one in peer.message(models, "visualization_msgs/MarkerArray", lambda m: len(m["markers"]) > 1)["markers"]]
+        assert texts[0] == "" and {"crate_near", "ball"} <= set(texts), texts
+        array = peer.message(marks, "visualization_msgs/MarkerArray", lambda m: len(m["markers"]) > 1)["markers"]
+        assert array[0]["action"] == 3 and array[1]["ns"] == "mast::marks" and array[1]["type"] == 1 and array[1]["scale"]["y"] > 0, array[1]
+
+
 arm = f"{source}/worlds/arm.sdf"
 
 

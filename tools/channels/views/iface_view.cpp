@@ -233,19 +233,19 @@ std::optional<IfaceView> make_view(const shm::Iface& iface, Pictures pictures) {
     case points:
       return points_view(iface);
     case imu:
-      return simple_view<ros::Imu, shm::ImuInfo, shm::ImuSample>(iface, ros::imu_message);
+      return simple_view<ros::Imu, shm::ImuInfo>(iface, ros::imu_message);
     case gps:
-      return simple_view<ros::NavSatFix, shm::GpsInfo, shm::GpsSample>(iface, ros::fix_message);
+      return simple_view<ros::NavSatFix, shm::GpsInfo>(iface, ros::fix_message);
     case bumper:
-      return simple_view<ros::MarkerArray, shm::BumperInfo, shm::BumperSample>(iface, contacts_message);
+      return simple_view<ros::MarkerArray, shm::BumperInfo>(iface, contacts_message);
     case force_torque:
-      return simple_view<ros::WrenchStamped, MeterInfo, shm::ForceTorqueSample>(iface, ros::wrench_message);
+      return simple_view<ros::WrenchStamped, MeterInfo>(iface, ros::wrench_message);
     case altimeter:
       return altimeter_view(iface);
     case magnetometer:
-      return simple_view<ros::MagneticField, MeterInfo, shm::MagnetometerSample>(iface, ros::field_message);
+      return simple_view<ros::MagneticField, MeterInfo>(iface, ros::field_message);
     case air_pressure:
-      return simple_view<ros::FluidPressure, MeterInfo, shm::AirPressureSample>(iface, ros::pressure_message);
+      return simple_view<ros::FluidPressure, MeterInfo>(iface, ros::pressure_message);
     case joints:
       return joints_view(iface);
     case battery:

@@ -30,13 +30,13 @@ void place(IfaceView& view, const shm::Iface& iface) {
 }
 
 // A view with one channel: `say` makes the message of the latest sample.
-template <class Message, class Info, class Sample, class Say>
+template <class Message, class Info, class Say>
 IfaceView simple_view(const shm::Iface& iface, Say say) {
   IfaceView view;
   view.channels = {channel<Message>(iface)};
   place<Info>(view, iface);
   view.tell = [say](shm::Iface& from, const shm::HeldFrame*, Said& said) {
-    if (from.sample<Sample>().stamp.valid != 0) said.add(0, say(from, from.name()));
+    if (from.sample<shm::Stamp>().valid != 0) said.add(0, say(from, from.name()));
   };
   return view;
 }
