@@ -72,7 +72,7 @@ base::Result<void> Gateway::open() {
   node_ = std::make_unique<Node>(*participant_, *graph_, gateway_node);
   if (options_.has_clock) clock_ = node_->advertise<ros::Clock>("/clock");
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
-  tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
+  if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
   if (options_.has_parameters) serve_parameters(*node_, gateway_node);
   services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, options_.service_prefix);
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
@@ -215,6 +215,7 @@ void Gateway::arrange(const Listed& listed) {
 void Gateway::send_static_transforms() {
   ros::TFMessage message;
   for (const auto& robot : robots_) {
+    robot->send_static_transforms();
     const auto own = robot->static_transforms();
     message.transforms.insert(message.transforms.end(), own.begin(), own.end());
   }

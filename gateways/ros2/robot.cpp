@@ -36,6 +36,12 @@ Writer* Robot::tf() {
   return own_tf_;
 }
 
+void Robot::send_static_transforms() {
+  if (shared_.tf != nullptr) return;
+  if (own_tf_static_ == nullptr) own_tf_static_ = node_.advertise<ros::TFMessage>(names_.topic("tf_static"), {true, 1});
+  if (own_tf_static_ != nullptr) publish(*own_tf_static_, ros::TFMessage{static_transforms_});
+}
+
 Robot::~Robot() {
   for (Outlet& outlet : outlets_) {
     if (outlet.is_read) outlet.source->remove_reader();

@@ -58,6 +58,8 @@ class Robot {
   void read();
   void show(bool is_first);
   std::vector<ros::TransformStamped> static_transforms() const { return static_transforms_; }
+  // On the robot's own topic, when it has one.
+  void send_static_transforms();
   Commands& commands() { return commands_; }
   Node& node() { return node_; }
   std::vector<Outlet>& outlets() { return outlets_; }
@@ -77,6 +79,7 @@ class Robot {
   std::vector<Outlet*> fresh_;
   std::set<std::string> used_topics_;
   Writer* own_tf_ = nullptr;
+  Writer* own_tf_static_ = nullptr;
 };
 
 }  // namespace ros2

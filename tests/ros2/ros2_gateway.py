@@ -176,6 +176,36 @@ def seen():
         assert array[0]["action"] == 3 and array[1]["ns"] == "mast::marks" and array[1]["type"] == 1 and array[1]["scale"]["y"] > 0, array[1]
 
 
+# One node for all robots, and frames without prefix on a topic of each robot.
+def shapes():
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--one-node", "--tf-per-robot", "--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        peer.reader("info", "ros_discovery_info", wire.type_on_wire("rmw_dds_common/ParticipantEntitiesInfo"), durability="transient", user_data=jazzy_hash)
+        listed = peer.endpoints(lambda all: any(one[1] == "rt/follower/scan" for one in all) and any(one[1] == "rt/leader/tf" for one in all))
+        own = {one[3] for one in listed if one[1] != "ros_discovery_info"}
+
+        def is_one_node(info):
+            nodes = info["node_entities_info_seq"]
+            named = {gid["data"].hex() for node in nodes for kind in ("reader_gid_seq", "writer_gid_seq") for gid in node[kind]}
+            return [(node["node_namespace"], node["node_name"]) for node in nodes] == [("/", "ros2_gateway")] and own <= named
+
+        peer.message("info", "rmw_dds_common/ParticipantEntitiesInfo", is_one_node)
+        # Parameters of the one node alone.
+        assert {one[1].split("/")[1] for one in listed if one[1].endswith("list_parametersRequest")} == {"ros2_gateway"}, listed
+        assert not any(one[1] in ("rt/tf", "rt/leader/robot/list_parameters") for one in listed), listed
+        for robot in ("leader", "follower"):
+            peer.subscribe(f"/{robot}/tf", "tf2_msgs/TFMessage")
+            peer.subscribe(f"/{robot}/tf_static", "tf2_msgs/TFMessage", durability="transient")
+            (frame,) = peer.message(f"/{robot}/tf", "tf2_msgs/TFMessage")["transforms"]
+            assert (frame["header"]["frame_id"], frame["child_frame_id"]) == ("odom", "base_link"), frame
+            fixed = {one["child_frame_id"]: one["header"]["frame_id"] for one in peer.message(f"/{robot}/tf_static", "tf2_msgs/TFMessage")["transforms"]}
+            assert fixed["laser"] == "base_link", fixed
+        peer.subscribe("/leader/scan", "sensor_msgs/LaserScan")
+        assert peer.message("/leader/scan", "sensor_msgs/LaserScan")["header"]["frame_id"] == "laser"
+
+
 arm = f"{source}/worlds/arm.sdf"
 
 
