@@ -62,7 +62,7 @@ class Node {
   template <ros::Message Request, ros::Message Response>
   void serve(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request) {
     add_service(service, service_types<Request, Response>(),
-                [on_request = std::move(on_request)](std::span<const std::uint8_t> bytes, const std::string&, const Reply& reply) {
+                [on_request = std::move(on_request)](std::span<const std::uint8_t> bytes, const ClientHashes&, const Reply& reply) {
                   const auto request = ros::decode<Request>(bytes);
                   if (!request) return false;
                   on_request(*request, [reply](const Response& response) { reply(ros::encode(response)); });
@@ -74,15 +74,31 @@ class Node {
                   std::function<Request(const Request2&)> to_request) {
     add_service(service, service_types<Request, Response>(),
                 [on_request = std::move(on_request), to_request = std::move(to_request), hash = ros::TypeHash::of<Request2>()](
-                    std::span<const std::uint8_t> bytes, const std::string& client_hash, const Reply& reply) {
+                    std::span<const std::uint8_t> bytes, const ClientHashes& client, const Reply& reply) {
                   std::optional<Request> request;
-                  if (client_hash == hash) {
+                  if (client.request == hash) {
                     if (const auto newer = ros::decode<Request2>(bytes)) request = to_request(*newer);
                   } else {
                     request = ros::decode<Request>(bytes);
                   }
                   if (!request) return false;
                   on_request(*request, [reply](const Response& response) { reply(ros::encode(response)); });
+                  return true;
+                });
+  }
+  // `Response2`: what newer clients expect for the same request; told apart by the type hash of the client's reply.
+  template <ros::Message Request, ros::Message Response, ros::Message Response2>
+  void serve_newer_reply(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request,
+                         std::function<Response2(const Response&)> to_newer) {
+    add_service(service, service_types<Request, Response>(),
+                [on_request = std::move(on_request), to_newer = std::move(to_newer), hash = ros::TypeHash::of<Response2>()](
+                    std::span<const std::uint8_t> bytes, const ClientHashes& client, const Reply& reply) {
+                  const auto request = ros::decode<Request>(bytes);
+                  if (!request) return false;
+                  const bool is_newer = client.reply == hash;
+                  on_request(*request, [reply, to_newer, is_newer](const Response& response) {
+                    reply(is_newer ? ros::encode(to_newer(response)) : ros::encode(response));
+                  });
                   return true;
                 });
   }

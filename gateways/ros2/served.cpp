@@ -21,7 +21,7 @@ std::string interface_tables() {
       "\n| service | type |\n| --- | --- |\n";
   for (const char* name :
        {"GetSimulatorFeatures", "GetSimulationState", "SetSimulationState", "ResetSimulation", "StepSimulation", "GetCurrentWorld",
-        "GetEntities", "GetEntityState", "GetEntitiesStates", "SetEntityState", "SpawnEntity", "DeleteEntity"}) {
+        "GetEntities", "GetEntityState", "GetEntitiesStates", "SetEntityState", "SpawnEntity", "GetSpawnables", "DeleteEntity"}) {
     std::string snake;
     for (const char* c = name; *c != '\0'; ++c) {
       const bool is_upper = *c >= 'A' && *c <= 'Z';

@@ -75,11 +75,24 @@ void Service::receive(Received& request) {
     }
     if (from != nullptr) client.id = value_in(from->user_data, "clientid").value_or("");
   }
-  const std::string hash = from == nullptr ? "" : value_in(from->user_data, "typehash").value_or("");
+  const ClientHashes hashes{from == nullptr ? "" : value_in(from->user_data, "typehash").value_or(""),
+                            reply_hash(client, request.identity.writer)};
   const auto answer = [this, client, is_open = is_open_](const std::vector<char>& message) {
     if (*is_open) reply(client, message);
   };
-  if (!on_request_(request.bytes, hash, answer)) ++damaged_;
+  if (!on_request_(request.bytes, hashes, answer)) ++damaged_;
+}
+
+std::string Service::reply_hash(const Client& client, const Guid& request_writer) const {
+  const auto is_its = [&](const Peer& peer) {
+    if (client.reply_reader != Guid{}) return peer.guid == client.reply_reader;
+    if (!client.id.empty()) return value_in(peer.user_data, "clientid") == client.id;
+    return std::equal(peer.guid.begin(), peer.guid.begin() + 12, request_writer.begin());  // of its participant
+  };
+  for (const Peer* peer : graph_.peers_of(replies_->settings().topic)) {
+    if (!peer->is_writer && is_its(*peer)) return value_in(peer->user_data, "typehash").value_or("");
+  }
+  return "";
 }
 
 void Service::reply(const Client& client, const std::vector<char>& message) {

@@ -24,8 +24,12 @@ struct ServiceTypes {
 };
 
 using Reply = std::function<void(const std::vector<char>& message)>;  // with the head of four bytes; ignored when the service has ended
+// The type hashes of a client's request and of its reply; empty where it has none.
+struct ClientHashes {
+  std::string request, reply;
+};
 // False when the request cannot be read: it gets no reply.
-using OnRequest = std::function<bool(std::span<const std::uint8_t> message, const std::string& client_hash, const Reply& reply)>;
+using OnRequest = std::function<bool(std::span<const std::uint8_t> message, const ClientHashes& client, const Reply& reply)>;
 
 class Service {
  public:
@@ -56,6 +60,8 @@ class Service {
   void receive(Received& request);
   void reply(const Client& client, const std::vector<char>& message);
   bool is_matched(const Client& client) const;
+  // Of the endpoint that receives the client's replies.
+  std::string reply_hash(const Client& client, const Guid& request_writer) const;
   void send(const Client& client, const std::vector<char>& message);
 
   Graph& graph_;

@@ -21,6 +21,7 @@ enum Feature : std::uint16_t {
   spawning = 0,
   deleting = 1,
   spawning_resource_string = 9,
+  spawnables = 14,
   entity_state_getting = 10,
   entity_state_setting = 11,
   simulation_reset = 20,
@@ -84,6 +85,7 @@ SimulationServices::SimulationServices(Node& node, World& world, Errands& errand
     : node_(node), world_(world), errands_(errands), prefix_(std::move(prefix)) {
   serve_time();
   serve_entities();
+  serve_spawnables();
   serve_entity_states();
 }
 
@@ -107,14 +109,15 @@ void SimulationServices::ask(shm::Request request, std::function<void(const Resu
 // ---- time ----
 
 void SimulationServices::serve_time() {
-  node_.serve<ros::GetSimulatorFeaturesRequest, ros::GetSimulatorFeaturesResponse>(name("get_simulator_features"), [](const auto&,
-                                                                                                                      const auto& reply) {
-    reply(ros::GetSimulatorFeaturesResponse{{{spawning, deleting, spawning_resource_string, entity_state_getting, entity_state_setting,
-                                              simulation_reset, simulation_reset_state, simulation_state_getting, simulation_state_setting,
-                                              simulation_state_pause, step_single, step_multiple, world_info_getting},
-                                             {"sdf"},
-                                             "rtm-sim"}});
-  });
+  node_.serve<ros::GetSimulatorFeaturesRequest, ros::GetSimulatorFeaturesResponse>(
+      name("get_simulator_features"), [](const auto&, const auto& reply) {
+        reply(ros::GetSimulatorFeaturesResponse{
+            {{spawning, deleting, spawning_resource_string, spawnables, entity_state_getting, entity_state_setting, simulation_reset,
+              simulation_reset_state, simulation_state_getting, simulation_state_setting, simulation_state_pause, step_single,
+              step_multiple, world_info_getting},
+             {"sdf"},
+             "rtm-sim"}});
+      });
   node_.serve<ros::GetSimulationStateRequest, ros::GetSimulationStateResponse>(
       name("get_simulation_state"), [this](const auto&, const auto& reply) {
         reply(ros::GetSimulationStateResponse{state(), world_.is_there() ? good() : bad(SimulationResult::failed, "no simulator runs")});
@@ -199,6 +202,29 @@ void SimulationServices::serve_entities() {
                                        newer.entity_resource.resource_string,
                                        newer.entity_namespace,
                                        newer.initial_pose};
+      });
+}
+
+// What a client may spawn by its uri: the models of the model path that the simulator opens for clients.
+void SimulationServices::serve_spawnables() {
+  using Response = ros::GetSpawnablesResponse;
+  node_.serve_newer_reply<ros::GetSpawnablesRequest, Response, ros::GetSpawnablesResponse2>(
+      name("get_spawnables"),
+      [this](const auto& request, const auto& reply) {
+        if (!request.sources.empty())
+          return reply(
+              Response{bad(SimulationResult::unsupported, "sources must be empty: the model path of the simulator is listed"), {}});
+        errands_.post(shm::ModelsRequest{}, [reply](const base::Result<shm::Reply>& models) {
+          if (!models) return reply(Response{bad(SimulationResult::failed, models.error().message), {}});
+          Response response{good(), {}};
+          for (const auto& model : models_in(models->text)) response.spawnables.push_back({"model://" + model, "", {}});
+          reply(response);
+        });
+      },
+      [](const Response& response) {
+        ros::GetSpawnablesResponse2 newer{response.result, {}};
+        for (const auto& one : response.spawnables) newer.spawnables.push_back({{one.uri, ""}, one.description, one.spawn_bounds});
+        return newer;
       });
 }
 

@@ -25,6 +25,7 @@ class SimulationServices {
 
   void serve_time();
   void serve_entities();
+  void serve_spawnables();
   void serve_entity_states();
   void spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply);
   void set_state(const ros::SetEntityStateRequest& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);

@@ -328,11 +328,11 @@ def families():
 class CycloneClient:
     count = 0
 
-    def __init__(self, peer, service, request, response):
+    def __init__(self, peer, service, request, response, more=""):
         CycloneClient.count += 1
         self.peer, self.service, self.number = peer, service, 0
         self.id = struct.pack("<Q", 77 + CycloneClient.count)
-        mark = f"clientid=1.f.{CycloneClient.count:x};"
+        mark = f"clientid=1.f.{CycloneClient.count:x};" + more
         self.replies = f"reply{CycloneClient.count}"
         self.requests = f"request{CycloneClient.count}"
         peer.reader(self.replies, f"rr{service}Reply", response, user_data=mark)
@@ -431,6 +431,17 @@ def services():
         assert spawned() == (101, "") and spawned(allow_renaming=True) == (1, "crate_1")
         assert spawned(name="x", resource_string="<sdf")[0] == 106 and spawned(name="x", resource_string="")[0] == 104
         assert spawned(name="x", entity_namespace="/a")[0] == 105
+        spawnables = caller(peer, "GetSpawnables")
+        listed = spawnables.call("simulation_interfaces/GetSpawnablesRequest", {"sources": []}, "simulation_interfaces/GetSpawnablesResponse")
+        assert listed["result"]["result"] == 1 and listed["spawnables"], listed
+        # A client of 2.x has the same request and another reply: told apart by the hash of the reply.
+        front = "simulation_interfaces::srv::dds_::GetSpawnables_"
+        newer = CycloneClient(peer, "/get_spawnables", front + "Request_", front + "Response_", "typehash=RIHS01_cb61fd741c429d6bc689514b7bfc65bb1518126961317acc6e414a841dc43daa;")
+        again = newer.call("simulation_interfaces/GetSpawnablesRequest", {"sources": []}, "simulation_interfaces/GetSpawnablesResponse2")
+        assert [one["entity_resource"]["uri"] for one in again["spawnables"]] == [one["uri"] for one in listed["spawnables"]], again
+        other = spawnables.call("simulation_interfaces/GetSpawnablesRequest", {"sources": ["https://"]}, "simulation_interfaces/GetSpawnablesResponse")
+        assert other["result"]["result"] == 0, other
+        assert spawned(name="from_path", resource_string="", uri=listed["spawnables"][0]["uri"])[0] in (1, 106)
         delete = caller(peer, "DeleteEntity")
         assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 1
         assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 2
