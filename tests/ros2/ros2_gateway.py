@@ -2,8 +2,10 @@
 import json
 import math
 import os
+import random
 import re
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
@@ -505,6 +507,55 @@ def crash():
         count = len(peer.samples["/leader/odom"])
         await_("odometry again", lambda: len(peer.samples["/leader/odom"]) > count + 5)
         assert rig.simulator.poll() is None
+
+
+# Damaged packets of RTPS: the gateway goes on serving, or starts again; the simulation does not notice.
+def packets():
+    with Rig() as rig:
+        rig.sim(two)
+        base = 7400 + 250 * int(rig.domain)
+        # Participants look for others at the ports of all indices: what they send to one that nobody has is the seed.
+        ear = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        ear.bind(("127.0.0.1", base + 10 + 2 * 25))
+        ear.settimeout(60)
+        rig.gateway(robots=2)
+        peer = rig.peer()
+        peer.subscribe("/leader/odom", "nav_msgs/Odometry")
+        peer.message("/leader/odom", "nav_msgs/Odometry")
+        seeds = [ear.recv(65536) for _ in range(6)]
+        assert all(seed[:4] == b"RTPS" for seed in seeds)
+        seed = os.getpid()
+        print("seed", seed)
+        chance = random.Random(seed)
+        steps = rig.stats()["steps"]
+        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        for i in range(20000):
+            data = bytearray(chance.choice(seeds))
+            for _ in range(chance.randint(1, 6)):
+                if len(data) < 4:
+                    break
+                way = chance.randrange(4)
+                at = chance.randrange(20 if chance.random() < 0.3 else 4, len(data)) if len(data) > 24 else 0
+                if way == 0:
+                    data[at] = chance.randrange(256)
+                elif way == 1:
+                    data[at:] = b""
+                elif way == 2:
+                    data[at:at] = data[at : at + chance.randrange(64)]
+                else:
+                    data[at : at + 2] = chance.choice((b"\0\0", b"\xff\xff", b"\xff\x7f", b"\1\0"))
+            for port in (base + 10, base + 11, base + 12, base + 13):
+                out.sendto(bytes(data), ("127.0.0.1", port))
+            if i % 200 == 0:
+                time.sleep(0.01)  # the queue of a socket is short
+        # Whether it has crashed or not, it serves: also a participant that comes now.
+        late = rig.peer()
+        late.subscribe("/leader/odom", "nav_msgs/Odometry")
+        late.message("/leader/odom", "nav_msgs/Odometry")
+        count = len(late.samples["/leader/odom"])
+        await_("odometry goes on", lambda: len(late.samples["/leader/odom"]) > count + 10)
+        assert rig.process.poll() is None and rig.simulator.poll() is None and rig.stats()["steps"] > steps
+        print("started again", rig.log(rig.process).count("starting again"), "times")
 
 
 # A suspended subscriber delays nothing; what it misses is counted, and its node named.

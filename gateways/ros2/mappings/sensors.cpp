@@ -107,7 +107,7 @@ void set_pixels(RTC::CameraImage& image, std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-bool ImageAndImage::refuse(const std::string& why) {
+bool ImageComplaint::refuse(const std::string& why) {
   if (!has_complained_) base::log(base::Level::warn, "ros2", "{} (no further lines about images of this connection)", why);
   has_complained_ = true;
   return false;
@@ -162,15 +162,21 @@ bool ImageAndImage::from_ros(const Message& image, Data& data) {
   return true;
 }
 
-std::optional<ros::CompressedImage> ImageAndCompressedImage::to_ros(const Data& data) const {
+std::optional<ros::CompressedImage> ImageAndCompressedImage::to_ros(const Data& data) {
   const std::string format = name_of_compression(data.format.in());
-  if (format.empty()) return std::nullopt;
+  if (format.empty()) {
+    refuse("an image in format " + base::printable(base::in_quotes(data.format.in())) +
+           " is not sent as CompressedImage: expected JPEG or PNG");
+    return std::nullopt;
+  }
   return Message{header(data.tm), format, {data.pixels.get_buffer(), data.pixels.length()}};
 }
 
 bool ImageAndCompressedImage::from_ros(const Message& image, Data& data) {
   const std::string format = name_of_compression(image.format);
-  if (format.empty()) return false;
+  if (format.empty())
+    return refuse("a received image is dropped: format " + base::printable(base::in_quotes(image.format.substr(0, 40))) +
+                  ", expected jpeg or png");
   set_time(data.tm, image.header.stamp);
   data.width = data.height = 0;
   data.bpp = 24;

@@ -25,26 +25,31 @@ class RangesAndScan : public Frames {
   std::vector<float> ranges_;
 };
 
+// Says in the log why an image is not passed on, once for each user of a connection.
+class ImageComplaint {
+ protected:
+  bool refuse(const std::string& why);  // false
+
+ private:
+  bool has_complained_ = false;
+};
+
 // Formats RGB8, BGR8, RGBA8, BGRA8, MONO8, MONO16, BAYER_RGGB8 and its like, and DEPTH32F, which is 32FC1. Others by their bits per pixel.
-class ImageAndImage : public Frames {
+class ImageAndImage : public Frames, private ImageComplaint {
  public:
   using Data = RTC::CameraImage;
   using Message = ros::Image;
   std::optional<Message> to_ros(const Data& data);
   bool from_ros(const Message& image, Data& data);
-
- private:
-  bool refuse(const std::string& why);
-  bool has_complained_ = false;
 };
 
 // Formats JPEG and PNG. A received image has no size.
-class ImageAndCompressedImage : public Frames {
+class ImageAndCompressedImage : public Frames, private ImageComplaint {
  public:
   using Data = RTC::CameraImage;
   using Message = ros::CompressedImage;
-  std::optional<Message> to_ros(const Data& data) const;
-  static bool from_ros(const Message& image, Data& data);
+  std::optional<Message> to_ros(const Data& data);
+  bool from_ros(const Message& image, Data& data);
 };
 
 // Colours from 0 to 1 are the field rgb. A cloud with the field intensity and without rgb is grey.
