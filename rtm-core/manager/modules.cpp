@@ -192,9 +192,12 @@ struct ModuleManager::Impl {
     for (const auto* key : {"manager.modules.C++.load_paths", "manager.modules.Python.load_paths"})
       for (const auto& path : base::split_list(manager->configValue(key))) paths.push_back(path);
     for (const auto& path : paths) folders.emplace_back(rt::expand_format(path, nothing));
-    // Last, the modules that were installed with this library.
-    std::error_code error;
-    if (const auto installed = library_folder() / "rtm-sim"; fs::is_directory(installed, error)) folders.push_back(installed);
+    // Last, the modules that were installed with this library: PREFIX/lib/rtm-sim.
+    const auto lib = library_folder();
+    for (const auto& installed : {lib / "rtm-sim", lib.parent_path() / "rtm-sim"}) {
+      std::error_code error;
+      if (fs::is_directory(installed, error)) folders.push_back(installed);
+    }
     return folders;
   }
 
