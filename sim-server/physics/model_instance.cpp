@@ -379,8 +379,9 @@ bool ModelInstance::is_awake() const {
 }
 
 void ModelInstance::wake() {
-  may_be_awake = true;
   still_steps_ = slow_steps_ = 0;
+  if (rolls()) return rolling->wake();
+  may_be_awake = true;
   for (const auto& body : bodies_) {
     if (body.id() != nullptr) dBodyEnable(body.id());
   }
@@ -425,7 +426,16 @@ Eigen::Isometry3d ModelInstance::assembly_pose(std::uint32_t assembly) const {
   return pose;
 }
 
+double ModelInstance::fastest_body() const {
+  double square = 0;
+  for (const auto& body : bodies_) {
+    if (body.id() != nullptr) square = std::max(square, ode::vector(dBodyGetLinearVel(body.id())).squaredNorm());
+  }
+  return std::sqrt(square);
+}
+
 const Aabb& ModelInstance::update_boxes() {
+  if (rolls()) return moving_box_;
   moving_box_ = Aabb();
   for (auto& shape : shapes_) {
     if (bodies_[shape.assembly].id() == nullptr) continue;

@@ -12,6 +12,7 @@
 #include "physics/joints.h"
 #include "physics/ode.h"
 #include "physics/physics.h"
+#include "physics/rolling.h"
 #include "physics/shapes.h"
 
 namespace sim {
@@ -75,6 +76,7 @@ class ModelInstance {
   dBodyID body(std::uint32_t assembly) const { return bodies_[assembly].id(); }
   std::size_t body_count() const { return bodies_.size(); }
   std::vector<ShapeInstance>& shapes() { return shapes_; }
+  const std::vector<ShapeInstance>& shapes() const { return shapes_; }
   std::vector<JointInstance>& joints() { return joints_; }
   const std::vector<JointInstance>& joints() const { return joints_; }
   JointInstance* joint(std::uint32_t index);
@@ -87,6 +89,8 @@ class ModelInstance {
   // Boxes of the moving shapes where they are now; the union.
   const Aabb& update_boxes();
   const Aabb& moving_box() const { return moving_box_; }
+  void set_moving_box(const Aabb& box) { moving_box_ = box; }
+  double fastest_body() const;  // [m/s]
   BodyForces& forces() { return forces_; }
   const BodyForces& forces() const { return forces_; }
   void set_gravity(bool on);
@@ -113,7 +117,14 @@ class ModelInstance {
   // False when a number has become infinite or a body is faster than anything should be.
   bool is_sane() const;
 
+  // In the rolling step.
+  bool rolls() const { return rolling && rolling->is_rolling(); }
+  void stop_rolling() {
+    if (rolling) rolling->stop(*this);
+  }
+
   // Owned by the world around it.
+  std::unique_ptr<Rolling> rolling;  // null: it cannot, or may not
   int shard = -1;
   bool is_active = false;                  // takes part in this step: it is awake, or near what is
   double load_near = 0;                    // [kg] of its group in the last step, if that is uneven

@@ -34,6 +34,7 @@ class Physics::Impl {
   // After the poses or the number of static shapes changed: everybody looks round again.
   void refresh_statics();
   void partition();
+  void let_roll(ModelInstance& model) const;
   void move_to(ModelInstance& model, int shard);
   void update_neighbourhood(ModelInstance& model);
   void share_out(std::vector<std::uint32_t>& parents);
@@ -54,6 +55,7 @@ class Physics::Impl {
   StaticIndex static_index_;
   std::uint64_t steps_ = 0;
   std::uint32_t moves_ = 0;
+  bool may_roll_ = false;
   bool is_crowding_told_ = false;
   std::vector<std::string> complaints_;
 };
@@ -96,14 +98,23 @@ void Physics::Impl::add(ModelId id, std::shared_ptr<const Blueprint> blueprint, 
     model->shard = static_cast<int>(smallest - shards_.begin());
     model->enter((*smallest)->world(), world_->physics);
     model->take_initial_velocities();
+    let_roll(*model);
     auto& list = (*smallest)->models;
     list.insert(std::lower_bound(list.begin(), list.end(), id, [](auto* m, ModelId i) { return m->id() < i; }), model.get());
   }
   models_[id] = std::move(model);
 }
 
+void Physics::Impl::let_roll(ModelInstance& model) const {
+  model.stop_rolling();
+  model.rolling = may_roll_ ? Rolling::of(model, world_->physics) : nullptr;
+}
+
 void Physics::Impl::refresh_statics() {
   statics_.clear();
+  for (const auto& model : models_) {
+    if (model) model->stop_rolling();
+  }
   for (const auto& model : models_) {
     if (!model) continue;
     for (auto& shape : model->shapes()) {
@@ -228,6 +239,7 @@ void Physics::Impl::put_back_insane(Shard& shard) {
           fmt::format("model {}: left the range of numbers and was put back to where it started", model->blueprint().model->name));
     }
     drop_welds([&](const Weld& weld) { return weld.is_of(*model); });
+    model->stop_rolling();
     model->enter(shard.world(), world_->physics);
     model->left_neighbourhood = true;
     shard.has_left = true;
@@ -255,6 +267,13 @@ Physics::Physics(std::shared_ptr<const WorldDef> world, WorkerPool& pool, Triang
 }
 Physics::~Physics() = default;
 
+void Physics::let_roll(bool on) {
+  impl_->may_roll_ = on;
+  for (const auto& model : impl_->models_) {
+    if (model && impl_->has_bodies(*model)) impl_->let_roll(*model);
+  }
+}
+
 void Physics::step() { impl_->step(); }
 
 void Physics::reset() {
@@ -266,6 +285,7 @@ void Physics::reset_poses() {
   impl_->drop_welds([](const Weld&) { return true; });
   for (const auto& model : impl_->models_) {
     if (!model) continue;
+    model->stop_rolling();
     model->set_base(model->blueprint().model->pose);
     if (impl_->has_bodies(*model)) model->enter(impl_->shards_[static_cast<std::size_t>(model->shard)]->world(), impl_->world_->physics);
   }
@@ -373,6 +393,7 @@ base::Result<void> Physics::set_model_pose(ModelId model, const Eigen::Isometry3
   const bool has_anchors = std::any_of(instance.blueprint().assemblies.begin(), instance.blueprint().assemblies.end(),
                                        [](const Assembly& assembly) { return assembly.is_anchored; });
   impl_->drop_welds([&](const Weld& weld) { return weld.is_of(instance); });
+  instance.stop_rolling();
   const Eigen::Isometry3d old_pose = model_pose(model);
   if (!impl_->has_bodies(instance)) {
     instance.set_base(pose);
@@ -408,6 +429,7 @@ base::Result<void> Physics::set_model_twist(ModelId model, const Twist& twist) {
   ModelInstance& instance = impl_->at(model);
   if (!impl_->has_bodies(instance)) return base::Error{fmt::format("model {}: is static", def(model).name)};
   const Eigen::Vector3d origin = link_pose(canonical_link(model)).translation();
+  instance.stop_rolling();
   instance.wake();
   instance.forces().forget();
   for (std::uint32_t i = 0; i < instance.body_count(); ++i) {
@@ -428,14 +450,25 @@ base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force
   const dBodyID body = instance.body_count() == 0 ? nullptr : instance.body(instance.blueprint().assembly_of_link[link.link]);
   if (body == nullptr)
     return base::Error{fmt::format("model {}: link {} cannot move", def(link.model).name, def(link.model).links[link.link].name)};
+  instance.stop_rolling();
   instance.wake();
   dBodyAddForce(body, force.x(), force.y(), force.z());
   dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
   return {};
 }
 
-void Physics::set_gravity(ModelId model, bool on) { impl_->at(model).set_gravity(on); }
-bool Physics::make_kinematic(ModelId model) { return impl_->at(model).make_kinematic(); }
+void Physics::set_gravity(ModelId model, bool on) {
+  impl_->at(model).stop_rolling();
+  impl_->at(model).rolling.reset();
+  impl_->at(model).set_gravity(on);
+  if (on) impl_->let_roll(impl_->at(model));
+}
+
+bool Physics::make_kinematic(ModelId model) {
+  impl_->at(model).stop_rolling();
+  impl_->at(model).rolling.reset();
+  return impl_->at(model).make_kinematic();
+}
 
 JointState Physics::joint_state(JointId joint, int axis) const {
   const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
@@ -451,6 +484,8 @@ void Physics::set_motor(JointId joint, int axis, double velocity, double effort)
 
 void Physics::set_row(JointId joint, const JointRow& row) {
   ModelInstance& model = impl_->at(joint.model);
+  model.stop_rolling();
+  model.rolling.reset();
   if (JointInstance* instance = model.joint(joint.joint)) model.set_row(*instance, row);
 }
 
@@ -465,6 +500,7 @@ base::Result<void> Physics::attach(LinkId first, LinkId second) {
   for (ModelInstance* model : {&a, &b}) {
     model->welds.push_back(weld.get());
     if (!impl_->has_bodies(*model)) continue;
+    model->stop_rolling();
     model->wake();
     model->left_neighbourhood = true;
   }
@@ -513,6 +549,7 @@ void add_parts_to(StateHash& hash, const ModelInstance& model) {
     }
   }
   model.forces().add_to(hash);
+  if (model.rolling) model.rolling->add_to(hash);
 }
 
 }  // namespace
@@ -544,13 +581,14 @@ PhysicsStatistics Physics::statistics() const {
   std::uint32_t half_contacts = 0;  // what touches something else that moves is told by both
   for (const auto& model : impl_->models_) {
     if (!model) continue;
+    s.rolling += model->rolls() ? 1 : 0;
     s.joints += static_cast<std::uint32_t>(model->joints().size());
     for (const Contact& contact : model->contacts)
       half_contacts += exists(contact.other.model) && !is_static(contact.other.model) ? 1U : 2U;
     for (std::uint32_t i = 0; i < model->body_count(); ++i) {
       if (model->body(i) == nullptr) continue;
       ++s.bodies;
-      if (dBodyIsEnabled(model->body(i)) != 0) ++s.awake;
+      if (model->rolls() ? !model->rolling->is_asleep() : dBodyIsEnabled(model->body(i)) != 0) ++s.awake;
     }
   }
   s.contacts = (half_contacts + 1) / 2;

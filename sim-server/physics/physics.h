@@ -77,6 +77,7 @@ struct Contact {
 
 struct PhysicsStatistics {
   std::uint32_t bodies = 0, awake = 0, joints = 0, contacts = 0, shards = 0, moves_between_shards = 0;
+  std::uint32_t rolling = 0;  // models in the rolling step, also those that sleep
 };
 
 // Which solver made a model's last step: ODE's exact one, that along the tree of joints, or ODE's iterative one.
@@ -91,6 +92,9 @@ class Physics {
   ~Physics();
   Physics(const Physics&) = delete;
   Physics& operator=(const Physics&) = delete;
+
+  // Whether robots that roll alone on level ground are moved by the rolling step (rolling.h) from now on; not at the start.
+  void let_roll(bool on);
 
   // One step of WorldDef::physics.step.
   void step();

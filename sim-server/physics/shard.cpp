@@ -111,6 +111,29 @@ Shard::Shard(const PhysicsDef& physics)
   dWorldSetContactMaxCorrectingVel(w, std::min(physics.contact_max_correcting_vel, 1.0));
 }
 
+// All look round before any of them moves.
+void Shard::roll(const std::vector<ShapeInstance*>& statics) {
+  rolling_.clear();
+  for (auto* model : models) {
+    if (model->rolls() && !model->rolling->is_asleep()) rolling_.push_back(model);
+  }
+  const auto crowded = std::stable_partition(rolling_.begin(), rolling_.end(),
+                                             [&](const ModelInstance* model) { return model->rolling->is_alone(*model, statics); });
+  std::for_each(crowded, rolling_.end(), [](ModelInstance* model) { model->stop_rolling(); });
+  rolling_.erase(crowded, rolling_.end());
+  for (auto* model : rolling_) {
+    if (model->rolling->step(*model)) {
+      note_place(*model);
+    } else {
+      model->stop_rolling();
+    }
+  }
+}
+
+void Shard::note_place(ModelInstance& model) {
+  if (!model.neighbourhood.contains(model.update_boxes())) model.left_neighbourhood = has_left = true;
+}
+
 void Shard::find_active() {
   for (auto* model : models) {
     if (!model->may_be_awake) continue;
@@ -122,6 +145,7 @@ void Shard::find_active() {
   const std::size_t awake = active_.size();
   // What an awake model may touch takes part, and what that may touch, and so on.
   const auto add = [&](ModelInstance* other) {
+    if (other->rolls()) other->stop_rolling();
     other->is_active = true;
     active_.push_back(other);
   };
@@ -141,6 +165,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   ode::prepare_thread();
   contacts = 0;
   has_left = is_insane = false;
+  roll(statics);
   find_active();
   if (active_.empty()) return;
   has_many_joints_ = has_muddle_ = false;
@@ -169,7 +194,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   read_forces();
   dJointGroupEmpty(contact_joints_.id());
   feedback_.clear();
-  finish();
+  finish(statics);
 }
 
 void Shard::find_turning() {
@@ -279,7 +304,7 @@ void Shard::solve(std::uint64_t step_count) {
   get_up();
 }
 
-void Shard::finish() {
+void Shard::finish(const std::vector<ShapeInstance*>& statics) {
   for (auto* model : active_) {
     if (!model->is_sane()) {
       is_insane = true;
@@ -289,7 +314,10 @@ void Shard::finish() {
     // It slept in this step: what it touches stays as it was, with the forces.
     if (!model->may_be_awake && !model->is_awake()) std::swap(model->contacts, model->previous_contacts);
     model->may_be_awake = true;  // ODE wakes what awake bodies touch
-    if (!model->neighbourhood.contains(model->update_boxes())) model->left_neighbourhood = has_left = true;
+    note_place(*model);
+  }
+  for (auto* model : active_) {
+    if (model->rolling && model->is_sane()) model->rolling->watch(*model, statics);
   }
   for (auto* model : active_) model->is_active = false;
   active_.clear();

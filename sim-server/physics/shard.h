@@ -33,6 +33,8 @@ class Shard {
   std::uint32_t contacts = 0;
 
  private:
+  void roll(const std::vector<ShapeInstance*>& statics);
+  void note_place(ModelInstance& model);
   void find_active();
   void find_turning();
   void tie_welded();
@@ -42,7 +44,7 @@ class Shard {
   bool solve_tree(const std::vector<ModelInstance*>& group);
   void solve_exactly();
   void solve_iteratively(std::uint64_t step_count);
-  void finish();
+  void finish(const std::vector<ShapeInstance*>& statics);
   void collide_model(ModelInstance& model, const std::vector<ShapeInstance*>& statics);
   void collide_pair(ModelInstance& a, ModelInstance& b);
   // `a` has a body.
@@ -65,6 +67,7 @@ class Shard {
   TreeSolver tree_solver_;
   FreeRotation free_rotation_;
   Impacts impacts_;
+  std::vector<ModelInstance*> rolling_;     // models in the rolling step, during it
   bool has_many_joints_ = false;            // one of the active models
   bool has_muddle_ = false;                 // in this step some that are too deep in each other do not count
   std::vector<MadeContact> made_contacts_;  // of the step, while it has

@@ -39,7 +39,7 @@ struct Options {
   std::optional<double> hash_period{};  // [s]
   std::uint64_t seed = 1;
   std::vector<std::string> resource_paths, faults, gains, spawned;
-  std::string record, hash_log, shm_mode = "0600", shm_group;
+  std::string record, hash_log, shm_mode = "0600", shm_group, rolling = "off";
   std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
 };
@@ -183,7 +183,8 @@ int run(const Options& options, Signals& signals) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
   std::vector<FaultOrder> faults;
   for (const auto& text : options.faults) faults.push_back(parse_fault_order(text).value());  // checked with the command line
-  auto simulation = Simulation::create(world, **server, {.seed = options.seed, .threads = threads, .faults = faults}, notes, left_out);
+  auto simulation = Simulation::create(
+      world, **server, {.seed = options.seed, .threads = threads, .rolling = options.rolling == "on", .faults = faults}, notes, left_out);
   if (!simulation) return fail(simulation.error().message);
   for (const auto* lines : {&left_out, &notes}) {
     if (lines == &notes && options.verbosity == 0 && !options.check) continue;
@@ -301,6 +302,9 @@ int serve(int argc, char** argv) {
   app.add_option("--threads", options.threads,
                  "number of threads for physics and sensors (default 0: one per core); results do not depend on it")
       ->check(base::integer_between(0, 64));
+  app.add_option("--rolling", options.rolling,
+                 "on: move robots that roll alone on level ground by the rolling step, which is faster; off: by ODE (default off)")
+      ->check([](const std::string& text) { return text == "on" || text == "off" ? std::string() : "expected on or off, got " + text; });
   app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (default 0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");
   app.add_option("--shm-limit", options.shm_limit, "limit of shared memory for all ifaces [MiB] (default 1536)")

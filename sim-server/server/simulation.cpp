@@ -54,6 +54,7 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
   }
   std::unique_ptr<Simulation> s(new Simulation(std::move(world), shm, options));
   s->physics_ = std::make_unique<Physics>(s->world_, s->pool_, s->triangles_, notes, dropped);
+  if (options.rolling) s->physics_->let_roll(true);
   s->rays_ = std::make_unique<RayWorld>(*s->physics_, s->triangles_);
   s->pictures_ = std::make_unique<RenderWorld>(*s->physics_, *s->world_);
   s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_, s->pictures_.get()});

@@ -26,6 +26,7 @@ namespace sim {
 struct SimulationOptions {
   std::uint64_t seed = 1;
   int threads = 1;
+  bool rolling = false;  // robots alone on level ground are moved by the rolling step
   std::vector<FaultOrder> faults{};
 };
 

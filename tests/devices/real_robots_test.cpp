@@ -346,6 +346,60 @@ INSTANTIATE_TEST_SUITE_P(Table, RealRobots, ::testing::Range<std::size_t>(0, 12)
   return name;
 });
 
+// Where the robot is every 0.1 s of ten seconds of curves, straight ways and stops; and for how much of that it was in the rolling step.
+struct Tour {
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<std::array<double, 6>> drive;  // odometry and velocity
+  double rolled = 0;
+};
+
+Tour tour(const Robot& robot, bool rolling, double speed, double rate) {
+  Ride ride(robot, 0.7);
+  Physics& physics = ride.f.simulation->physics();
+  physics.let_roll(rolling);
+  ride.f.run(1);
+  Tour tour;
+  constexpr std::array<std::array<double, 2>, 5> legs{{{1, 0}, {1, 0.6}, {0.5, -1}, {0, 1}, {-1, 0.3}}};
+  for (int tenth = 0; tenth < 100; ++tenth) {
+    const auto& leg = legs[static_cast<std::size_t>(tenth / 20)];
+    if (tenth % 20 == 0 && !ride.drive->command_velocity(leg[0] * speed, 0, leg[1] * rate)) throw std::runtime_error("no command");
+    ride.f.run(0.1);
+    tour.poses.push_back(ride.pose());
+    EXPECT_TRUE(ride.drive->read());
+    const auto& s = ride.drive->sample<shm::Position2dSample>();
+    tour.drive.push_back({s.odometry[0], s.odometry[1], s.odometry[2], s.velocity[0], s.velocity[1], s.velocity[2]});
+    tour.rolled += physics.statistics().rolling == 1 ? 0.01 : 0;
+  }
+  return tour;
+}
+
+// Metres and radians by which two tours differ at most.
+std::pair<double, double> difference(const Tour& a, const Tour& b) {
+  double away = 0, turned = 0;
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    away = std::max(away, (a.poses[i].translation() - b.poses[i].translation()).norm());
+    turned = std::max(turned, Eigen::AngleAxisd(a.poses[i].linear().transpose() * b.poses[i].linear()).angle());
+  }
+  return {away, turned};
+}
+
+TEST_P(RealRobots, are_where_ode_has_them_after_ten_seconds_of_the_rolling_step) {
+  const Robot& robot = robots()[GetParam()];
+  if (robot.name == "PR2 base") return;
+  const double speed = robot.is_car ? 1 : 0.2, rate = robot.is_car ? 0.2 : 0.5;
+  const Tour ode = tour(robot, false, speed, rate), rolling = tour(robot, true, speed, rate);
+  const auto [away, turned] = difference(ode, rolling);
+  EXPECT_LT(away, 0.001) << robot.name;
+  EXPECT_LT(turned, 0.1 / 180 * M_PI) << robot.name;
+  double encoders = 0;
+  for (std::size_t i = 0; i < ode.drive.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) encoders = std::max(encoders, std::abs(ode.drive[i][k] - rolling.drive[i][k]));
+  }
+  EXPECT_LT(encoders, 0.001) << robot.name;
+  std::printf("%-20s rolled %.2f of the time; %.3f mm, %.4f deg, odometry %.3f mm\n", robot.name.c_str(), rolling.rolled, away * 1e3,
+              turned / M_PI * 180, encoders * 1e3);
+}
+
 // With the specification's 1 kg m^2 for each of its wheels of 0.5 and 0.1 kg it nods when it stops, rolls back, and at 0.5 m/s falls over.
 TEST(RobotWithoutInertias, drives_and_stops_as_it_is_told_fast_and_slowly) {
   for (const double speed : {0.2, 0.5, -0.2, -0.5}) {
