@@ -146,12 +146,6 @@ void JointInstance::set_axis(int i, double dt) {
   has_forces_ = has_forces_ || damping > 0 || axis.spring_stiffness != 0;
 }
 
-double JointInstance::motor_rate() const {
-  // Files of wheels say 0 where they mean none.
-  const double most = def_->axes[0].velocity > 0 ? def_->axes[0].velocity : infinite;
-  return drives_[0].effort > 0 ? std::clamp(drives_[0].velocity, -most, most) : 0;
-}
-
 void JointInstance::set_drive(int axis, double velocity, double effort) {
   if (axis >= axis_count()) return;
   auto& drive = drives_[static_cast<std::size_t>(axis)];

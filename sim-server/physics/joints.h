@@ -80,9 +80,6 @@ class JointInstance {
   };
   const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   void set_drive(int axis, double velocity, double effort);
-  // What ODE's motor of the first axis follows, and its strength: that of the drive, or the friction of the joint.
-  double motor_rate() const;
-  double motor_effort() const { return drives_[0].effort > 0 ? drives_[0].effort : def_->axes[0].friction; }
 
   // The motor of a controller, for the next step; `is_in_tree`: the solver along the tree of joints steps it.
   void set_row(const JointRow& row, bool is_in_tree);

@@ -198,13 +198,7 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   }
   bodies_.clear();
   for (const Assembly& assembly : blueprint_->assemblies) make_body(world, assembly);
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const dBodyID body = bodies_[shapes_[i].assembly].id();
-    if (body == nullptr) continue;
-    dGeomSetBody(shapes_[i].geom.id(), body);
-    ode::set_offset(shapes_[i].geom.id(), shape_in_body_[i]);
-    find_bodies_of(shapes_[i]);
-  }
+  hang_shapes();
   has_forces_ = !forces_.is_empty();
   forces_.forget();
   for (const auto j : blueprint_->joints) make_joint(world, physics, j);
@@ -219,6 +213,23 @@ void ModelInstance::enter(dWorldID world, const PhysicsDef& physics) {
   }
   left_neighbourhood = may_be_awake = true;
   still_steps_ = slow_steps_ = 0;
+  if (rolls()) drop_shapes();
+}
+
+void ModelInstance::hang_shapes() {
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const dBodyID body = bodies_[shapes_[i].assembly].id();
+    if (body == nullptr) continue;
+    dGeomSetBody(shapes_[i].geom.id(), body);
+    ode::set_offset(shapes_[i].geom.id(), shape_in_body_[i]);
+    find_bodies_of(shapes_[i]);
+  }
+}
+
+void ModelInstance::drop_shapes() {
+  for (auto& shape : shapes_) {
+    if (bodies_[shape.assembly].id() != nullptr) dGeomSetBody(shape.geom.id(), nullptr);
+  }
 }
 
 void ModelInstance::make_body(dWorldID world, const Assembly& assembly) {

@@ -117,6 +117,9 @@ class ModelInstance {
   // False when a number has become infinite or a body is faster than anything should be.
   bool is_sane() const;
 
+  // Shapes do not follow their bodies until they are hung on them again: nothing looks at those of a model in the rolling step.
+  void drop_shapes();
+  void hang_shapes();
   // In the rolling step.
   bool rolls() const { return rolling && rolling->is_rolling(); }
   void stop_rolling() {

@@ -115,6 +115,9 @@ bool Rolling::find_wheels(const ModelInstance& model) {
     body_ = static_cast<std::uint32_t>(joint.parent_assembly);
     wheels_[i].joint = i;
     wheels_[i].assembly = static_cast<std::uint32_t>(joint.child_assembly);
+    const AxisDef& axis = joint.def().axes[0];
+    wheels_[i].fastest = axis.velocity > 0 ? axis.velocity : infinite;  // files of wheels say 0 where they mean none
+    wheels_[i].friction = axis.friction;
     wheels_[i].axle = joint.seat_on_parent().axis.normalized();
   }
   if (wheels_[0].assembly == wheels_[1].assembly || wheels_[0].axle.cross(wheels_[1].axle).norm() > level_axle) return false;
@@ -271,6 +274,7 @@ void Rolling::start(ModelInstance& model, RollingMotion motion) {
   motion_->start(rates);
   set_box(model);
   for (std::uint32_t i = 0; i < model.body_count(); ++i) dBodyDisable(model.body(i));
+  model.drop_shapes();
   model.may_be_awake = false;
 }
 
@@ -331,8 +335,10 @@ bool Rolling::is_alone(const ModelInstance& model, const Statics& statics) const
 bool Rolling::step(ModelInstance& model) {
   std::array<RollingMotor, 2> motors;
   for (std::size_t i = 0; i < 2; ++i) {
-    const JointInstance& joint = model.joints()[wheels_[i].joint];
-    motors[i] = {joint.motor_rate(), joint.motor_effort()};
+    const Wheel& wheel = wheels_[i];
+    const auto& drive = model.joints()[wheel.joint].drive(0);
+    motors[i] = {0, wheel.friction};
+    if (drive.effort > 0) motors[i] = {std::clamp(drive.velocity, -wheel.fastest, wheel.fastest), drive.effort};
   }
   if (!motion_->step(motors, dt_) || !(place_.head<2>().cwiseAbs().maxCoeff() < furthest)) return false;
   move(model);
@@ -394,6 +400,7 @@ void Rolling::stop(ModelInstance& model) {
   if (!motion_) return;
   motion_.reset();
   for (std::uint32_t i = 0; i < model.body_count() && !is_asleep_; ++i) dBodyEnable(model.body(i));
+  model.hang_shapes();
   model.may_be_awake = !is_asleep_;
   is_asleep_ = false;
   model.update_boxes();

@@ -66,6 +66,7 @@ class Rolling {
   struct Wheel {
     std::size_t joint = 0;  // among the joints of the model
     std::uint32_t assembly = 0;
+    double fastest = infinite, friction = 0;                    // [rad/s], [N m]; of the joint
     Eigen::Vector3d center{0, 0, 0}, axle{0, 1, 0};             // in the body [m]; unit vector
     Eigen::Quaterniond start = Eigen::Quaterniond::Identity();  // against the body
     double cosine = 1, sine = 0;                                // of half the angle that it has turned by since

@@ -1,4 +1,4 @@
-// How a robot on two driven wheels and on slides (casters that only carry it) moves over level ground while its wheels roll and do not
+// The motion of a robot on two driven wheels and on slides (casters that only carry it) over level ground, while its wheels roll and do not
 // slip: two wheel speeds, from which everything else follows. Private to physics/. A value; one thread at a time.
 //
 // All in the frame of the robot: x forward, y left, z up, the origin on the ground in the middle between the places where the wheels touch.
