@@ -21,7 +21,7 @@ RunOptions all_different() {
   options.duration_s = 12.5;
   options.expectations = "/e.yaml";
   options.seed = 123456789012345678;
-  options.one_process_each = options.in_real_time = options.twice = options.strict = true;
+  options.one_process_each = options.in_real_time = options.rolling = options.twice = options.strict = true;
   options.start = {"./alien --port 5", "two\nlines"};
   options.start_folder = "/f";
   options.run_file = "/r.yaml";
@@ -69,8 +69,8 @@ TEST(RunOptions, those_that_repeat_a_run_are_in_a_recording_and_others_are_not) 
   const auto json = to_json(all_different(), RunOptionSet::repeats_run);
   std::set<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.insert(key);
-  EXPECT_EQ(keys, (std::set<std::string>{"duration", "seed", "one_process_each", "start", "start_folder", "run_file", "module_path",
-                                         "resource_path", "property", "hosts"}));
+  EXPECT_EQ(keys, (std::set<std::string>{"duration", "seed", "one_process_each", "rolling", "start", "start_folder", "run_file",
+                                         "module_path", "resource_path", "property", "hosts"}));
   const auto read = recorded_run_options({{"options", json.dump()}, {"world_file", "/w.sdf"}});
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->start, all_different().start);

@@ -30,6 +30,7 @@ struct RunOptions {
   bool one_process_each = false;   // a host for every component, instead of one for all
   std::uint64_t hosts = 1;         // that the components are distributed over, neighbours of the profile together
   bool in_real_time = false;       // else as fast as possible
+  bool rolling = false;            // sim-server --rolling on
   std::vector<std::string> start;  // commands that start third-party components
   std::string start_folder;        // working directory of these commands; empty: that of rtse
   std::string run_file;            // YAML, see run_file.h
@@ -101,6 +102,10 @@ inline constexpr auto run_option_rows = [] {
        .high = 1000,
        .repeats_run = true},
       {.name = "realtime", .member = &O::in_real_time, .help = "Run in real time"},
+      {.name = "rolling",
+       .member = &O::rolling,
+       .help = "Move robots that roll alone on level ground by the rolling step, which is faster",
+       .repeats_run = true},
       {.name = "for",
        .member = &O::lists,
        .help = "NAME=LIST: repeat what contains {NAME} for each value: robot=r0..r99, robot=a,b, robot=100"},
