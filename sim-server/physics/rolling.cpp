@@ -55,12 +55,16 @@ Eigen::Matrix3d own_inertia(dBodyID body) {
   return turn * Eigen::Map<const Eigen::Matrix<dReal, 3, 4, Eigen::RowMajor>>(mass.I).leftCols<3>() * turn.transpose();
 }
 
+bool is_ball(const JointInstance& joint) { return joint.def().kind == JointDef::Kind::ball; }
+
 bool is_plain(const JointInstance& joint) {
+  if (joint.has_row() || joint.has_coupling() || joint.is_followed()) return false;
+  if (joint.def().provide_feedback || !joint.def().sensors.empty()) return false;
+  if (is_ball(joint)) return true;
   const auto kind = joint.def().kind;
-  const bool turns = kind == JointDef::Kind::revolute || kind == JointDef::Kind::continuous;
-  if (!turns || joint.axis_count() != 1 || joint.has_row() || joint.has_coupling() || joint.is_followed()) return false;
+  if ((kind != JointDef::Kind::revolute && kind != JointDef::Kind::continuous) || joint.axis_count() != 1) return false;
   const AxisDef& axis = joint.def().axes[0];
-  return axis.damping == 0 && axis.spring_stiffness == 0 && !joint.def().provide_feedback && joint.def().sensors.empty();
+  return axis.spring_stiffness == 0;
 }
 
 bool is_free(const Assembly& assembly) {
@@ -98,7 +102,8 @@ bool is_level_ground(const ShapeInstance& shape) {
 
 std::unique_ptr<Rolling> Rolling::of(const ModelInstance& model, const PhysicsDef& physics) {
   const auto& g = physics.gravity;
-  if (g.x() != 0 || g.y() != 0 || !(g.z() < 0) || model.body_count() != 3 || model.joints().size() != 2) return nullptr;
+  if (g.x() != 0 || g.y() != 0 || !(g.z() < 0) || model.joints().size() < 2 || model.body_count() != model.joints().size() + 1)
+    return nullptr;
   if (!model.forces().is_empty() || !model.mimics().empty()) return nullptr;
   if (!std::ranges::all_of(model.blueprint().assemblies, is_free) || !std::ranges::all_of(model.joints(), is_plain)) return nullptr;
   const ModelDef& def = *model.blueprint().model;
@@ -108,20 +113,47 @@ std::unique_ptr<Rolling> Rolling::of(const ModelInstance& model, const PhysicsDe
 }
 
 bool Rolling::find_wheels(const ModelInstance& model) {
-  for (std::size_t i = 0; i < 2; ++i) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.joints().size(); ++i) {
     const JointInstance& joint = model.joints()[i];
     if (joint.parent_assembly < 0 || joint.child_assembly < 0) return false;
-    if (i == 1 && static_cast<std::uint32_t>(joint.parent_assembly) != body_) return false;
+    if (i > 0 && static_cast<std::uint32_t>(joint.parent_assembly) != body_) return false;
     body_ = static_cast<std::uint32_t>(joint.parent_assembly);
-    wheels_[i].joint = i;
-    wheels_[i].assembly = static_cast<std::uint32_t>(joint.child_assembly);
+    if (is_ball(joint)) {
+      if (!add_ball(model, i)) return false;
+      continue;
+    }
+    if (count == 2) return false;
+    Wheel& wheel = wheels_[count++];
+    wheel.joint = i;
+    wheel.assembly = static_cast<std::uint32_t>(joint.child_assembly);
     const AxisDef& axis = joint.def().axes[0];
-    wheels_[i].fastest = axis.velocity > 0 ? axis.velocity : infinite;  // files of wheels say 0 where they mean none
-    wheels_[i].friction = axis.friction;
-    wheels_[i].axle = joint.seat_on_parent().axis.normalized();
+    wheel.fastest = axis.velocity > 0 ? axis.velocity : infinite;  // files of wheels say 0 where they mean none
+    wheel.friction = axis.friction, wheel.damping = axis.damping;
+    wheel.axle = joint.seat_on_parent().axis.normalized();
   }
-  if (wheels_[0].assembly == wheels_[1].assembly || wheels_[0].axle.cross(wheels_[1].axle).norm() > level_axle) return false;
+  if (count != 2 || wheels_[0].axle.cross(wheels_[1].axle).norm() > level_axle) return false;
   return is_round(model, wheels_[0]) && is_round(model, wheels_[1]);
+}
+
+// One ball about the place of the joint.
+bool Rolling::add_ball(const ModelInstance& model, std::size_t joint) {
+  Ball ball;
+  ball.joint = joint;
+  ball.assembly = static_cast<std::uint32_t>(model.joints()[joint].child_assembly);
+  const dBodyID body = model.body(body_);
+  const Eigen::Vector3d place =
+      ode::vector(dBodyGetPosition(body)) + ode::quaternion(dBodyGetQuaternion(body)) * model.joints()[joint].seat_on_parent().place;
+  if ((ode::vector(dBodyGetPosition(model.body(ball.assembly))) - place).norm() > off_axle) return false;
+  for (const ShapeInstance& shape : model.shapes()) {
+    if (shape.assembly != ball.assembly) continue;
+    if (ball.radius > 0 || dGeomGetClass(shape.geom.id()) != dSphereClass) return false;
+    if ((ode::vector(dGeomGetPosition(shape.geom.id())) - place).norm() > off_axle) return false;
+    ball.radius = dGeomSphereGetRadius(shape.geom.id());
+  }
+  if (!(ball.radius > 0)) return false;
+  balls_.push_back(ball);
+  return true;
 }
 
 bool Rolling::is_round(const ModelInstance& model, const Wheel& wheel) const {
@@ -236,13 +268,22 @@ std::optional<RollingMotion> Rolling::motion_of(const ModelInstance& model) {
     if (!friction) return std::nullopt;
     const Eigen::Vector3d place = place_ + start_ * feet_[c].place, at = start_ * (feet_[c].place - origin_);
     if (feet_[c].contact >= 2) {
-      slides.push_back({at.dot(forward_), at.dot(left), *friction});
+      slides.push_back({at.dot(forward_), at.dot(left), *friction, 0});
+      const auto ball = std::ranges::find(balls_, model.blueprint().assembly_of_link[model.contacts[c].link.link], &Ball::assembly);
+      if (ball == balls_.end()) continue;
+      ball->friction = *friction;
+      const double inertia = own_inertia(model.body(ball->assembly)).trace() / 3;
+      if (*friction > 0) slides.back().friction = 0, slides.back().ball = inertia / (ball->radius * ball->radius);
       continue;
     }
     const Wheel& wheel = wheels_[feet_[c].contact];
     const dBodyID turning = model.body(wheel.assembly);
     const Eigen::Vector3d about = start_ * wheel.axle, arm = place - ode::vector(dBodyGetPosition(turning));
-    wheels[feet_[c].contact] = {at.dot(left), -about.cross(arm).dot(forward_), about.dot(own_inertia(turning) * about), *friction};
+    const double inertia = about.dot(own_inertia(turning) * about);
+    // Without a drive ODE has the damping in a motor of its own, and a stronger one is cut there.
+    const bool is_damped = wheel.damping > 0, is_driven = model.joints()[wheel.joint].drive(0).is_set;
+    if (is_damped && (!is_driven || wheel.damping * dt_ > 0.4 * inertia)) return std::nullopt;
+    wheels[feet_[c].contact] = {at.dot(left), -about.cross(arm).dot(forward_), inertia, *friction, wheel.damping};
   }
   return RollingMotion::of(mass_of(model), wheels, std::move(slides), gravity_);
 }
@@ -268,6 +309,12 @@ void Rolling::start(ModelInstance& model, RollingMotion motion) {
     wheel.start = start_.conjugate() * ode::quaternion(dBodyGetQuaternion(turning));
     wheel.cosine = 1, wheel.sine = 0;
     rates[i] = model.joints()[wheel.joint].state(0).velocity;
+  }
+  for (Ball& ball : balls_) {
+    const dBodyID turning = model.body(ball.assembly);
+    ball.center = start_.conjugate() * (ode::vector(dBodyGetPosition(turning)) - place_);
+    ball.turn = ode::quaternion(dBodyGetQuaternion(turning));
+    ball.spin = ode::vector(dBodyGetAngularVel(turning));
   }
   cosine_ = 1, sine_ = 0;
   is_asleep_ = false;
@@ -344,6 +391,7 @@ bool Rolling::step(ModelInstance& model) {
   move(model);
   if (model.lies_still(dt_, true)) {
     motion_->stand();
+    for (Ball& ball : balls_) ball.spin.setZero();
     is_asleep_ = true;
     for (std::uint32_t i = 0; i < model.body_count(); ++i) {
       dBodySetLinearVel(model.body(i), 0, 0, 0);
@@ -378,8 +426,22 @@ void Rolling::move(ModelInstance& model) {
     put(model.body(wheel.assembly), place_ + now * wheel.center, now * turn_about(wheel.axle, wheel.cosine, wheel.sine) * wheel.start,
         wheel_linear[i], spin + now * (speeds.wheels[i] * wheel.axle));
   }
+  move_balls(model, linear, spin, middle, now);
   speed_ = std::abs(speeds.forward) + std::abs(speeds.yaw) * radius_;
   set_box(model);
+}
+
+void Rolling::move_balls(const ModelInstance& model, const Eigen::Vector3d& linear, const Eigen::Vector3d& spin,
+                         const Eigen::Quaterniond& middle, const Eigen::Quaterniond& now) {
+  for (Ball& ball : balls_) {
+    const Eigen::Vector3d velocity = linear + spin.cross(middle * ball.center);
+    if (ball.friction > 0) ball.spin = Eigen::Vector3d(-velocity.y() / ball.radius, velocity.x() / ball.radius, ball.spin.z());
+    const Eigen::Vector3d half = dt_ / 2 * ball.spin;
+    const Eigen::Quaterniond change = Eigen::Quaterniond(0, half.x(), half.y(), half.z()) * ball.turn;
+    ball.turn.coeffs() += change.coeffs();
+    ball.turn.normalize();
+    put(model.body(ball.assembly), place_ + now * ball.center, ball.turn, velocity, ball.spin);
+  }
 }
 
 void Rolling::set_contacts(ModelInstance& model, const Eigen::Quaterniond& turn) const {

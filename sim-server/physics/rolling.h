@@ -1,9 +1,10 @@
 // The rolling step of a model: while a robot on two driven wheels rolls alone on level ground, RollingMotion moves it in place of ODE.
 // Private to physics/. The stepping thread of the shard.
 //
-// A model can roll if gravity is along z and the model is one body with two wheels on it: balls or cylinders, which are symmetric about
-// parallel, horizontal axles without limits, springs and damping, and no fluid, wind, belt, slip or weld is on it. Everything else of it
-// that touches the ground slides.
+// A model can roll if gravity is along z and the model is one body with two wheels on it, balls or cylinders that are symmetric about
+// parallel, horizontal axles without limits and springs, and with any number of balls in ball joints; and if no fluid, wind, belt,
+// slip or weld is on it. Balls without friction go along and keep turning as they did; others roll. Everything else of it that touches the
+// ground slides.
 //
 // State                     how it goes on
 // watched                   ODE steps it. After 0.5 s in which each step found it rolling alone, or when it falls asleep alone, it rolls:
@@ -66,10 +67,19 @@ class Rolling {
   struct Wheel {
     std::size_t joint = 0;  // among the joints of the model
     std::uint32_t assembly = 0;
-    double fastest = infinite, friction = 0;                    // [rad/s], [N m]; of the joint
+    double fastest = infinite, friction = 0, damping = 0;       // [rad/s], [N m], [N m s]; of the joint
     Eigen::Vector3d center{0, 0, 0}, axle{0, 1, 0};             // in the body [m]; unit vector
     Eigen::Quaterniond start = Eigen::Quaterniond::Identity();  // against the body
     double cosine = 1, sine = 0;                                // of half the angle that it has turned by since
+  };
+  // In a ball joint.
+  struct Ball {
+    std::size_t joint = 0;
+    std::uint32_t assembly = 0;
+    double radius = 0, friction = 0;
+    Eigen::Vector3d center{0, 0, 0};  // in the body [m]
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d spin{0, 0, 0};  // [rad/s]
   };
   struct Foot {
     Eigen::Vector3d place;    // in the body
@@ -78,6 +88,9 @@ class Rolling {
   explicit Rolling(const PhysicsDef& physics) : dt_(physics.step), gravity_(-physics.gravity.z()) {}
   bool find_wheels(const ModelInstance& model);
   bool is_round(const ModelInstance& model, const Wheel& wheel) const;
+  bool add_ball(const ModelInstance& model, std::size_t joint);
+  void move_balls(const ModelInstance& model, const Eigen::Vector3d& linear, const Eigen::Vector3d& spin, const Eigen::Quaterniond& middle,
+                  const Eigen::Quaterniond& now);
   bool is_settled(const ModelInstance& model) const;
   // What the contacts of the last step touch, when that is one level thing.
   const ShapeInstance* ground_of(const ModelInstance& model, const Statics& statics) const;
@@ -95,6 +108,7 @@ class Rolling {
   double dt_, gravity_;
   std::uint32_t body_ = 0;  // assembly
   std::array<Wheel, 2> wheels_;
+  std::vector<Ball> balls_;
   std::uint32_t ready_steps_ = 0;  // in a row
   const ShapeInstance* ground_ = nullptr;
   bool is_asleep_ = false;

@@ -30,12 +30,16 @@ std::optional<RollingMotion> RollingMotion::of(const RollingMass& mass, const st
     m.to_speeds_[1][i] = sign * wheels[i].reach / track;
     m.to_speeds_[0][i] = sign * wheels[i].reach * wheels[1 - i].side / track;
   }
-  const double coupling = -mass.mass * mass.y;
-  const double yaw = mass.yaw_inertia + mass.mass * (mass.x * mass.x + mass.y * mass.y);
+  double whole = mass.mass, coupling = -mass.mass * mass.y;
+  double yaw = mass.yaw_inertia + mass.mass * (mass.x * mass.x + mass.y * mass.y);
+  for (const auto& slide : m.slides_) {
+    whole += slide.ball, coupling -= slide.ball * slide.y;
+    yaw += slide.ball * (slide.x * slide.x + slide.y * slide.y);
+  }
   for (int i = 0; i < 2; ++i) {
     for (int k = 0; k < 2; ++k) {
       const auto &t = m.to_speeds_[0], &w = m.to_speeds_[1];
-      m.inertia_[i][k] = mass.mass * t[i] * t[k] + coupling * (t[i] * w[k] + w[i] * t[k]) + yaw * w[i] * w[k];
+      m.inertia_[i][k] = whole * t[i] * t[k] + coupling * (t[i] * w[k] + w[i] * t[k]) + yaw * w[i] * w[k];
     }
     m.inertia_[i][i] += wheels[static_cast<std::size_t>(i)].inertia;
   }
@@ -163,7 +167,7 @@ bool RollingMotion::grips(const Accelerations& now, const std::array<double, 2>&
                           std::vector<std::array<double, 3>>& forces) const {
   const double side = (mass_.mass * now.side - slide_y) / 2;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double along = (efforts[i] - wheels_[i].inertia * now.wheels[i]) / wheels_[i].reach;
+    const double along = (efforts[i] - wheels_[i].damping * speeds_.wheels[i] - wheels_[i].inertia * now.wheels[i]) / wheels_[i].reach;
     forces[i][0] = along, forces[i][1] = side;
     if (!(std::abs(along) + std::abs(side) <= grip_share * grips_[i])) return false;
   }
@@ -176,8 +180,8 @@ bool RollingMotion::step(const std::array<RollingMotor, 2>& motors, double dt) {
   const double v = speeds_.forward, w = speeds_.yaw;
   // Inertia of a centre of mass beside the axle, in a turn.
   const double along = slid[0] + mass_.mass * mass_.x * w * w, about = slid[2] - mass_.mass * mass_.x * v * w;
-  const std::array<double, 2> push{to_speeds_[0][0] * along + to_speeds_[1][0] * about,
-                                   to_speeds_[0][1] * along + to_speeds_[1][1] * about};
+  std::array<double, 2> push{to_speeds_[0][0] * along + to_speeds_[1][0] * about, to_speeds_[0][1] * along + to_speeds_[1][1] * about};
+  for (std::size_t i = 0; i < 2; ++i) push[i] -= wheels_[i].damping * speeds_.wheels[i];
   std::array<double, 2> rates{0, 0}, efforts{0, 0};
   if (!solve(motors, push, dt, rates, efforts)) return false;
   const Speeds next = speeds_of(rates);

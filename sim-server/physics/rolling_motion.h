@@ -18,10 +18,12 @@ struct RollingWheel {
   double reach = 0;     // way of the contact along x for each radian; negative where the axle looks to the right [m]
   double inertia = 0;   // about the axle [kg m^2]
   double friction = 0;  // the smaller one of both directions
+  double damping = 0;   // of its joint [N m s]
 };
 struct RollingSlide {
   double x = 0, y = 0;  // of the contact [m]
   double friction = 0;
+  double ball = 0;  // mass that a ball that rolls there has by its turning, for what speeds it up [kg]
 };
 struct RollingMass {
   double mass = 0, yaw_inertia = 0;  // [kg], [kg m^2] of the whole, about its centre of mass

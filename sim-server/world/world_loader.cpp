@@ -34,7 +34,7 @@ namespace {
 constexpr std::size_t most_frames = 5000;            // of one model; libsdformat resolves them in a time that grows with the square: 9 s
 constexpr std::size_t most_frames_of_world = 10000;  // where models stand relative to each other
 // A small file may include a large model many times. One of these elements costs 0.6 to 0.8 KiB once it is simulated: 1.5 GiB.
-constexpr std::size_t most_elements_of_world = 5000000;
+constexpr std::size_t most_elements_of_world = 10000000;
 constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred times the text it reads; this is what it gets at once
 
 // A model as it is written, however often it stands in the world.

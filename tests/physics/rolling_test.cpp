@@ -16,6 +16,19 @@ using namespace test;
 
 constexpr double radius = 0.1, track = 0.4;
 
+// Instead of the fixed ball, one in a ball joint.
+std::string with_ball_joint(std::string text) {
+  const auto begin = text.find("<collision name='ball'>"), end = text.find("</collision>", begin) + 12;
+  std::string ball = text.substr(begin, end - begin);
+  text.erase(begin, end - begin);
+  ball.replace(ball.find("<pose>"), ball.find("</pose>") + 7 - ball.find("<pose>"), "");
+  const std::string link =
+      "<link name='ball'><pose>-0.2 0 0.03 0 0 0</pose><inertial><mass>0.3</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz>"
+      "</inertia></inertial>" +
+      ball + "</link><joint name='ball_joint' type='ball'><parent>base</parent><child>ball</child></joint></model>";
+  return text.replace(text.rfind("</model>"), 8, link);
+}
+
 // 6 kg on two wheels and a ball, which looks along x.
 std::string robot_text(const std::string& name, double x, double y, double ball_friction = 0) {
   std::string text = fmt::format(
@@ -102,6 +115,26 @@ TEST(RollingStep, moves_a_robot_as_ode_does) {
   EXPECT_LT((ode.physics.link_twist(base).linear - rolling.physics.link_twist(base).linear).norm(), 1e-3);
 }
 
+TEST(RollingStep, moves_a_robot_on_a_ball_in_a_joint_as_ode_does) {
+  for (const double friction : {0.0, 0.8}) {
+    const std::string robot = with_ball_joint(robot_text("a", 0, 0, friction));
+    Rollers ode(robot, 1, false), rolling(robot);
+    for (Rollers* f : {&ode, &rolling}) {
+      f->speed_up("a", 0.5, 0);
+      f->run(2);
+      f->speed_up("a", 0.5, 1);
+      f->run(2);
+    }
+    EXPECT_TRUE(rolling.rolls()) << friction;
+    EXPECT_LT((ode.position("a") - rolling.position("a")).norm(), 1e-3) << friction;
+    const LinkId base = ode.link("a::base"), ball = ode.link("a::ball");
+    EXPECT_LT(Eigen::AngleAxisd(ode.physics.link_pose(base).linear().transpose() * rolling.physics.link_pose(base).linear()).angle(), 1e-3);
+    const Eigen::Vector3d turns = ode.physics.link_twist(ball).angular, turned = rolling.physics.link_twist(ball).angular;
+    EXPECT_LT((turns - turned).norm(), 0.2) << friction << ": " << turns.transpose() << " and " << turned.transpose();
+    EXPECT_LT((ode.physics.link_pose(ball).translation() - rolling.physics.link_pose(ball).translation()).norm(), 1e-3);
+  }
+}
+
 TEST(RollingStep, gives_weak_motors_the_acceleration_that_ode_gives_them) {
   Rollers ode(robot_text("a", 0, 0, 0.3), 1, false), rolling(robot_text("a", 0, 0, 0.3));
   for (Rollers* f : {&ode, &rolling}) {
@@ -113,6 +146,26 @@ TEST(RollingStep, gives_weak_motors_the_acceleration_that_ode_gives_them) {
   const Eigen::Vector3d speed = ode.physics.link_twist(base).linear;
   EXPECT_GT(speed.norm(), 0.1);
   EXPECT_LT((speed - rolling.physics.link_twist(base).linear).norm(), 0.1 * speed.norm());
+}
+
+TEST(RollingStep, lets_a_robot_with_damped_axles_coast_as_ode_does) {
+  std::string robot = robot_text("a", 0, 0);
+  const std::string axis = "<xyz>0 0 1</xyz>";
+  for (auto at = robot.find(axis); at != std::string::npos; at = robot.find(axis, at + 20))
+    robot.insert(at + axis.size(), "<dynamics><damping>0.02</damping></dynamics>");
+  Rollers ode(robot, 1, false), rolling(robot);
+  for (Rollers* f : {&ode, &rolling}) {
+    f->speed_up("a", 0.5, 0.5);
+    f->run(1);
+    f->drive("a", 0, 0, 0);  // the motors are off
+    f->run(1);
+  }
+  EXPECT_TRUE(rolling.rolls());
+  const LinkId base = ode.link("a::base");
+  const Eigen::Vector3d speed = ode.physics.link_twist(base).linear;
+  EXPECT_GT(speed.norm(), 0.1);
+  EXPECT_LT(speed.norm(), 0.45) << "the axles brake it";
+  EXPECT_LT((speed - rolling.physics.link_twist(base).linear).norm(), 0.02 * speed.norm());
 }
 
 TEST(RollingStep, ends_before_a_wall_and_ode_has_the_collision) {

@@ -68,8 +68,8 @@ TEST(LargeFiles, that_become_too_large_by_what_they_include_are_refused) {
   const std::string spread = "<population name='p'><model name='m'><static>1</static>" + links +
                              "</model><model_count>10000</model_count><distribution><type>random</type></distribution>"
                              "<box><size>1 1 1</size></box></population>";
-  const std::string line = "w.sdf: the world has more than 5000000 elements with all it includes";
-  for (const std::string& text : {world_of(1300, included), world_of(1, spread)}) {
+  const std::string line = "w.sdf: the world has more than 10000000 elements with all it includes";
+  for (const std::string& text : {world_of(2600, included), world_of(1, spread)}) {
     const auto result = files.load_text(text);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().message, line);
