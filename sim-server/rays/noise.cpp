@@ -1,5 +1,7 @@
 #include "rays/noise.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/random.h"
@@ -35,12 +37,15 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(mix
 
 std::uint64_t RandomStream::next() { return mix(key_ + mix(++counter_)); }
 
-double RandomStream::uniform() { return (static_cast<double>(next() >> 11) + 0.5) * 0x1.0p-53; }
+namespace {
 
-double RandomStream::gaussian() {
-  static const Layers layers;
+double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1.0p-53; }
+
+// One number of the bell curve, from as many draws of 64 bits as it takes.
+template <class Draw>
+double gaussian_from(const Layers& layers, const Draw& draw) {
   while (true) {
-    const std::uint64_t bits = next();
+    const std::uint64_t bits = draw();
     const auto layer = static_cast<std::size_t>(bits & 255);
     const double sign = (bits & 256) != 0 ? -1 : 1;
     const double v = static_cast<double>(bits >> 11) * 0x1.0p-53 * layers.x[layer];
@@ -48,13 +53,44 @@ double RandomStream::gaussian() {
     if (layer == 0) {
       double beyond = 0, other = 0;
       do {
-        beyond = -std::log(uniform()) / Layers::end;
-        other = -std::log(uniform());
+        beyond = -std::log(uniform_of(draw())) / Layers::end;
+        other = -std::log(uniform_of(draw()));
       } while (2 * other < beyond * beyond);
       return sign * (Layers::end + beyond);
     }
-    if (layers.height[layer] + uniform() * (layers.height[layer + 1] - layers.height[layer]) < std::exp(-0.5 * v * v)) return sign * v;
+    if (layers.height[layer] + uniform_of(draw()) * (layers.height[layer + 1] - layers.height[layer]) < std::exp(-0.5 * v * v))
+      return sign * v;
   }
+}
+
+const Layers& layers_of_bell() {
+  static const Layers layers;
+  return layers;
+}
+
+}  // namespace
+
+double RandomStream::uniform() { return uniform_of(next()); }
+
+double RandomStream::gaussian() {
+  return gaussian_from(layers_of_bell(), [this] { return next(); });
+}
+
+// The draws of a block do not wait for each other.
+void RandomStream::fill(std::span<double> numbers) {
+  constexpr std::size_t block = 64;
+  std::array<std::uint64_t, block> draws;
+  std::size_t at = block;
+  const auto draw = [&] {
+    if (at == block) {
+      for (std::size_t i = 0; i < block; ++i) draws[i] = mix(key_ + mix(counter_ + 1 + i));
+      at = 0;
+    }
+    ++counter_;
+    return draws[at++];
+  };
+  const Layers& layers = layers_of_bell();
+  for (double& number : numbers) number = gaussian_from(layers, draw);
 }
 
 Noise::Noise(const NoiseDef& def, RandomStream stream) : def_(def), stream_(stream) {
@@ -79,11 +115,15 @@ void Noise::apply(std::span<float> ranges, float step) {
   const bool has_noise = !is_none() && (def_.stddev > 0 || def_.mean != 0 || bias_ != 0);
   const double quantum = def_.kind == NoiseDef::Kind::gaussian_quantized && def_.precision > 0 ? def_.precision : static_cast<double>(step);
   if (!has_noise && quantum <= 0) return;
-  for (float& range : ranges) {
+  std::array<double, 256> numbers;
+  for (std::size_t first = 0; first < ranges.size(); first += numbers.size()) {
+    const auto part = ranges.subspan(first, std::min(numbers.size(), ranges.size() - first));
     // Every beam draws, hit or not: what one beam sees does not change the noise of the others.
-    const double noise = has_noise ? def_.mean + bias_ + def_.stddev * stream_.gaussian() : 0;
-    if (!std::isfinite(range)) continue;
-    range = static_cast<float>(quantised(range + noise, quantum));
+    if (has_noise) stream_.fill(std::span(numbers).first(part.size()));
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const double noise = has_noise ? def_.mean + bias_ + def_.stddev * numbers[i] : 0;
+      if (std::isfinite(part[i])) part[i] = static_cast<float>(quantised(part[i] + noise, quantum));
+    }
   }
 }
 

@@ -354,6 +354,26 @@ TEST(Noise, gaussian_numbers_have_the_shape_of_the_bell) {
   }
 }
 
+TEST(Noise, many_numbers_at_once_are_those_that_come_one_by_one) {
+  RandomStream one(5, "bell"), all(5, "bell");
+  std::vector<double> numbers(100000);
+  all.fill(std::span(numbers).first(1001));
+  all.fill(std::span(numbers).subspan(1001));
+  for (std::size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(numbers[i], one.gaussian()) << i;
+  EXPECT_EQ(all.position(), one.position());
+}
+
+TEST(Noise, rounds_to_the_nearest_step_and_halves_away_from_zero) {
+  NoiseDef def;
+  def.kind = NoiseDef::Kind::gaussian_quantized;
+  def.precision = 0.25;
+  Noise noise(def, RandomStream(1, "a"));
+  std::vector<float> ranges{0.125F, -0.125F, 0.124999F, 2.375F, -2.375F, 1e30F, -0.01F};
+  noise.apply(ranges, 0);
+  EXPECT_EQ(ranges, (std::vector<float>{0.25F, -0.25F, 0, 2.5F, -2.5F, 1e30F, 0}));
+  EXPECT_TRUE(std::signbit(ranges[6]));
+}
+
 TEST(Noise, differs_by_seed_and_name_and_repeats_otherwise) {
   RandomStream a(1, "laser"), b(1, "laser"), other_name(1, "sonar"), other_seed(2, "laser");
   const auto first = a.next();
