@@ -5,8 +5,6 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { deflateSync, inflateSync } from 'node:zlib';
 
-const longest = 2000; // [ms] of one request; a bound on hanging
-
 export function random(seed) {
   let state = seed >>> 0;
   const next = () => {
@@ -21,6 +19,9 @@ export function random(seed) {
 export function blocks_of(html) {
   return new Map([...html.matchAll(/<script type="text\/plain" id="run-([^"]+)">([^<]*)<\/script>/g)].map(([, id, text]) => [id, text]).filter(([id]) => id !== 'viewer'));
 }
+
+// What the blocks hold, but for the worlds.
+export const json_of = (blocks) => new Map([...blocks].filter(([id]) => !['world', 'collisions'].includes(id)).map(([id, text]) => [id, JSON.parse(inflateSync(Buffer.from(text, 'base64')).toString())]));
 
 const odd = [null, -1, 0, 1e308, '', 'x', [], {}, true, '__proto__', [[]], [null], NaN, { length: 1e9 }];
 
@@ -62,11 +63,17 @@ async function reader(web) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
 
-const in_time = (what, promise) => {
-  let timer;
-  const late = new Promise((_, reject) => { timer = setTimeout(() => reject(new Error(`${what} is not answered within ${longest} ms`)), longest); });
-  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
-};
+// A request is lost if the reader has answered so many later ones meanwhile, however long they took.
+const later_ones = 200;
+let control; // unpacks a whole block on the way that all data take
+async function answered(what, promise) {
+  let is_done = false;
+  const marked = promise.finally(() => { is_done = true; });
+  marked.catch(() => {});
+  for (let i = 0; i < later_ones && !is_done; ++i) await control();
+  if (!is_done) throw new Error(`${what} is not answered`);
+  return marked;
+}
 
 // Opens the page and asks for everything once that needs this block. Returns whether anything was said about it.
 async function use(RunData, fetch_run, asked, block) {
@@ -81,28 +88,30 @@ async function use(RunData, fetch_run, asked, block) {
     rejected += event.error !== undefined ? 1 : 0;
     waiting.get(event.id)?.();
   };
-  const run = await in_time('open', RunData.open(take, (why) => { if (!why) throw new Error('damage without words'); damage += 1; }));
+  const run = await answered('open', RunData.open(take, (why) => { if (!why) throw new Error('damage without words'); damage += 1; }));
   run.begin();
   const needs_world = block === 'world' || block === 'collisions';
   const requests = asked.filter(([name]) => !needs_world && (name === 'component') === (block === 'parameters')).map(([name, args], id) => {
-    const answered = new Promise((resolve) => waiting.set(id, resolve));
+    const reply = new Promise((resolve) => waiting.set(id, resolve));
     run.send(JSON.stringify({ op: 'request', id, name, args }));
-    return in_time(`${name} ${JSON.stringify(args)}`, answered);
+    return answered(`${name} ${JSON.stringify(args)}`, reply);
   });
   await Promise.all(requests);
-  if (needs_world) await in_time('world', fetch_run(`world.glb${block === 'collisions' ? '?collisions=1' : ''}`).catch((error) => { if (!error.message) throw error; rejected += 1; }));
+  if (needs_world) await answered('world', fetch_run(`world.glb${block === 'collisions' ? '?collisions=1' : ''}`).catch((error) => { if (!error.message) throw error; rejected += 1; }));
   return rejected + damage > 0;
 }
 
 async function main([html_file, web, number = '3000', seed = '1']) {
   const blocks = blocks_of(readFileSync(html_file, 'utf8'));
-  const json = new Map([...blocks].filter(([id]) => !['world', 'collisions'].includes(id)).map(([id, text]) => [id, JSON.parse(inflateSync(Buffer.from(text, 'base64')).toString())]));
+  const json = json_of(blocks);
   const index = json.get('index');
   const shown = new Map(blocks);
   globalThis.WebSocket ??= class {};
   globalThis.WebSocket.OPEN ??= 1;
-  globalThis.document = { getElementById: (id) => (shown.has(id.slice(4)) ? { textContent: shown.get(id.slice(4)) } : null) };
-  const { RunData, fetch_run } = await reader(web);
+  const smallest = [...blocks.values()].reduce((a, b) => (a.length < b.length ? a : b));
+  globalThis.document = { getElementById: (id) => (id === 'run-control' ? { textContent: smallest } : shown.has(id.slice(4)) ? { textContent: shown.get(id.slice(4)) } : null) };
+  const { RunData, fetch_run, unpacked } = await reader(web);
+  control = () => unpacked('control');
   const topics = index.signals.signals.map((signal) => signal.topic);
   const { from, to } = index.hello.recording;
   const asked = [

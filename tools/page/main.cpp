@@ -1,10 +1,14 @@
 // rtse-page: a recording as one HTML file. `rtse recording export --html` and `rtse run --page` start it.
+#include <signal.h>
+
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <new>
 
 #include "base/command_line.h"
 #include "base/text.h"
+#include "page/followed_run.h"
 #include "page/run_page.h"
 #include "studio/page_files.h"
 
@@ -17,10 +21,11 @@ struct Settings {
   page::PageOptions page;
   double limit_mib = 64;
   std::string summary;
+  bool follows = false;
 };
 
 void add_options(base::Command& app, Settings& settings) {
-  app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required()->check(base::existing_file());
+  app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required();
   app.add_option("-o,--output", settings.page.file, "HTML file to write")->required();
   app.add_option("--other", settings.page.other, "Recording to compare with (MCAP); its models are shown as ghosts")
       ->check(base::existing_file());
@@ -31,6 +36,8 @@ void add_options(base::Command& app, Settings& settings) {
       ->check(base::number_between(1.0, largest_page))
       ->capture_default_str();
   app.add_option("--summary", settings.summary, "JSON file with the result of the run (from rtse)")->check(base::existing_file());
+  app.add_flag("--follow", settings.follows,
+               "Follow a recording that is being written; its result comes by the standard input when it is complete (from rtse)");
   app.add_option("--viewer", settings.page.viewer, "run.html of the built page of rtm-studio")->capture_default_str();
 }
 
@@ -45,6 +52,14 @@ int write_page(Settings& settings) {
     std::ifstream in(settings.summary);
     settings.page.summary = studio::Json::parse(in, nullptr, false);
     if (!settings.page.summary.is_object()) return fail({settings.summary + ": expected a JSON object"});
+  }
+  std::error_code ignored;
+  if (!settings.follows && !std::filesystem::is_regular_file(settings.page.recording, ignored))
+    return fail({settings.page.recording + ": there is no such file"});
+  page::FollowedRun run;
+  if (settings.follows) {
+    ::signal(SIGINT, SIG_IGN);  // it is for the run, which then ends our input
+    settings.page.follow = [&run](studio::Json& summary) { return run.wait(summary); };
   }
   const auto report = page::write_run_page(settings.page);
   if (!report) return fail(report.error());

@@ -43,19 +43,29 @@ Result<std::unique_ptr<PageSamples>> PageSamples::open(std::shared_ptr<const stu
   auto reader = mcap::Reader::open(facts->file);
   if (!reader) return reader.error();
   std::unique_ptr<PageSamples> samples(new PageSamples(std::move(facts), camera_rate, std::move(*reader)));
-  samples->find_channels();
+  samples->find_channels(samples->facts_->from);
   return samples;
+}
+
+Result<void> PageSamples::go_on(std::shared_ptr<const studio::RecordingFacts> facts, nanoseconds from) {
+  auto reader = mcap::Reader::open(facts->file);
+  if (!reader) return reader.error();
+  facts_ = std::move(facts);
+  reader_ = std::move(*reader);
+  ahead_.reset();
+  find_channels(from);
+  return {};
 }
 
 PageSamples::PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader)
     : facts_(std::move(facts)), camera_rate_(camera_rate), reader_(std::move(reader)) {}
 
-void PageSamples::find_channels() {
+void PageSamples::find_channels(nanoseconds from) {
   std::map<std::string, Channel> topics;
   for (const auto& [id, channel] : reader_.channels()) topics[channel.topic] = id;
   mcap::Query query;
   const auto add = [&](Channel channel, Signal signal) {
-    signals_[channel] = std::move(signal);
+    signals_.emplace(channel, std::move(signal));  // one that is known stays as it is
     query.channels.push_back(channel);
   };
   for (const auto& signal : facts_->signals) {
@@ -70,10 +80,11 @@ void PageSamples::find_channels() {
       while (count < most_sonars && topics.contains(topic + "/" + std::to_string(count))) ++count;
       for (std::size_t i = 0; i < count; ++i)
         add(topics.at(topic + "/" + std::to_string(i)), {.topic = topic, .of_ring = count, .number = i});
-      if (count > 0) rings_[topic] = Json{{"ranges", std::vector<double>(count, 0.0)}};
+      if (count > 0 && !rings_.contains(topic)) rings_[topic] = Json{{"ranges", std::vector<double>(count, 0.0)}};
     }
   }
   is_at_end_ = query.channels.empty();  // a query without channels would be one for all
+  query.from = studio::to_mcap_time(from);
   reader_.seek(query);
 }
 

@@ -26,6 +26,8 @@ class PageSamples {
   // {"samples":[[TOPIC, s, sample]], "images":{TOPIC:[[s, JPEG in base64]]}} up to and without `to`, in the order of time, so that a scan
   // and the sample of the port that carries it compress together. Call with growing times.
   base::Result<Json> part_until(std::chrono::nanoseconds to);
+  // The file has grown, and these are its facts now: goes on with the samples from this time on, the end of the last part.
+  base::Result<void> go_on(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
   // A line for each signal with omitted or rounded samples.
   std::vector<std::string> left_out() const;
 
@@ -44,12 +46,12 @@ class PageSamples {
   };
 
   PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader);
-  void find_channels();
+  void find_channels(std::chrono::nanoseconds from);
   base::Result<void> take(const mcap::Message& message, Json& part);
   base::Result<void> take_image(const mcap::Message& message, Signal& signal, Json& part);
   void keep(const std::string& topic, double time, Json value, Json& part);
 
-  const std::shared_ptr<const studio::RecordingFacts> facts_;
+  std::shared_ptr<const studio::RecordingFacts> facts_;
   const double camera_rate_;
   mcap::Reader reader_;
   recorder::SampleValues values_{reader_};

@@ -1,18 +1,17 @@
 #include "page/run_page.h"
 
-#include <libdeflate.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "base/base64.h"
 #include "base/text.h"
 #include "page/failure_marks.h"
+#include "page/page_file.h"
 #include "page/page_samples.h"
 #include "studio/playhead.h"
 #include "studio/recorded_details.h"
@@ -27,12 +26,15 @@ using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
 // Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
-constexpr std::size_t part_size = 3U << 19U;
+constexpr std::size_t part_size = 3U << 18U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
 constexpr nanoseconds pose_step(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
-constexpr int growth = 4;                          // of the length from one part to the next, at most
-constexpr std::string_view marker = "<!--run-->";  // in the viewer: the place of the data
-constexpr int compression_level = 9;
+constexpr int growth = 4;                           // of the length from one part to the next, at most
+constexpr std::string_view marker = "<!--run-->";   // in the viewer: the place of the data
+constexpr nanoseconds unsettled = 2s;               // at the end of a recording that grows: samples of these times may still come
+constexpr std::uintmax_t first_growth = 4U << 20U;  // [bytes] of a recording, until it is looked at
+constexpr std::chrono::milliseconds look_interval{100};
+constexpr double growth_share = 1.25;       // and looked at again: all looks together read a few times what there is
 constexpr std::size_t most_changes = 1000;  // of the parameters of one component
 
 Result<std::string> file_text(const std::string& path) {
@@ -42,137 +44,154 @@ Result<std::string> file_text(const std::string& path) {
   return text;
 }
 
-// The page while it is written: a file beside it, which takes its name at the end.
-class PageFile {
- public:
-  PageFile(std::string path, std::uint64_t limit)
-      : path_(std::move(path)),
-        part_path_(path_ + "." + std::to_string(::getpid()) + ".part"),
-        out_(part_path_, std::ios::binary),
-        limit_(limit) {}
-  PageFile(const PageFile&) = delete;
-  PageFile& operator=(const PageFile&) = delete;
-  ~PageFile() {
-    std::error_code ignored;
-    if (!is_done_) std::filesystem::remove(part_path_, ignored);
-  }
-
-  void put(std::string_view text) {
-    out_ << text;
-    size_ += text.size();
-  }
-  // Zlib data in base64, in an element with this id. False: the page would exceed its limit, and nothing was written.
-  bool put_data(const std::string& id, std::string_view bytes, bool is_needed = false) {
-    const std::string text = "<script type=\"text/plain\" id=\"run-" + id + "\">" + base::to_base64(packed(bytes)) + "</script>\n";
-    if (!is_needed && size_ + text.size() > limit_) return false;
-    put(text);
-    return true;
-  }
-  std::uint64_t size() const { return size_; }
-  Result<void> finish() {
-    out_.close();
-    if (!out_) return Error{path_ + ": cannot be written"};
-    std::error_code problem;
-    std::filesystem::rename(part_path_, path_, problem);
-    if (problem) return Error{path_ + ": " + problem.message()};
-    is_done_ = true;
-    return {};
-  }
-
- private:
-  static std::string packed(std::string_view bytes) {
-    const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
-        libdeflate_alloc_compressor(compression_level), libdeflate_free_compressor);
-    std::string result(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-    result.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), result.data(), result.size()));
-    return result;
-  }
-
-  const std::string path_, part_path_;
-  std::ofstream out_;
-  const std::uint64_t limit_;
-  std::uint64_t size_ = 0;
-  bool is_done_ = false;
-};
-
 class RunPage {
  public:
-  using Facts = std::shared_ptr<const studio::RecordingFacts>;
-  // `other`: of the second recording; null: there is none.
-  RunPage(const PageOptions& options, Facts facts, Facts other)
-      : options_(options), facts_(std::move(facts)), other_(std::move(other)), file_(options.file, options.limit) {
-    to_ = facts_->to;
-    if (other_) to_ = std::max(to_, facts_->zero + (other_->to - other_->zero));
-  }
+  explicit RunPage(const PageOptions& options) : options_(options), summary_(options.summary), file_(options.file, options.limit) {}
 
   Result<PageReport> write() {
     const auto viewer = file_text(options_.viewer);
     if (!viewer) return viewer.error();
     const auto at = viewer->find(marker);
     if (at == std::string::npos) return Error{options_.viewer + ": has no place for data"};
+    if (const auto opened = file_.open(); !opened) return opened.error();
     file_.put(std::string_view(*viewer).substr(0, at));
-    if (const auto done = put_scene(); !done) return done.error();
-    if (const auto done = put_parts(); !done) return done.error();
-    if (const auto done = put_parameters(); !done) return done.error();
-    put_index();
+    if (const auto done = follow(); !done) return done.error();
+    if (const auto done = put_all(); !done) return done.error();
     file_.put(std::string_view(*viewer).substr(at + marker.size()));
     if (const auto done = file_.finish(); !done) return done.error();
     return PageReport{file_.size(), left_out_};
   }
 
  private:
-  // A recording without a world has a page, too.
-  Result<void> put_scene() {
-    auto playhead = studio::Playhead::open(facts_);
-    if (!playhead) return playhead.error();
-    playhead_ = std::move(*playhead);
-    auto scene = studio::RecordedScene::make(facts_->file);
-    if (!scene) {
-      scene_problem_ = scene.error().message;
-      return {};
+  using Facts = std::shared_ptr<const studio::RecordingFacts>;
+
+  static Result<Facts> read(const std::string& file) {
+    auto facts = studio::RecordingFacts::read(file);
+    if (!facts) return facts.error();
+    return std::make_shared<const studio::RecordingFacts>(std::move(*facts));
+  }
+
+  // Writes what is settled while the recording grows.
+  Result<void> follow() {
+    auto wanted = first_growth;
+    while (is_growing()) {
+      std::error_code not_there;
+      const auto size = std::filesystem::file_size(options_.recording, not_there);
+      if (not_there || size < wanted) {
+        std::this_thread::sleep_for(look_interval);  // nobody tells of a file that grows
+        continue;
+      }
+      wanted = static_cast<std::uintmax_t>(static_cast<double>(size) * growth_share);
+      if (const auto done = put_settled(); !done) return done;
     }
-    scene_ = *scene;
-    playhead_->set_scene(scene_);
-    if (!file_.put_data("world", *scene_->glb.octets)) {
-      scene_problem_ = "the world is larger than the limit of the page";
-      left_out_.push_back(scene_problem_);
-      scene_ = nullptr;
-      return {};
+    return recorded_ == Recorded::given_up ? Error{options_.recording + ": the run ended without a result"} : Result<void>();
+  }
+
+  // Waits until there is time for more work.
+  bool is_growing() {
+    if (recorded_ == Recorded::growing) recorded_ = options_.follow ? options_.follow(summary_) : Recorded::whole;
+    return recorded_ == Recorded::growing;
+  }
+
+  Result<void> put_settled() {
+    auto facts = read(options_.recording);
+    if (!facts) return {};  // not enough of it yet
+    facts_ = std::move(*facts);
+    if (const auto opened = open_playhead(); !opened) return opened;
+    if (!is_scene_tried_) put_scene();
+    return scene_ ? put_parts(facts_->to - unsettled, false) : Result<void>();
+  }
+
+  Result<void> put_all() {
+    auto facts = read(options_.recording);
+    if (!facts) return facts.error();
+    facts_ = std::move(*facts);
+    if (!options_.other.empty()) {
+      auto other = read(options_.other);
+      if (!other) return other.error();
+      other_ = std::move(*other);
     }
-    (void)file_.put_data("collisions", *scene_->glb_with_collisions.octets);
+    to_ = other_ ? std::max(facts_->to, facts_->zero + (other_->to - other_->zero)) : facts_->to;
+    if (const auto opened = open_playhead(); !opened) return opened;
+    if (!scene_ && !has_written_scene_) put_scene();
+    if (const auto opened = open_other(); !opened) return opened;
+    if (const auto done = put_parts(to_, true); !done) return done;
+    if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
+    for (auto& line : samples_->left_out()) left_out_.push_back(std::move(line));
+    if (const auto done = put_parameters(); !done) return done;
+    put_index();
     return {};
   }
 
-  Result<void> put_parts() {
-    const auto samples = PageSamples::open(facts_, options_.camera_rate);
-    if (!samples) return samples.error();
-    if (const auto opened = open_other(); !opened) return opened;
-    auto length = shortest_part;
-    for (auto from = facts_->from; from <= to_;) {
-      const auto to = std::min(from + length, to_ + 1ns);
-      auto part = (*samples)->part_until(to);
-      if (!part) return part.error();
-      if (const auto posed = add_poses(*part, *facts_, *playhead_, from, to); !posed) return posed.error();
-      if (const auto added = add_other(*part, from, to); !added) return added.error();
-      const auto size = put_part(*part);
-      if (!size) {
-        left_out_.push_back("everything after " + std::to_string(facts_->seconds(from)) + " s: the page has reached its limit");
-        until_ = from;
-        break;
-      }
-      parts_.push_back(Json::array({facts_->seconds(from), facts_->seconds(to)}));
-      length = std::clamp(length * static_cast<std::int64_t>(part_size) / static_cast<std::int64_t>(*size),
-                          std::max(shortest_part, length / growth), std::min(longest_part, length * growth));
-      length -= length % pose_step;  // the poses of all parts are at the times of those of the first
-      from = to;
+  Result<void> open_playhead() {
+    auto playhead = studio::Playhead::open(facts_);
+    if (!playhead) return playhead.error();
+    playhead_ = std::move(*playhead);
+    if (scene_) playhead_->set_scene(scene_);
+    return {};
+  }
+
+  // A recording without a world has a page, too.
+  void put_scene() {
+    is_scene_tried_ = true;
+    scene_problem_.clear();
+    auto scene = studio::RecordedScene::make(facts_->file);
+    if (!scene) {
+      scene_problem_ = scene.error().message;
+      return;
     }
-    if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
-    for (auto& line : (*samples)->left_out()) left_out_.push_back(std::move(line));
+    has_written_scene_ = true;
+    if (!file_.put_data("world", *(*scene)->glb.octets)) {
+      scene_problem_ = "the world is larger than the limit of the page";
+      left_out_.push_back(scene_problem_);
+      return;
+    }
+    scene_ = *scene;
+    playhead_->set_scene(scene_);
+    (void)file_.put_data("collisions", *scene_->glb_with_collisions.octets);
+  }
+
+  // The parts up to this time; `is_end`: of the recording, else no part that is longer.
+  Result<void> put_parts(nanoseconds to, bool is_end) {
+    if (const auto opened = open_samples(); !opened) return opened;
+    while (at_ <= to && !until_) {
+      const auto end = at_ + length_;
+      if (!is_end && (end > to || !is_growing())) return {};
+      if (const auto done = put_part(at_, is_end ? std::min(end, to + 1ns) : end); !done) return done;
+    }
+    return {};
+  }
+
+  Result<void> open_samples() {
+    if (samples_) return samples_->go_on(facts_, at_);
+    auto samples = PageSamples::open(facts_, options_.camera_rate);
+    if (!samples) return samples.error();
+    samples_ = std::move(*samples);
+    at_ = facts_->from;
+    return {};
+  }
+
+  Result<void> put_part(nanoseconds from, nanoseconds to) {
+    auto part = samples_->part_until(to);
+    if (!part) return part.error();
+    if (const auto posed = add_poses(*part, *facts_, *playhead_, from, to); !posed) return posed;
+    if (const auto added = add_other(*part, from, to); !added) return added;
+    const auto size = put_text(*part);
+    if (!size) {
+      left_out_.push_back("everything after " + std::to_string(facts_->seconds(from)) + " s: the page has reached its limit");
+      until_ = from;
+      return {};
+    }
+    parts_.push_back(Json::array({facts_->seconds(from), facts_->seconds(to)}));
+    length_ = std::clamp(length_ * static_cast<std::int64_t>(part_size) / static_cast<std::int64_t>(*size),
+                         std::max(shortest_part, length_ / growth), std::min(longest_part, length_ * growth));
+    length_ -= length_ % pose_step;  // the poses of all parts are at the times of those of the first
+    at_ = to;
     return {};
   }
 
   // The size of its text; nothing: the page has reached its limit.
-  std::optional<std::size_t> put_part(Json& part) {
+  std::optional<std::size_t> put_text(Json& part) {
     const auto id = std::to_string(parts_.size());
     const auto text = studio::to_text(part);
     if (file_.put_data(id, text)) return text.size();
@@ -259,8 +278,15 @@ class RunPage {
 
   void put_index() {
     Json hello = studio::recorded_hello(*facts_);
+    Json world = studio::recorded_world(*facts_, scene_.get(), scene_ ? "" : scene_problem_);
+    // A temporary recording is gone when the page is opened.
+    const auto name = std::filesystem::path(options_.file).filename().string();
+    if (std::filesystem::path(options_.recording).filename().string().starts_with(name + ".")) {
+      hello["recording"]["file"] = name;
+      world["file"] = "";
+    }
     hello["recording"]["to"] = facts_->seconds(until_.value_or(to_));
-    Json summary = options_.summary;
+    Json& summary = summary_;
     mark_failures(summary, *facts_, scene_ ? scene_->models : Json::array());
     if (other_) summary["other"] = std::filesystem::path(other_->file).filename().string();
     summary["left_out"] = left_out_;
@@ -268,21 +294,25 @@ class RunPage {
     const Json index{{"hello", std::move(hello)},
                      {"system", studio::recorded_system(*facts_)},
                      {"signals", {{"op", "signals"}, {"signals", facts_->signals}}},
-                     {"world", studio::recorded_world(*facts_, scene_.get(), scene_ ? "" : scene_problem_)},
+                     {"world", std::move(world)},
                      {"parts", parts_}};
     (void)file_.put_data("index", studio::to_text(index), true);
   }
 
   const PageOptions& options_;
-  const Facts facts_, other_;
-  nanoseconds to_{0};  // the end of the longer recording, in times of the first
+  Json summary_;
+  Recorded recorded_ = Recorded::growing;
   PageFile file_;
-  std::unique_ptr<PageSamples> other_samples_;
+  Facts facts_, other_;
+  nanoseconds to_{0};  // the end of the longer recording, in times of the first
+  std::unique_ptr<PageSamples> samples_, other_samples_;
   std::unique_ptr<studio::Playhead> other_playhead_;
   std::unique_ptr<studio::Playhead> playhead_;
   std::shared_ptr<const studio::RecordedScene> scene_;
   std::string scene_problem_;
+  bool is_scene_tried_ = false, has_written_scene_ = false;
   Json parts_ = Json::array();
+  nanoseconds at_{0}, length_ = shortest_part;  // of the part that comes next
   std::optional<nanoseconds> until_;
   bool are_images_left_out_ = false;
   std::vector<std::string> left_out_;
@@ -291,16 +321,8 @@ class RunPage {
 }  // namespace
 
 Result<PageReport> write_run_page(const PageOptions& options) {
-  const auto read = [](const std::string& file) -> Result<RunPage::Facts> {
-    if (file.empty()) return RunPage::Facts();
-    auto facts = studio::RecordingFacts::read(file);
-    if (!facts) return facts.error();
-    return RunPage::Facts(std::make_shared<const studio::RecordingFacts>(std::move(*facts)));
-  };
-  const auto facts = read(options.recording), other = read(options.other);
-  if (!facts || !other) return (facts ? other : facts).error();
   try {
-    return RunPage(options, *facts, *other).write();
+    return RunPage(options).write();
   } catch (const Json::exception& e) {
     return Error{base::in_quotes(options.recording) +
                  ": a sample has not the members that its channel has in recordings of rtse: " + e.what()};

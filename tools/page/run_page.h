@@ -1,9 +1,11 @@
 // Writes a recording as one HTML file that shows the run in a browser without a server and without a network: the page of rtm-studio, with
 // the data of the run in it (docs/run-page.md). The file is complete or it is not there, and an older one of its name stays until then.
-// Memory: one part of the recording at a time, of a few MiB. One thread at a time.
+// A recording that is still being written is followed: what stands in it is written into the page meanwhile. Memory: one part of the
+// recording at a time, below 64 MiB with all else. One thread at a time.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,8 @@
 #include "studio/client_message.h"
 
 namespace page {
+
+enum class Recorded { growing, whole, given_up };
 
 struct PageOptions {
   std::string recording;                          // MCAP
@@ -20,6 +24,8 @@ struct PageOptions {
   double camera_rate = 1;                         // images of each camera per simulated second; 0: none
   std::uint64_t limit = 64ULL << 20U;             // of the page [bytes]
   studio::Json summary = studio::Json::object();  // of the run, see failure_marks.h; all optional
+  // Returns when there is time for work on a recording that grows, or when it is whole, with the summary of the run. Null: it is whole.
+  std::function<Recorded(studio::Json& summary)> follow;
 };
 
 struct PageReport {

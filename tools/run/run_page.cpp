@@ -1,10 +1,11 @@
 #include "run/run_page.h"
 
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 
-#include "base/child_process.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 
@@ -14,6 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::minutes longest_writing{30};
+constexpr std::chrono::seconds given_up_limit{5};
 constexpr std::string_view program_name = "rtse-page: ";
 
 Error about(const std::string& page, const std::string& what) { return {"page " + base::in_quotes(page) + ": " + what}; }
@@ -24,6 +26,27 @@ Json failure(const std::string& text, const std::optional<double>& time, const s
   if (time) json["time"] = *time;
   if (!subject.empty()) json["subject"] = subject;
   return json;
+}
+
+std::vector<std::string> words_of(const PageCall& call) {
+  return {own_program("rtse-page"),
+          call.recording,
+          "--output",
+          call.file,
+          "--page-camera-rate",
+          base::format_number(call.camera_rate),
+          "--page-limit",
+          base::format_number(call.limit_mib)};
+}
+
+std::string text_of(const Json& summary) { return summary.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+// What it printed, once it has ended.
+Result<std::string> answer_of(ChildProcess& child, const std::string& page) {
+  if (child.wait_or_interrupt(longest_writing) == Ending::ended && child.exit_code() == 0) return child.said();
+  const auto said = base::split_list(child.said(), '\n');
+  if (said.empty()) return about(page, "rtse-page " + child.how_it_ended());
+  return about(page, said.back().substr(said.back().starts_with(program_name) ? program_name.size() : 0));
 }
 
 }  // namespace
@@ -48,21 +71,45 @@ Json page_summary(const RunResult& result, const std::string& command) {
 
 Result<std::string> write_run_page(const PageCall& call, const Json& summary) {
   const std::string file = call.file + "." + std::to_string(::getpid()) + ".json";
-  const auto written = base::write_whole_file(file, summary.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const auto written = base::write_whole_file(file, text_of(summary));
   if (!written) return written.error();
-  std::vector<std::string> words{own_program("rtse-page"), call.recording, "--output", call.file, "--summary", file};
-  words.insert(words.end(), {"--page-camera-rate", base::format_number(call.camera_rate)});
-  words.insert(words.end(), {"--page-limit", base::format_number(call.limit_mib)});
+  auto words = words_of(call);
+  words.insert(words.end(), {"--summary", file});
   if (!call.other.empty()) words.insert(words.end(), {"--other", call.other});
   auto child = ChildProcess::start({.words = words, .environment = {}});
-  const bool is_done = child && child->wait_or_interrupt(longest_writing) == Ending::ended && child->exit_code() == 0;
+  auto answer = child ? answer_of(*child, call.file) : about(call.file, child.error().message);
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
+  return answer;
+}
+
+Result<PageBesideRun> PageBesideRun::start(const PageCall& call) {
+  std::array<int, 2> ends{-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return about(call.file, "no socket for rtse-page");
+  shm::FileHandle ours(ends[0]), theirs(ends[1]);
+  auto words = words_of(call);
+  words.emplace_back("--follow");
+  auto child = ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
   if (!child) return about(call.file, child.error().message);
-  if (is_done) return child->said();
-  const auto said = base::split_list(child->said(), '\n');
-  if (said.empty()) return about(call.file, "rtse-page " + child->how_it_ended());
-  return about(call.file, said.back().substr(said.back().starts_with(program_name) ? program_name.size() : 0));
+  return PageBesideRun(call, std::move(*child), std::move(ours));
+}
+
+PageBesideRun::~PageBesideRun() {
+  if (line_.get() < 0) return;
+  line_ = shm::FileHandle();
+  process_.wait(given_up_limit);
+}
+
+Result<std::string> PageBesideRun::finish(const Json& summary) {
+  const shm::FileHandle line = std::exchange(line_, shm::FileHandle());
+  const auto text = text_of(summary);
+  for (std::string_view rest = text; !rest.empty() && process_.is_running();) {
+    const auto sent = ::send(line.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
+    if (sent <= 0) break;
+    rest.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  ::shutdown(line.get(), SHUT_RDWR);
+  return answer_of(process_, call_.file);
 }
 
 }  // namespace editor

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "base/child_process.h"
 #include "run/run_system.h"
+#include "shm/file_handle.h"
 
 namespace editor {
 
@@ -20,5 +23,27 @@ struct PageCall {
 nlohmann::ordered_json page_summary(const RunResult& result, const std::string& command);
 // Runs rtse-page and returns what it printed. `summary`: as above, or other members that rtse-page reads. An error names the page.
 Result<std::string> write_run_page(const PageCall& call, const nlohmann::ordered_json& summary);
+
+// The same beside the run: writes what is recorded meanwhile, on processors that nobody else wants. One that is not finished leaves
+// nothing.
+class PageBesideRun {
+ public:
+  // An error leaves the page to write_run_page().
+  static Result<PageBesideRun> start(const PageCall& call);
+  PageBesideRun(PageBesideRun&&) noexcept = default;
+  PageBesideRun& operator=(PageBesideRun&&) noexcept = delete;
+  ~PageBesideRun();
+
+  // The recording is whole.
+  Result<std::string> finish(const nlohmann::ordered_json& summary);
+
+ private:
+  PageBesideRun(PageCall call, ChildProcess process, shm::FileHandle line)
+      : call_(std::move(call)), process_(std::move(process)), line_(std::move(line)) {}
+
+  PageCall call_;
+  ChildProcess process_;
+  shm::FileHandle line_;
+};
 
 }  // namespace editor

@@ -352,9 +352,11 @@ class Run final : public RunningSystem {
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    return recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
-                            std::filesystem::absolute(options_.record).string(), options_.record_last_s, hashes_.file(), notes()},
-                           wait());
+    auto started = recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
+                                    std::filesystem::absolute(options_.record).string(), options_.record_last_s, hashes_.file(), notes()},
+                                   wait());
+    if (started && hooks_.recording) hooks_.recording();
+    return started;
   }
 
   // What makes the run again, beside the profile and the world.

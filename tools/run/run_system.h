@@ -46,6 +46,7 @@ struct RunHooks {
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
   // Makes the steps instead of the run; nothing is judged then.
   std::function<Result<void>(RunningSystem&)> driver{};
+  std::function<void()> recording{};  // the file of the recording is there, and grows from now on
 };
 
 // What happened in a run at a time, for the time line of its page.

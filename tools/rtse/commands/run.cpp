@@ -274,10 +274,12 @@ void run(const Session& session, Console& console, const RunOptions& options, co
   } else {
     RunProgress progress(console);
     const auto made = recorded_for_page(options);
-    results.push_back(made.twice ? run_twice(session.orb(), made, progress) : run_system(session.orb(), made, progress));
+    WrittenPage page(options, made);
+    const RunHooks hooks{.recording = [&page] { page.begin(); }};
+    results.push_back(made.twice ? run_twice(session.orb(), made, progress) : run_system(session.orb(), made, progress, hooks));
     results.back().page = options.page;
     report(console, results.back(), false);
-    write_page(console, options, made, results.back());
+    page.end(console, results.back());
     if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
   if (options.junit.empty()) return;

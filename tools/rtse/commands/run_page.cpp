@@ -8,7 +8,6 @@
 
 #include "base/shell_word.h"
 #include "base/text.h"
-#include "run/run_page.h"
 
 namespace editor {
 namespace {
@@ -52,19 +51,24 @@ RunOptions recorded_for_page(const RunOptions& options) {
   return made;
 }
 
-void write_page(Console& console, const RunOptions& given, const RunOptions& made, const RunResult& result) {
-  if (given.page.empty()) return;
+void WrittenPage::begin() {
+  if (given_.page.empty() || made_.record_last_s > 0) return;
+  if (auto started = PageBesideRun::start(call())) beside_.emplace(std::move(*started));
+}
+
+void WrittenPage::end(Console& console, const RunResult& result) {
+  if (given_.page.empty()) return;
   std::error_code error;
-  if (!std::filesystem::exists(made.record, error)) {
+  if (!std::filesystem::exists(made_.record, error)) {
     // A run that did not start has said so, and with --last one that passes keeps nothing.
     if (!result.is_passed()) return;
-    if (given.record_last_s > 0)
-      return console.warn("page " + base::in_quotes(given.page) + ": not written, since --last keeps failed runs only");
-    return console.fail({"page " + base::in_quotes(given.page) + ": the run left no recording"});
+    if (given_.record_last_s > 0)
+      return console.warn("page " + base::in_quotes(given_.page) + ": not written, since --last keeps failed runs only");
+    return console.fail({"page " + base::in_quotes(given_.page) + ": the run left no recording"});
   }
-  const auto written = write_run_page({made.record, given.page, given.page_camera_rate, given.page_limit_mib},
-                                      page_summary(result, repeating_command(given)));
-  if (given.record.empty()) std::filesystem::remove(made.record, error);
+  const auto summary = page_summary(result, repeating_command(given_));
+  const auto written = beside_ ? beside_->finish(summary) : write_run_page(call(), summary);
+  if (given_.record.empty()) std::filesystem::remove(made_.record, error);
   if (!written) return console.fail(written.error());
   if (!console.json()) std::cout << "page " << *written;
 }

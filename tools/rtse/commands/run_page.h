@@ -1,8 +1,11 @@
 // `rtse run --page`: a run leaves one HTML page, which rtse-page writes from its recording. One thread at a time.
 #pragma once
 
+#include <optional>
+
 #include "rtse/console.h"
 #include "run/run_options.h"
+#include "run/run_page.h"
 #include "run/run_system.h"
 
 namespace editor {
@@ -10,9 +13,24 @@ namespace editor {
 // The run with a recording for its page: a temporary one beside the page, if the user wants none. Without --page the options as they are.
 RunOptions recorded_for_page(const RunOptions& options);
 
-// Writes the page of a run that recorded_for_page() made, and removes a temporary recording. Problems go to `console`. A run that left no
-// recording leaves an older page as it is.
-void write_page(Console& console, const RunOptions& given, const RunOptions& made, const RunResult& result);
+// The page of a run that recorded_for_page() made. It is written while the run goes on, unless all of the recording can be replaced until
+// its end.
+class WrittenPage {
+ public:
+  WrittenPage(const RunOptions& given, const RunOptions& made) : given_(given), made_(made) {}
+
+  // The recording has begun.
+  void begin();
+  // Ends the page and removes a temporary recording. Problems go to `console`. A run that left no recording leaves an older page as it is.
+  void end(Console& console, const RunResult& result);
+
+ private:
+  PageCall call() const { return {made_.record, given_.page, given_.page_camera_rate, given_.page_limit_mib}; }
+
+  const RunOptions& given_;
+  const RunOptions& made_;
+  std::optional<PageBesideRun> beside_;
+};
 
 // The command that repeats the run, as words of a shell.
 std::string repeating_command(const RunOptions& options);

@@ -303,7 +303,7 @@ export class Inspector {
         store.system.connections.some((c) => c.ports.some((p) => component_of_port(p) === path)) ? button(`Disconnect all ${one.instance}`, { label: 'Disconnect all', id: 'act-disconnect_all' }, () => disconnect_all(store.system.connections.filter((c) => c.ports.some((p) => component_of_port(p) === path)))) : null,
         button(`Pause the simulation when ${one.instance} enters the error state`, { label: 'Pause on error', id: 'pause-on-error', pressed: this.parts.pauses_on_error(path) }, () => this.parts.pause_on_error(path)),
         one.problem ? does('Forget', 'forget', true, true) : null) : null,
-      store.hello?.recording ? h('div', { class: 'acts' }, button('Send the recorded inputs to this component again and compare its outputs', { label: 'Replay', id: 'replay' }, () => replay(one.instance))) : null,
+      store.hello?.recording?.file.endsWith('.mcap') ? h('div', { class: 'acts' }, button('Send the recorded inputs to this component again and compare its outputs', { label: 'Replay', id: 'replay' }, () => replay(one.instance))) : null,
       h('h3', null, 'Contexts'),
       one.contexts.map((context) => this.context(path, context, one.contexts.length === 1)),
       one.ports.length > 0 ? h('h3', null, 'Ports') : null,

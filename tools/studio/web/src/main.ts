@@ -240,7 +240,7 @@ function show_head(): void {
   link_state.classList.toggle('bad', text !== '');
   status_bar.querySelector('.read-only')!.textContent = whole ? 'recording: read-only' : read_only() ? 'read-only: changes are rejected' : '';
   page.classList.toggle('read-only', read_only());
-  page.classList.toggle('of-run', has_run());
+  undo_button.hidden = has_run();
   const counts = system_panel.querySelector('.counts')!;
   const errors = store.system.components.filter((c) => c.state === 'Error').length;
   counts.textContent = store.system.components.length > 0 ? `${errors > 0 ? `${errors} in error, ` : ''}${store.system.components.length} component${store.system.components.length === 1 ? '' : 's'}` : '';

@@ -23,7 +23,7 @@ function from_base64(text: string): Uint8Array<ArrayBuffer> {
   return data;
 }
 
-async function unpacked(id: string): Promise<ArrayBuffer> {
+export async function unpacked(id: string): Promise<ArrayBuffer> {
   const element = block(id);
   if (!element) throw new Error(`this page has no block "${id}"`);
   const stream = new Blob([from_base64(element.textContent ?? '')]).stream().pipeThrough(new DecompressionStream('deflate'));

@@ -106,13 +106,8 @@ export class Wire {
   }
 
   private async open_run(): Promise<void> {
-    // Data of another shape than a page has may fail anywhere in the viewer.
-    const fail = (why: unknown) => {
-      this.damage ||= why instanceof Error ? why.message : String(why);
-      this.set('damaged');
-    };
-    window.addEventListener('error', (event) => fail(event.error ?? event.message));
-    window.addEventListener('unhandledrejection', (event) => fail(event.reason));
+    this.damage = '';
+    this.watch_for_damage();
     try {
       const run = await RunData.open((data) => this.take(data), (why) => {
         this.damage = why;
@@ -122,9 +117,23 @@ export class Wire {
       this.set('open');
       run.begin();
     } catch (error) {
-      fail(error);
+      this.fail(error);
     }
   }
+
+  private fail(why: unknown): void {
+    this.damage ||= (why instanceof Error ? why.message : String(why)) || 'unknown error';
+    this.set('damaged');
+  }
+
+  // Data of another shape than a page has may fail anywhere in the viewer.
+  private watch_for_damage(): void {
+    if (this.is_watched) return;
+    this.is_watched = true;
+    window.addEventListener('error', (event) => this.fail(event.error ?? event.message));
+    window.addEventListener('unhandledrejection', (event) => this.fail(event.reason));
+  }
+  private is_watched = false;
 
   private lost(): void {
     for (const { reject } of this.open.values()) reject(new Refused('the connection to rtm-studio was lost'));

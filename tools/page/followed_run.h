@@ -1,0 +1,33 @@
+// The run whose recording is followed. Its end comes by the standard input: the summary when the recording is whole, nothing if the run was
+// given up. Until then the work on the page gets only a small share of one processor, so that it does not slow the run down, or all of one
+// that is idle. One thread at a time.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "page/run_page.h"
+
+namespace page {
+
+class FollowedRun {
+ public:
+  FollowedRun();
+  // Returns when there is time for some more work, or at the end of the run.
+  Recorded wait(studio::Json& summary);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Recorded end(studio::Json& summary) const;
+  bool may_work();
+  bool is_processor_idle();
+
+  const Clock::time_point began_ = Clock::now();
+  Clock::time_point looked_ = began_;
+  std::uint64_t idle_ticks_ = 0;  // of all processors, at that time
+  std::string text_;
+};
+
+}  // namespace page

@@ -1,0 +1,79 @@
+#include "page/page_file.h"
+
+#include <fcntl.h>
+#include <libdeflate.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "base/base64.h"
+#include "base/text.h"
+
+namespace page {
+namespace {
+
+using base::Error;
+using base::Result;
+
+constexpr int compression_level = 9;
+constexpr unsigned mode_of_files = 0666;  // less the umask
+
+std::string packed(std::string_view bytes) {
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(libdeflate_alloc_compressor(compression_level),
+                                                                                            libdeflate_free_compressor);
+  std::string result(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
+  result.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), result.data(), result.size()));
+  return result;
+}
+
+}  // namespace
+
+PageFile::~PageFile() {
+  std::error_code ignored;
+  if (!part_path_.empty()) std::filesystem::remove(part_path_, ignored);
+}
+
+Result<void> PageFile::fail(int error) const { return Error{path_ + ": " + std::generic_category().message(error)}; }
+
+Result<void> PageFile::open() {
+  const auto folder = std::filesystem::path(path_).parent_path();
+  int file = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode_of_files);
+  if (file < 0) {
+    part_path_ = path_ + "." + std::to_string(::getpid()) + ".part";
+    file = ::open(part_path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, mode_of_files);
+  }
+  if (file < 0) return fail(errno);
+  out_.reset(::fdopen(file, "wb"));
+  return out_ ? Result<void>() : fail(errno);
+}
+
+void PageFile::put(std::string_view text) {
+  (void)std::fwrite(text.data(), 1, text.size(), out_.get());
+  size_ += text.size();
+}
+
+bool PageFile::put_data(const std::string& id, std::string_view bytes, bool is_needed) {
+  const std::string text = "<script type=\"text/plain\" id=\"run-" + id + "\">" + base::to_base64(packed(bytes)) + "</script>\n";
+  if (!is_needed && size_ + text.size() > limit_) return false;
+  put(text);
+  return true;
+}
+
+Result<void> PageFile::finish() {
+  if (std::fflush(out_.get()) != 0 || std::ferror(out_.get()) != 0) return fail(errno != 0 ? errno : EIO);
+  if (part_path_.empty()) {
+    part_path_ = path_ + "." + std::to_string(::getpid()) + ".part";
+    const auto there = "/proc/self/fd/" + std::to_string(::fileno(out_.get()));
+    if (::linkat(AT_FDCWD, there.c_str(), AT_FDCWD, part_path_.c_str(), AT_SYMLINK_FOLLOW) != 0) return fail(errno);
+  }
+  out_.reset();
+  std::error_code problem;
+  std::filesystem::rename(part_path_, path_, problem);
+  if (problem) return Error{path_ + ": " + problem.message()};
+  part_path_.clear();
+  return {};
+}
+
+}  // namespace page

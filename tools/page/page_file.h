@@ -1,0 +1,41 @@
+// A page while it is written: a file without a name where the file system can do that, else one beside it, which takes the page's name when
+// it is whole. A killed process leaves an older page as it is. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace page {
+
+class PageFile {
+ public:
+  // `limit` [bytes]
+  PageFile(std::string path, std::uint64_t limit) : path_(std::move(path)), limit_(limit) {}
+  PageFile(const PageFile&) = delete;
+  PageFile& operator=(const PageFile&) = delete;
+  ~PageFile();
+
+  base::Result<void> open();
+  // finish() tells of what could not be written.
+  void put(std::string_view text);
+  // Zlib data in base64, in an element with this id. False: the page would exceed its limit, and nothing was written.
+  bool put_data(const std::string& id, std::string_view bytes, bool is_needed = false);
+  std::uint64_t size() const { return size_; }
+  base::Result<void> finish();
+
+ private:
+  base::Result<void> fail(int error) const;
+
+  const std::string path_;
+  const std::uint64_t limit_;
+  std::string part_path_;  // empty: it has no name
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_{nullptr, std::fclose};
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace page
