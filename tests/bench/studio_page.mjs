@@ -1,6 +1,10 @@
 // How quick the page of rtm-studio is in the local chromium, before a stand-in of the server: node studio_page.mjs BIN_DIR SOURCE_DIR
 // Each number beside its limit. Without a GPU the browser draws in software on the same processors, and so does whatever else runs.
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { demo_system, hello, many_components, Mock, time, world_of } from '../studio/mock.mjs';
 import { has_world, launch, open, until } from '../studio/rig.mjs';
 
@@ -71,7 +75,66 @@ async function drawing(name, file) {
   mock.stop();
 }
 
+// The page of a run of 60 s while its time line is dragged to and fro, the world 1312 pixels wide. What the page itself does for a picture is
+// counted apart from the drawing, which takes other processors where there is a GPU.
+async function scrubbing() {
+  const work = mkdtempSync(join(tmpdir(), 'studio-')), html = join(work, 'run.html'), lib = join(bin, '../lib');
+  execFileSync(join(bin, 'rtse'), ['run', join(source, 'worlds/systems/obstacle_avoidance.xml'), '-w', join(source, 'worlds/obstacle_course.sdf'), '-d', '60', '--page', html, '--module-path', lib], { stdio: 'ignore' });
+  const page = await open(browser, undefined, { width: 1320, height: 900, offline: true });
+  const firsts = [];
+  for (let i = 0; i < 3; ++i) {
+    await page.goto('about:blank');
+    await page.goto(pathToFileURL(html).href);
+    await has_world(page);
+    firsts.push(await page.evaluate(() => performance.getEntriesByName('first-picture')[0].startTime));
+  }
+  say('first picture of the page of a run of 60 s, from a file', `${Math.min(...firsts).toFixed(0)} ms`, '1000 ms');
+  for (const key of ['1', '3', '4']) await page.keyboard.press(key); // the world and the time line are left
+  await page.waitForTimeout(1500);
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send('Performance.enable');
+  const spent = async () => Object.fromEntries((await devtools.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value]));
+  const drag = () => page.evaluate(async () => {
+    const { store, world } = window.studio, slider = document.querySelector('.scrub'), times = new Set(), began = performance.now(), frames = world.frames;
+    for (let passed = 0; passed < 4000; passed = performance.now() - began) {
+      slider.value = String(30 + 27 * Math.sin(passed / 500));
+      slider.dispatchEvent(new Event('input', { bubbles: true }));
+      await new Promise(requestAnimationFrame);
+      times.add(store.time.sim_time);
+    }
+    return { times: times.size, pictures: (world.frames - frames) / 4, width: world.element.clientWidth };
+  });
+  await drag();
+  const before = await spent(), { times, pictures, width } = await drag(), after = await spent();
+  const own = ['ScriptDuration', 'LayoutDuration', 'RecalcStyleDuration'].reduce((sum, name) => sum + after[name] - before[name], 0);
+  say(`the page's own work for a time that is shown while it is scrubbed`, `${((1000 * own) / times).toFixed(1)} ms`, '10 ms');
+  say(`pictures a second meanwhile, ${width} pixels wide`, pictures.toFixed(0), '30');
+  const [all, moving] = await page.evaluate(() => {
+    const { world } = window.studio, gl = world.canvas.getContext('webgl2');
+    const cost = (draw) => {
+      let best = Infinity;
+      for (let i = 0; i < 12; ++i) {
+        const began = performance.now();
+        draw();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        if (i > 1) best = Math.min(best, performance.now() - began);
+      }
+      return best;
+    };
+    const { camera } = world.eye;
+    world.set_share(1);
+    const all = cost(() => world.renderer.render(world.scene, camera));
+    world.backdrop.stands(camera);
+    world.backdrop.renew(world.renderer, camera);
+    return [all, cost(() => world.backdrop.draw(world.renderer, camera))];
+  });
+  say('a picture of it with every pixel: all; only what moves', `${all.toFixed(0)}; ${moving.toFixed(0)} ms`, '-');
+  await page.context().close();
+  rmSync(work, { recursive: true });
+}
+
 await first_picture();
+await scrubbing();
 await drawing('the demo world', glb);
 await panning();
 await browser.close();

@@ -15,12 +15,13 @@ using base::Result;
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-constexpr nanoseconds sample_interval = 20ms;  // of a signal, at least
-constexpr nanoseconds bulk_interval = 100ms;   // of one with many numbers
-constexpr std::size_t bulk = 64;               // numbers of a sample; arrays of as many are rounded
-constexpr std::size_t most_numbers = 20000;    // of a sample
-constexpr double resolution = 1000;            // of rounded numbers: 1/1000 of their unit
-constexpr std::size_t most_sonars = 64;        // of a ring
+constexpr nanoseconds sample_interval = 20ms;          // of a signal, at least
+constexpr nanoseconds bulk_interval = 100ms;           // of one with many numbers
+constexpr std::size_t bulk = 64;                       // numbers of a sample; arrays of as many are rounded
+constexpr std::size_t most_numbers = 20000;            // of a sample
+constexpr std::size_t most_bytes = 20 * most_numbers;  // of a sample; as text a number has up to 20
+constexpr double resolution = 1000;                    // of rounded numbers: 1/1000 of their unit
+constexpr std::size_t most_sonars = 64;                // of a ring
 
 // Rounds arrays of many numbers; returns how many numbers the value has.
 std::size_t rounded(Json& value, bool& is_rounded) {
@@ -121,6 +122,11 @@ Result<void> PageSamples::take(const mcap::Message& message, Json& part) {
     return {};
   }
   if (signal.is_image) return take_image(message, signal, part);
+  if (message.data.size() > most_bytes) {  // its values alone would take many times as much memory
+    signal.next = time + bulk_interval - 1ms;
+    ++too_large_[signal.topic];
+    return {};
+  }
   auto value = values_.of(message);
   if (!value) return value.error();
   if (signal.of_ring > 0) {

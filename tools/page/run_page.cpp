@@ -26,7 +26,7 @@ using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
 // Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
-constexpr std::size_t part_size = 3U << 18U;
+constexpr std::size_t part_size = 3U << 19U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
 constexpr nanoseconds pose_step(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
 constexpr int growth = 4;                           // of the length from one part to the next, at most

@@ -43,7 +43,9 @@ std::string text_of(const Json& summary) { return summary.dump(-1, ' ', false, J
 
 // What it printed, once it has ended.
 Result<std::string> answer_of(ChildProcess& child, const std::string& page) {
-  if (child.wait_or_interrupt(longest_writing) == Ending::ended && child.exit_code() == 0) return child.said();
+  const auto ending = child.wait_or_interrupt(longest_writing);
+  if (ending == Ending::interrupted) return about(page, "not written, since the run was interrupted");
+  if (ending == Ending::ended && child.exit_code() == 0) return child.said();
   const auto said = base::split_list(child.said(), '\n');
   if (said.empty()) return about(page, "rtse-page " + child.how_it_ended());
   return about(page, said.back().substr(said.back().starts_with(program_name) ? program_name.size() : 0));

@@ -99,7 +99,7 @@ export class Inspector {
 
   private nothing(): Content {
     return [h('p', { class: 'hint' }, 'Select a robot in the world, a component or line in the system, or anything in the tree.'),
-      h('dl', { class: 'keys' }, [['Space', 'run or pause'], ['.', 'one step'], ['/', 'search'], ['T  F  O', 'top, follow, all'], ['G', 'drive the robot'], ['?', 'all keys']].map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)]))];
+      h('dl', { class: 'keys' }, [['Space', 'run or pause'], ['.', 'one step'], ['/', 'search'], ['T  F  O', 'top, follow, all'], ...(read_only() ? [] : [['G', 'drive the robot']]), ['?', 'all keys']].map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)]))];
   }
 
   private title(text: string, kind: string, mark?: Element | null): HTMLElement {

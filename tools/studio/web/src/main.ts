@@ -269,8 +269,10 @@ const keys: [string, string][] = [
   ['Ctrl+Z', 'undo'], ['Escape', 'clear the selection'], ['Arrows', 'in the world: turn (with Shift: move); in the system: next component; in the tree: rows'], ['[  ]', 'in the system: next port'], ['+  –', 'zoom'], ['R', 'open a recording'], ['?', 'this list'],
 ];
 
+const keys_of_acts = new Set(['M, P', 'Insert', 'G', 'A, D, E', 'C', 'Delete', 'Ctrl+Z', 'R']); // a page with a run in it has none of them
+
 function show_keys(): void {
-  open_dialog('Keys', h('dl', { class: 'keys' }, keys.map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)])), 'Close');
+  open_dialog('Keys', h('dl', { class: 'keys' }, keys.filter(([key]) => !has_run() || !keys_of_acts.has(key)).map(([key, what]) => [h('dt', null, h('kbd', null, key)), h('dd', null, what)])), 'Close');
 }
 
 function delete_selected(): void {
