@@ -22,7 +22,11 @@ def test_the_stubs_have_every_name_of_the_module():
 
 @pytest.mark.skipif(not shutil.which("mypy"), reason="mypy is not installed")
 @pytest.mark.parametrize("change, problem", [("", ""), ("manager.createComponent(", "manager.creatComponent("),
-                                             ('OutPort("number", self._d_number)', 'OutPort("number")')])
+                                             ('OutPort("number", self._d_number)', 'OutPort("number")'),
+                                             ("RTC.TimedLong(RTC.Time(0, 0), 0)", "RTC.TimedLong(RTC.Time(0, 0))"),
+                                             ("RTC.TimedLong(RTC.Time(0, 0), 0)", "RTC.TimedLong(0, 0)"),
+                                             ("self._d_number.data +=", "self._d_number.dta +="),
+                                             ("return RTC.RTC_OK", "return RTC.RTC_OKAY")])
 def test_a_type_checker_accepts_the_component_of_the_page_and_finds_slips(tmp_path, change, problem):
     text = component_of_the_page()
     assert change in text
@@ -33,6 +37,36 @@ def test_a_type_checker_accepts_the_component_of_the_page_and_finds_slips(tmp_pa
                              cwd=tmp_path, capture_output=True, text=True, timeout=120,
                              env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]})
     assert ("Success" in checked.stdout) == (not change), checked.stdout + checked.stderr
+
+
+@pytest.mark.skipif(not shutil.which("mypy"), reason="mypy is not installed")
+def test_the_type_stubs_of_our_idl_files_are_consistent():
+    built = pathlib.Path(os.environ["PYTHONPATH"].split(os.pathsep)[0])
+    stubs = [str(built / name / "__init__.pyi") for name in ("RTC", "OpenRTM", "SDOPackage", "RTM", "Img", "JARA_ARM", "CosNaming", "CSP")]
+    checked = subprocess.run(["mypy", "--follow-imports=silent", "--ignore-missing-imports", *stubs], capture_output=True, text=True, timeout=120,
+                             env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]}, cwd="/")
+    assert "Success" in checked.stdout, checked.stdout + checked.stderr
+
+
+def test_omniidl_writes_the_types_of_a_users_idl_file_beside_those_of_another(tmp_path):
+    (tmp_path / "One.idl").write_text("module Mine { struct A { long x; sequence<octet> raw; double grid[2][3]; string name; }; };")
+    (tmp_path / "Two.idl").write_text("""#include "One.idl"
+module Mine {
+  typedef sequence<A> As;
+  enum Kind { here, there };
+  exception Lost { string why; };
+  interface Calls { Kind find(in As all, out long count) raises (Lost); };
+  union U switch (long) { case 1: A first; default: string s; };
+  const long most = 3;
+};""")
+    back_end = pathlib.Path(os.environ["PYTHONPATH"].split(os.pathsep)[0]) / "omniidl_backend"
+    for file in ("One.idl", "Two.idl", "Two.idl"):
+        subprocess.run(["omniidl", "-bpython", file], cwd=tmp_path, check=True, timeout=60, env={**os.environ, "PYTHONPATH": str(back_end)})
+    text = (tmp_path / "Mine" / "__init__.pyi").read_text()
+    assert text.count("class A:") == 1 and text.count("class Calls(") == 1
+    for line in ("    x: int", "    raw: bytes", "    grid: List[List[float]]", "    def find(self, all: List[Mine.A]) -> Tuple[Mine.Kind, int]: ...",
+                 "here: Mine.Kind", "most: int", "    why: str", "    s: str", "def __getattr__(name: str) -> Any: ..."):
+        assert line in text, line
 
 
 def test_the_component_of_the_page_runs(tmp_path):

@@ -20,7 +20,8 @@ usage_string = """\
   -Wbstubs=NAME   Put the stub files into this package
   -Wbextern=NAME  Do not import the stubs of this included file, or of NAME:PACKAGE from that package
   -Wbno_package   Write no packages for modules
-  -Wblater        Packages that have other stubs load these when a name is missing"""
+  -Wblater        Packages that have other stubs load these when a name is missing
+  -Wbclosed       Type checkers refuse names that no stub file has"""
 
 _BASIC = {
     idltype.tk_null: "null", idltype.tk_void: "void", idltype.tk_short: "short", idltype.tk_long: "long",
@@ -33,13 +34,13 @@ _BASIC = {
 
 class Options:
     def __init__(self, args):
-        self.stdout = self.inline = self.example = self.no_package = self.later = False
+        self.stdout = self.inline = self.example = self.no_package = self.later = self.closed = False
         self.global_module = "_GlobalIDL"
         self.modules = self.stubs = ""
         self.extern = {}
         for arg in args:
             name, _, value = arg.partition("=")
-            if arg in ("stdout", "inline", "example", "no_package", "later"):
+            if arg in ("stdout", "inline", "example", "no_package", "later", "closed"):
                 setattr(self, arg, True)
             elif name == "global" and value:
                 self.global_module = value
@@ -136,11 +137,169 @@ def _write_package(options, name, stub, is_poa):
             line = "from . import " + other.rpartition(".")[2]
             if line not in subs:
                 subs.append(line)
-    # Names are made when the module is imported: type checkers do not see them.
-    with open(file + "i", "w") as out:
-        out.write("from typing import Any\n\ndef __getattr__(name: str) -> Any: ...\n")
+    # Names are made when the module is imported: type checkers read them here.
+    _write_types(file + "i", options, stub, [] if is_poa else stub.types.lines.get(name, []), is_poa)
+    if options.closed:
+        open(os.path.join(folder, "py.typed"), "w").close()
     with open(file, "w") as out:
         out.write(_PACKAGE.format(name=options.modules + full, stubs="\n".join(stubs), subs="\n".join(subs)))
+
+
+_TYPES = """\
+# Types of an IDL module. omniidl rewrites this file: it adds those of the stub files that it has made.
+from typing import Any, List, Tuple
+from omniORB.CORBA import Object
+"""
+
+
+def _write_types(file, options, stub, lines, is_open):
+    sections = {}
+    if os.path.exists(file):
+        with open(file) as old:
+            name = None
+            for line in old:
+                if line.startswith("# ** "):
+                    name = line[5:].strip()
+                    sections[name] = []
+                elif name is not None:
+                    sections[name].append(line.rstrip("\n"))
+    sections.pop("others", None)
+    if lines:
+        sections[stub.module] = lines
+    if is_open or not options.closed:
+        sections["others"] = ["def __getattr__(name: str) -> Any: ..."]
+    with open(file, "w") as out:
+        out.write(_TYPES)
+        for name, text in sections.items():
+            out.write("\n".join(["# ** " + name] + text) + "\n")
+
+
+class Types:
+    """The lines of type stubs, by module. Fields have the types that reading gives."""
+
+    _NUMBERS = {idltype.tk_float: "float", idltype.tk_double: "float", idltype.tk_longdouble: "float", idltype.tk_boolean: "bool",
+                idltype.tk_char: "str", idltype.tk_wchar: "str", idltype.tk_string: "str", idltype.tk_wstring: "str",
+                idltype.tk_any: "Any", idltype.tk_TypeCode: "Any", idltype.tk_fixed: "Any", idltype.tk_void: "None",
+                idltype.tk_null: "None"}
+
+    def __init__(self, options):
+        self.options = options
+        self.lines = {}   # dotted module: lines
+
+    def module(self, declarations, scope):
+        for one in declarations:
+            if isinstance(one, idlast.Module):
+                self.module(one.definitions(), scope + [one.identifier()])
+            elif one.mainFile() or self.options.inline:
+                name = ".".join(identifier(part) for part in scope) or self.options.global_module
+                lines = self.lines.setdefault(name, [])
+                self.top = name.split(".")[0]
+                self.tops = set()
+                text = self.declared(one)
+                lines[:0] = ["import " + top for top in sorted(self.tops) if "import " + top not in lines]
+                lines.extend(text)
+
+    def name(self, scoped):
+        path = [identifier(part) for part in scoped]
+        if len(path) == 1:
+            path.insert(0, self.options.global_module)
+        self.tops.add(path[0])
+        return ".".join(path)
+
+    def of(self, type_, sizes=()):
+        if sizes:
+            return self.many(type_, lambda: self.of(type_, sizes[1:]) if sizes[1:] else self.of(type_), not sizes[1:])
+        kind = type_.kind()
+        if kind == idltype.tk_alias:
+            declarator = type_.decl()
+            return self.of(declarator.alias().aliasType(), tuple(declarator.sizes()))
+        if kind == idltype.tk_sequence:
+            return self.many(type_.seqType(), lambda: self.of(type_.seqType()), True)
+        if kind in self._NUMBERS:
+            return self._NUMBERS[kind]
+        if kind in _BASIC:
+            return "int"
+        if kind == idltype.tk_objref or type_.scopedName() == ["CORBA", "Object"]:
+            return "Any"
+        return self.name(type_.scopedName())
+
+    @staticmethod
+    def many(element, text, is_last):
+        kind = element.kind()
+        if is_last and kind in (idltype.tk_octet, idltype.tk_char):
+            return "bytes" if kind == idltype.tk_octet else "str"
+        return "List[%s]" % text()
+
+    def declared(self, node):
+        for kind, function in ((idlast.Struct, self.struct), (idlast.Exception, self.struct), (idlast.Enum, self.enum),
+                               (idlast.Union, self.union), (idlast.Interface, self.interface), (idlast.Const, self.const),
+                               (idlast.Typedef, self.typedef)):
+            if isinstance(node, kind):
+                return function(node)
+        return []
+
+    @staticmethod
+    def extras(name):
+        return ["_d_%s: Any" % name, "_tc_%s: Any" % name]
+
+    def fields(self, node):
+        found = []
+        for member in node.members():
+            for declarator in member.declarators():
+                found.append((identifier(declarator.identifier()), self.of(member.memberType(), tuple(declarator.sizes()))))
+        return found
+
+    def struct(self, node):
+        name, fields = identifier(node.identifier()), self.fields(node)
+        arguments = "".join(", %s: %s" % field for field in fields)
+        return (["class %s%s:" % (name, "(Exception)" if isinstance(node, idlast.Exception) else ""), "    _NP_RepositoryId: str"]
+                + ["    %s: %s" % field for field in fields] + ["    def __init__(self%s) -> None: ..." % arguments] + self.extras(name))
+
+    def enum(self, node):
+        name, full = identifier(node.identifier()), self.name(node.scopedName())
+        return (["class %s:" % name, "    _NP_RepositoryId: str", "    _items: Tuple[%s, ...]" % full, "    _n: str", "    _v: int",
+                 "    @staticmethod", "    def _item(number: int) -> %s: ..." % full]
+                + ["%s: %s" % (identifier(one.identifier()), full) for one in node.enumerators()] + self.extras(name))
+
+    def union(self, node):
+        name = identifier(node.identifier())
+        fields = [(identifier(case.declarator().identifier()), self.of(case.caseType(), tuple(case.declarator().sizes())))
+                  for case in node.cases()]
+        return (["class %s:" % name, "    _NP_RepositoryId: str", "    _d: Any", "    _v: Any"] + ["    %s: %s" % field for field in fields]
+                + ["    def __init__(self, *args: Any, **kw: Any) -> None: ..."] + self.extras(name))
+
+    def const(self, node):
+        return ["%s: %s" % (identifier(node.identifier()), self.of(node.constType()))]
+
+    def typedef(self, node):
+        return [line for one in node.declarators() for line in ["%s: Any" % identifier(one.identifier())] + self.extras(
+            identifier(one.identifier()))]
+
+    def interface(self, node):
+        name = identifier(node.identifier())
+        bases = [base.fullDecl() if hasattr(base, "fullDecl") else base for base in node.inherits()]
+        lines = ["class %s(%s):" % (name, ", ".join(self.name(base.scopedName()) for base in bases) or "Object"),
+                 "    _NP_RepositoryId: str"]
+        for one in node.declarations():
+            lines += ["    " + line for line in self.declared(one)]
+        for one in node.callables():
+            lines += ["    " + line for line in self.operation(one)]
+        return lines + ["_objref_%s: Any" % name] + self.extras(name)
+
+    def operation(self, one):
+        if isinstance(one, idlast.Attribute):
+            lines = []
+            for declarator in one.declarators():
+                lines.append("def _get_%s(self) -> %s: ..." % (declarator.identifier(), self.of(one.attrType())))
+                if not one.readonly():
+                    lines.append("def _set_%s(self, value: %s) -> None: ..." % (declarator.identifier(), self.of(one.attrType())))
+                lines.append("%s: %s" % (identifier(declarator.identifier()), self.of(one.attrType())))
+            return lines
+        results = [] if one.returnType().kind() == idltype.tk_void else [self.of(one.returnType())]
+        results += [self.of(p.paramType()) for p in one.parameters() if p.is_out()]
+        given = "".join(", %s: %s" % (identifier(p.identifier()), self.of(p.paramType())) for p in one.parameters() if p.is_in())
+        result = results[0] if len(results) == 1 else "Tuple[%s]" % ", ".join(results) if results else "None"
+        return ["def %s(self%s) -> %s: ..." % (identifier(one.identifier()), given, result)]
 
 
 # --- stubs
@@ -154,6 +313,8 @@ class Stub:
         self.lines = []
         self.modules_seen = []  # dotted
         self.recursive = []     # repository ids of what is being defined
+        self.types = Types(options)
+        self.types.module(tree.declarations(), [])
 
     def put(self, text=""):
         self.lines.append(text)
