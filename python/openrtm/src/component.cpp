@@ -8,6 +8,7 @@
 #include "ports.h"
 #include "properties.h"
 #include "references.h"
+#include "sdo.h"
 
 namespace py = pybind11;
 
@@ -32,6 +33,8 @@ std::string shown(PyObject* object) {
   return utf8 ? utf8 : Py_TYPE(object)->tp_name;
 }
 
+}  // namespace
+
 RTC::ReturnCode_t code_of_result(PyObject* result) {
   PyObject* const items = return_codes();
   if (items && PyTuple_Check(items)) {
@@ -48,7 +51,10 @@ RTC::ReturnCode_t code_of_result(PyObject* result) {
   throw Raised("it returned " + shown(result) + "; expected RTC.RTC_OK or another RTC.ReturnCode_t");
 }
 
-}  // namespace
+py::object code_item(RTC::ReturnCode_t code) {
+  PyObject* const items = return_codes();
+  return py::reinterpret_borrow<py::object>(PyTuple_GetItem(items, static_cast<Py_ssize_t>(code)));
+}
 
 void Component::bind_self(PyObject* self) {
   self_ = self;
@@ -158,11 +164,6 @@ void heard(const Function& function, Call arguments) {
   }
   const Released released;
   RTC::Logger("listener").write(RTC::Logger::RTL_ERROR, "a listener raised: " + problem);
-}
-
-py::object code_item(RTC::ReturnCode_t code) {
-  PyObject* const items = return_codes();
-  return py::reinterpret_borrow<py::object>(PyTuple_GetItem(items, static_cast<Py_ssize_t>(code)));
 }
 
 template <class Base, class... Args>
@@ -327,7 +328,27 @@ void add_ports_of_components(py::class_<Component, Holder>& cls) {
           py::arg("completion") = false);
 }
 
-void add_contexts(py::class_<Component, Holder>& cls) {
+// What state machines of Python tell their listeners: before (after) an entry, an exit, ...
+void tell_fsm(Component& self, bool is_after, int action, const std::string& state, const py::object& code) {
+  const RTC::ReturnCode_t result = is_after ? code_of_result(code.ptr()) : RTC::RTC_OK;
+  const char* const name = state.c_str();
+  unlocked([&] {
+    switch (action) {
+      case 0:
+        return is_after ? self.postOnFsmInit(name, result) : self.preOnFsmInit(name);
+      case 1:
+        return is_after ? self.postOnFsmEntry(name, result) : self.preOnFsmEntry(name);
+      case 2:
+        return is_after ? self.postOnFsmDo(name, result) : self.preOnFsmDo(name);
+      case 3:
+        return is_after ? self.postOnFsmExit(name, result) : self.preOnFsmExit(name);
+      default:
+        return is_after ? self.postOnFsmStateChange(name, result) : self.preOnFsmStateChange(name);
+    }
+  });
+}
+
+void add_contexts_of_components(py::class_<Component, Holder>& cls) {
   const auto coded = [](auto function) {
     return [function](Component& self, long id) {
       return code_item(unlocked([&] { return (self.*function)(static_cast<RTC::UniqueId>(id)); }));
@@ -366,11 +387,17 @@ void add_components(py::module_& module) {
      }))
       .def("_bind_self", [](Component& self, py::object object) { self.bind_self(object.ptr()); })
       .def("_bind_parameter", &Component::bind_parameter)
-      .def("_add_listener", &Component::add_listener);
+      .def("_add_listener", &Component::add_listener)
+      .def("_tell_fsm", &tell_fsm)
+      .def("_notify_fsm", [](Component& self, bool is_structure, const std::string& hint) {
+        using Status = RTC::RTObject_impl::Status;
+        unlocked([&] { self.notifyObservers(is_structure ? Status::fsm_structure : Status::fsm_profile, hint); });
+      });
   add_names(cls);
   add_ports_of_components(cls);
-  add_contexts(cls);
+  add_contexts_of_components(cls);
   add_configuration(cls);
+  add_sdo_of_components(cls);
 }
 
 }  // namespace python

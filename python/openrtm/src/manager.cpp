@@ -218,6 +218,13 @@ void add_modules_and_components(py::module_& module) {
     auto task = task_of(function);
     unlocked([&] { the_manager().invoke(std::move(task)); });
   });
+  module.def("manager_string_to_components", [](const std::string& name) {
+    const RTC::RTCList found = unlocked([&] { return the_manager().getNaming()->string_to_component(name); });
+    py::list list;
+    for (CORBA::ULong i = 0; i < found.length(); ++i)
+      list.append(py::reinterpret_steal<py::object>(reference_out(found[i], "IDL:omg.org/RTC/RTObject:1.0")));
+    return list;
+  });
   module.def("manager_bind_object", [](const std::string& name, const py::object& stub) {
     const auto object = reference_in(stub.ptr());
     if (!object) throw py::type_error("no reference");

@@ -3,10 +3,13 @@
 
 #include "channel.h"
 #include "component.h"
+#include "contexts.h"
 #include "manager.h"
+#include "manager_listeners.h"
 #include "orb.h"
 #include "ports.h"
 #include "properties.h"
+#include "sdo.h"
 #include "services.h"
 
 PYBIND11_MODULE(_openrtm_core, module) {
@@ -17,4 +20,7 @@ PYBIND11_MODULE(_openrtm_core, module) {
   python::add_components(module);
   python::add_orb(module);
   python::add_manager(module);
+  python::add_manager_listeners(module);
+  python::add_contexts(module);
+  python::add_sdo(module);
 }

@@ -194,23 +194,23 @@ const Type& checked(const py::object& descriptor) {
 
 py::bytes cdr_marshal(const py::object& descriptor, const py::object& value, const py::object& endian) {
   const Type& type = checked(descriptor);
-  Octets octets;
-  const bool is_little = endian.is_none() || py::cast<bool>(endian);
   try {
-    encode(type, value.ptr(), is_little, octets);
+    if (!endian.is_none()) {
+      Octets octets;
+      encode(type, value.ptr(), py::cast<bool>(endian), octets);
+      return py::bytes(reinterpret_cast<const char*>(octets.data()), octets.size());
+    }
+    // An encapsulation: the octet of the byte order comes first, and members are aligned from it.
+    cdrEncapsulationStream stream(CORBA::ULong(0), true);
+    encode(type, value.ptr(), stream);
+    return py::bytes(static_cast<const char*>(stream.bufPtr()), stream.bufSize());
   } catch (const BadValue& bad) {
     bad_parameter(bad.text());
   } catch (const PythonFailed&) {
-    throw py::error_already_set();
   } catch (const CORBA::SystemException& problem) {
     set_python_exception(problem);
-    throw py::error_already_set();
   }
-  if (!endian.is_none()) return py::bytes(reinterpret_cast<const char*>(octets.data()), octets.size());
-  // An encapsulation: the octet of the byte order comes first, and members are aligned from it.
-  cdrEncapsulationStream stream(CORBA::ULong(0), true);
-  encode(type, value.ptr(), stream);
-  return py::bytes(static_cast<const char*>(stream.bufPtr()), stream.bufSize());
+  throw py::error_already_set();
 }
 
 py::object cdr_unmarshal(const py::object& descriptor, const std::string& octets, const py::object& endian) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "listeners.h"
+#include "properties.h"
 #include "references.h"
 #include "serializers.h"
 
@@ -228,6 +229,12 @@ void add_ports(py::module_& module) {
              unlocked([&] { object = CORBA::Object::_duplicate(port.getPortRef()); });
              return py::reinterpret_steal<py::object>(reference_out(object, "IDL:omg.org/RTC/PortService:1.0"));
            })
+      .def(
+          "properties",
+          [](PortBase& port) {
+            return Properties{nullptr, &port.properties()};
+          },
+          py::keep_alive<0, 1>())
       .def("_deactivate", [](PortBase& port) { unlocked([&] { port.deactivate(); }); })
       .def("_on_connection", &set_connection_callback)
       .def("disconnect",

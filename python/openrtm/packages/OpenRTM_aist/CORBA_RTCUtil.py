@@ -160,6 +160,29 @@ def get_connector_ids(port):
 get_connector_ids_by_portref = get_connector_ids
 
 
+def get_connector_names_by_portname(rtc, port_name):
+    return get_connector_names(get_port_by_name(rtc, port_name))
+
+
+def get_connector_ids_by_portname(rtc, port_name):
+    return get_connector_ids(get_port_by_name(rtc, port_name))
+
+
+def find_port(rtc, name):
+    """As get_port_by_name."""
+    return get_port_by_name(rtc, name)
+
+
+def get_port_by_url(port_url):
+    """INSTANCE.PORT of this process's manager, or rtcname://..., rtcloc://... with .PORT at its end; None if there is none."""
+    path, slash, last = port_url.rpartition("/")
+    name, dot, port = last.partition(".") if slash else last.rpartition(".")
+    if slash and port.startswith("rtc."):
+        name, port = name + ".rtc", port[len("rtc."):]
+    found = OpenRTM_aist.Manager.instance().getNaming().string_to_component(path + slash + name) if dot else []
+    return get_port_by_name(found[0], port) if found else None
+
+
 def create_connector(name, prop_arg, port0, port1):
     properties = OpenRTM_aist.Properties(prop=prop_arg)
     for key, value in (("dataport.dataflow_type", "push"), ("dataport.interface_type", "corba_cdr"),
@@ -203,12 +226,31 @@ def disconnect_by_connector_name(port, name):
     return RTC.BAD_PARAMETER
 
 
+disconnect_by_portref_connector_name = disconnect_by_connector_name
+
+
+def disconnect_by_portname_connector_name(port_name, name):
+    port = get_port_by_url(port_name)
+    return RTC.BAD_PARAMETER if port is None else disconnect_by_connector_name(port, name)
+
+
 def disconnect_by_connector_id(port, id_):
     return port.disconnect(id_)
 
 
+disconnect_by_portref_connector_id = disconnect_by_connector_id
+
+
+def disconnect_by_portname_connector_id(port_name, id_):
+    port = get_port_by_url(port_name)
+    return RTC.BAD_PARAMETER if port is None else port.disconnect(id_)
+
+
 def disconnect_all_by_ref(port):
     return port.disconnect_all()
+
+
+disconnect_all_by_portref = disconnect_all_by_ref
 
 
 def disconnect_all_by_name(rtc, name):
@@ -228,6 +270,9 @@ def get_parameter_by_key(rtc, confset_name, value_name):
 
 def get_active_configuration_name(rtc):
     return rtc.get_configuration().get_active_configuration_set().id
+
+
+get_current_configuration_name = get_active_configuration_name
 
 
 def get_active_configuration(rtc):

@@ -36,6 +36,9 @@ class EventInPort(_core.EventPort, _DataPort):
 
     def _bind(self, name, handler, type_):
         descriptor = None if type_ is None else _tc.descriptor(type_)
+        service = getattr(self._fsm, "_service", None)
+        if service is not None:
+            service.add_event(name, "" if type_ is None else type_.id())
 
         def received(info, octets, is_little):
             if event_name(info.properties, info.name) == name:

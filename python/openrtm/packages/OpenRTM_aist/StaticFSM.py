@@ -6,7 +6,11 @@ argument, which are dispatched to the current state.
 import collections
 import threading
 
+import RTC
+
 __all__ = ["FSM_TOPSTATE", "FSM_SUBSTATE", "deephistory", "history", "Link", "State", "Event", "Machine"]
+
+_INIT, _ENTRY, _DO, _EXIT, _STATE_CHANGE = range(5)
 
 
 class State:
@@ -93,6 +97,7 @@ class Machine:
 
     def __init__(self, top, component=None):
         self.component = component
+        self._tells = hasattr(component, "_tell_fsm")
         self._top = top
         self._states, self._data, self._last = {}, {}, {}
         self._waiting = collections.deque()
@@ -101,6 +106,9 @@ class Machine:
         self._lock = threading.Lock()
         self._next = None
         self._current = top
+        if self._tells:
+            from .fsm_service import offer
+            offer(self, top)
         self._enter_from(None, top)
         self._settle()
         self._is_handling = False
@@ -148,7 +156,7 @@ class Machine:
         if self._current is None:
             return
         for cls in reversed(self._path(self._current)):
-            self._state(cls).onExit()
+            self._told(_EXIT, cls, self._state(cls).onExit)
         self._current = None
 
     def current(self):
@@ -171,7 +179,7 @@ class Machine:
             return
         for cls in reversed(self._path(self._current)):
             if hasattr(cls, event.name):
-                getattr(self._state(cls), event.name)(*event.args)
+                self._told(_DO, cls, lambda: getattr(self._state(cls), event.name)(*event.args))
                 self._settle()
                 return
 
@@ -190,10 +198,19 @@ class Machine:
 
     def _enter_from(self, old, new):
         for cls in self._path(new)[len(self._common(old, new)):]:
-            self._state(cls).onEntry()
+            self._told(_ENTRY, cls, self._state(cls).onEntry)
         self._current = new
         self._next = None
-        self._state(new).onInit()
+        self._told(_INIT, new, self._state(new).onInit)
+
+    # Calls it between the listeners of before and after.
+    def _told(self, action, cls, call, after=None):
+        if not self._tells:
+            return call()
+        self.component._tell_fsm(False, action, cls.__name__, RTC.RTC_OK)
+        code = call()
+        is_code = getattr(code, "_parent_id", None) == RTC.ReturnCode_t._NP_RepositoryId
+        self.component._tell_fsm(True, action, (after() if after else cls).__name__, code if is_code else RTC.RTC_OK)
 
     def _common(self, old, new):
         common = []
@@ -206,9 +223,12 @@ class Machine:
     # Changes until no state asks for a further change.
     def _settle(self):
         while self._next is not None:
-            old, new = self._current, self._next
-            for cls in reversed(self._path(old)[len(self._common(old, new)):]):
-                self._state(cls).onExit()
-                if getattr(cls, "_history", None):
-                    self._last[cls] = old
-            self._enter_from(old, new)
+            self._told(_STATE_CHANGE, self._current, self._change, lambda: self._current)
+
+    def _change(self):
+        old, new = self._current, self._next
+        for cls in reversed(self._path(old)[len(self._common(old, new)):]):
+            self._told(_EXIT, cls, self._state(cls).onExit)
+            if getattr(cls, "_history", None):
+                self._last[cls] = old
+        self._enter_from(old, new)

@@ -4,7 +4,7 @@ import re
 
 __all__ = ["escape", "unescape", "eraseBlank", "eraseHeadBlank", "eraseTailBlank", "eraseBothEndsBlank", "normalize", "replaceString",
            "split", "toBool", "includes", "isAbsolutePath", "isURL", "otos", "stringTo", "stringToStrVec", "unique_sv", "flatten",
-           "toArgv", "urlparam2map", "replaceEnv", "toUpper", "toLower", "_stringToList"]
+           "toArgv", "urlparam2map", "replaceEnv", "toUpper", "toLower", "_stringToList", "isEscaped"]
 
 _ESCAPES = {"\t": "\\t", "\n": "\\n", "\f": "\\f", "\r": "\\r", '"': '\\"', "'": "\\'", "\\": "\\\\"}
 _UNESCAPES = {"t": "\t", "n": "\n", "f": "\f", "r": "\r"}
@@ -18,28 +18,53 @@ def unescape(text):
     return re.sub(r"\\(.)", lambda found: _UNESCAPES.get(found.group(1), found.group(1)), text, flags=re.S)
 
 
+def _in_place(function):
+    """Sources for 1.x give a list of one text, which is changed in it."""
+
+    def changed(text, *args):
+        if not isinstance(text, list):
+            return function(text, *args)
+        text[0] = function(text[0], *args)
+        return text[0]
+
+    changed.__name__ = function.__name__
+    return changed
+
+
+@_in_place
 def eraseBlank(text):
     return "".join(letter for letter in text if letter not in " \t")
 
 
+@_in_place
 def eraseHeadBlank(text):
     return text.lstrip(" \t")
 
 
+@_in_place
 def eraseTailBlank(text):
     return text.rstrip(" \t")
 
 
+@_in_place
 def eraseBothEndsBlank(text):
     return text.strip(" \t")
 
 
+@_in_place
 def normalize(text):
     return text.strip(" \t").lower()
 
 
+@_in_place
 def replaceString(text, old, new):
     return text.replace(old, new)
+
+
+def isEscaped(text, at):
+    """Whether an odd number of backslashes stands before text[at]."""
+    before = text[:at]
+    return (len(before) - len(before.rstrip("\\"))) % 2 == 1
 
 
 def split(text, delimiter):
@@ -53,7 +78,7 @@ def toBool(text, yes, no, default_value=None):
         return True
     if upper.find(no.upper()) >= 0:
         return False
-    return yes if default_value is None else default_value
+    return True if default_value is None else default_value
 
 
 def includes(list_, value, ignore_case=True):
@@ -154,3 +179,4 @@ def urlparam2map(text):
 
 def replaceEnv(text):
     return re.sub(r"\$\{(\w+)\}", lambda found: os.environ.get(found.group(1), ""), text)
+

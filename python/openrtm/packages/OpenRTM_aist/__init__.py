@@ -8,7 +8,7 @@ import RTC, RTC__POA, OpenRTM, OpenRTM__POA, SDOPackage, RTM  # noqa: E401,F401:
 from _openrtm_core import Properties  # noqa: F401
 
 from . import version  # noqa: F401
-from .version import openrtm_name, openrtm_version  # noqa: F401
+from .version import corba_name, openrtm_name, openrtm_version  # noqa: F401
 from .listeners import *  # noqa: F401,F403
 from .logger import *  # noqa: F401,F403
 from . import StringUtil, NVUtil, CORBA_SeqUtil  # noqa: F401
@@ -32,6 +32,14 @@ for _name in ("CSPInPort", "CSPOutPort", "CSPManager"):
     _LATER[_name] = ("csp", _name)
 for _name in ("ByteDataStreamBase", "CORBA_CdrMemoryStream", "SerializerFactories", "SerializerFactory"):
     _LATER[_name] = ("serializers", _name)
+for _name in ("SdoServiceProviderBase", "SdoServiceConsumerBase", "SdoServiceProviderFactory", "SdoServiceConsumerFactory"):
+    _LATER[_name] = ("sdo", _name)
+for _name in ("ExecutionContextBase", "PeriodicExecutionContext", "ExtTrigExecutionContext", "ExecutionContextFactory", "ECDelete"):
+    _LATER[_name] = ("contexts", _name)
+for _name in ("activate", "already_connected", "connect", "connect_by_name", "connect_multi", "create_connector", "deactivate", "disconnect",
+              "get_actual_ec", "get_component_profile", "get_ec_id", "get_port_by_name", "get_port_names", "get_state", "is_existing",
+              "is_in_active", "is_in_error", "is_in_inactive", "reset"):
+    _LATER[_name] = ("CORBA_RTCUtil", _name)
 del _name
 
 

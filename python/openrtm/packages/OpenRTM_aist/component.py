@@ -71,6 +71,24 @@ class ConfigAdmin:
     def bindParameter(self, name, var, default, trans=None):
         return self._component.bindParameter(name, var, default, trans)
 
+    def addConfigurationParamListener(self, type_, listener, autoclean=True):
+        return self._component.addConfigurationParamListener(type_, listener)
+
+    def removeConfigurationParamListener(self, type_, listener):
+        self._component.removeConfigurationParamListener(type_, listener)
+
+    def addConfigurationSetListener(self, type_, listener, autoclean=True):
+        return self._component.addConfigurationSetListener(type_, listener)
+
+    def removeConfigurationSetListener(self, type_, listener):
+        self._component.removeConfigurationSetListener(type_, listener)
+
+    def addConfigurationSetNameListener(self, type_, listener, autoclean=True):
+        return self._component.addConfigurationSetNameListener(type_, listener)
+
+    def removeConfigurationSetNameListener(self, type_, listener):
+        self._component.removeConfigurationSetNameListener(type_, listener)
+
     def setOnUpdate(self, function):
         self._component._add_listener(8, 0, function)
 
@@ -234,6 +252,14 @@ class DataFlowComponentBase(_core.Component):
 
     _this = getObjRef
 
+    @property
+    def _SdoConfigImpl(self):
+        return self.get_configuration()
+
+    @property
+    def _profile(self):
+        return self.get_component_profile()
+
     def getManager(self):
         return self._manager
 
@@ -264,6 +290,29 @@ class DataFlowComponentBase(_core.Component):
         self._add_listener(group, type_, registered)
         self._registered.append(registered)
         return registered
+
+    # Of state machines of Python, whose service is written in Python, too.
+    def addFsmProfileListener(self, type_, listener, autoclean=True):
+        """BIND_FSM_EVENT: listener(RTC.FsmEventProfile) when a port binds an event."""
+        return self._listen_in_python("profile", type_, listener)
+
+    def addFsmStructureListener(self, type_, listener, autoclean=True):
+        """listener(RTC.FsmStructure) when a tool sets or asks for the structure of the state machine."""
+        return self._listen_in_python("structure", type_, listener)
+
+    def _listen_in_python(self, kind, type_, listener):
+        registered = _Registered(listener)
+        registered.event = (kind, type_)
+        self._registered.append(registered)
+        return registered
+
+    def _tell_listeners(self, kind, type_, value):
+        for one in list(self._registered):
+            if getattr(one, "event", None) == (kind, type_):
+                try:
+                    one(value)
+                except Exception:
+                    self._rtcout.RTC_ERROR("a listener raised: %s", self._rtcout.print_exception())
 
     def _forget(self, type_, listener):
         for one in self._registered:
@@ -313,6 +362,8 @@ def _adder(group):
 
 for _number, _name in enumerate(_GROUPS):
     setattr(DataFlowComponentBase, "add" + _name, _adder(_number))
+    setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._forget)
+for _name in ("FsmProfileListener", "FsmStructureListener"):
     setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._forget)
 del _name, _number
 

@@ -10,7 +10,8 @@ __all__ = ["ConnectorInfo", "ConnectorListenerStatus", "ConnectorDataListener", 
            "PreFsmActionListenerType", "PostFsmActionListenerType", "PreComponentActionListener", "PostComponentActionListener",
            "PortActionListener", "ExecutionContextActionListener", "PortConnectListener", "PortConnectRetListener",
            "ConfigurationParamListener", "ConfigurationSetListener", "ConfigurationSetNameListener", "PreFsmActionListener",
-           "PostFsmActionListener", "ConnectorListenerHolder", "ConnectorDataListenerHolder", "PortType"]
+           "PostFsmActionListener", "FsmProfileListenerType", "FsmStructureListenerType", "FsmProfileListener", "FsmStructureListener", "ConnectorListenerHolder",
+           "ConnectorDataListenerHolder", "PortType"]
 
 
 class ConnectorInfo:
@@ -91,6 +92,10 @@ ConfigurationSetNameListenerType = _numbered(
 _FSM = "INIT ENTRY DO EXIT STATE_CHANGE"
 PreFsmActionListenerType = _numbered("PreFsmActionListenerType", _FSM, "PRE_ON_")
 PostFsmActionListenerType = _numbered("PostFsmActionListenerType", _FSM, "POST_ON_")
+FsmProfileListenerType = _numbered(
+    "FsmProfileListenerType", "SET_FSM_PROFILE GET_FSM_PROFILE ADD_FSM_STATE REMOVE_FSM_STATE ADD_FSM_TRANSITION REMOVE_FSM_TRANSITION "
+    "BIND_FSM_EVENT UNBIND_FSM_EVENT")
+FsmStructureListenerType = _numbered("FsmStructureListenerType", "SET_FSM_STRUCTURE GET_FSM_STRUCTURE")
 
 
 def _base(name):
@@ -108,6 +113,8 @@ ConfigurationSetListener = _base("ConfigurationSetListener")
 ConfigurationSetNameListener = _base("ConfigurationSetNameListener")
 PreFsmActionListener = _base("PreFsmActionListener")
 PostFsmActionListener = _base("PostFsmActionListener")
+FsmProfileListener = _base("FsmProfileListener")
+FsmStructureListener = _base("FsmStructureListener")
 
 
 class _Registered:

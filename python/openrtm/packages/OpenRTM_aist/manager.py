@@ -11,7 +11,8 @@ import RTC
 from . import host
 from .logger import Logger
 
-__all__ = ["Manager", "Delete", "Factory", "FactoryPython"]
+__all__ = ["Manager", "Delete", "Factory", "FactoryPython", "ManagerActionListener", "ModuleActionListener", "RtcLifecycleActionListener",
+           "NamingActionListener"]
 
 
 def Delete(component):
@@ -25,9 +26,88 @@ class Factory:
 FactoryPython = Factory
 
 
+class ManagerActionListener:
+    """A listener has those of these methods that it wants."""
+
+    def preShutdown(self):
+        pass
+
+    def postShutdown(self):
+        pass
+
+    def preReinit(self):
+        pass
+
+    def postReinit(self):
+        pass
+
+
+class ModuleActionListener:
+    def preLoad(self, modname, funcname):
+        pass
+
+    def postLoad(self, modname, funcname):
+        pass
+
+    def preUnload(self, modname):
+        pass
+
+    def postUnload(self, modname):
+        pass
+
+
+class RtcLifecycleActionListener:
+    def preCreate(self, args):
+        pass
+
+    def postCreate(self, rtobj):
+        pass
+
+    def preConfigure(self, prop):
+        pass
+
+    def postConfigure(self, prop):
+        pass
+
+    def preInitialize(self):
+        pass
+
+    def postInitialize(self):
+        pass
+
+
+class NamingActionListener:
+    def preBind(self, rtobj, name):
+        pass
+
+    def postBind(self, rtobj, name):
+        pass
+
+    def preUnbind(self, rtobj, name):
+        pass
+
+    def postUnbind(self, rtobj, name):
+        pass
+
+
+class _Teller:
+    """Calls the method of the listener that has the event's name, until the listener is removed."""
+
+    def __init__(self, listener):
+        self.listener = listener
+
+    def __call__(self, event, *args):
+        method = getattr(self.listener, event, None)
+        if method is not None:
+            method(*args)
+
+
 class Manager:
     """Loads modules, makes, connects and deletes components. One per process."""
     _instance = None
+
+    def __init__(self):
+        self._tellers = []
 
     @staticmethod
     def init(*args):
@@ -120,10 +200,46 @@ class Manager:
     def connectPorts(self, text):
         _core.manager_connect(text)
 
+    # --- listeners
+
+    def addManagerActionListener(self, listener, autoclean=True):
+        self._listen(_core.manager_add_manager_listener, listener)
+
+    def addModuleActionListener(self, listener, autoclean=True):
+        self._listen(_core.manager_add_module_listener, listener)
+
+    def addRtcLifecycleActionListener(self, listener, autoclean=True):
+        self._listen(_core.manager_add_lifecycle_listener, listener)
+
+    def addNamingActionListener(self, listener, autoclean=True):
+        self._listen(_core.manager_add_naming_listener, listener)
+
+    def _listen(self, add, listener):
+        teller = _Teller(listener)
+        add(teller)
+        self._tellers.append(teller)
+
+    def _forget(self, listener):
+        for teller in self._tellers:
+            if teller.listener is listener:
+                teller.listener = None
+
+    removeManagerActionListener = removeModuleActionListener = removeRtcLifecycleActionListener = removeNamingActionListener = _forget
+
     # --- the rest
+
+    def registerECFactory(self, name, new_func, delete_func=None):
+        """Components may name the context in execution_contexts or exec_cxt.periodic.type from now on."""
+        from .contexts import ExecutionContextFactory
+        return ExecutionContextFactory.instance().addFactory(name, new_func, delete_func) == ExecutionContextFactory.FACTORY_OK
+
+    def isRunning(self):
+        return _core.manager_is_running()
 
     def getConfig(self):
         return _core.manager_config()
+
+    _config = property(getConfig)
 
     def getLogbuf(self, name="manager"):
         return Logger(name)
@@ -162,6 +278,10 @@ class Manager:
 
 
 class _Naming:
+    def string_to_component(self, name):
+        """The components of an instance name, of rtcname://HOST:PORT/PATH, or rtcloc://HOST:PORT/CATEGORY/INSTANCE."""
+        return _core.manager_string_to_components(name)
+
     def bindObject(self, name, object_):
         _core.manager_bind_object(name, object_.getObjRef() if hasattr(object_, "getObjRef") else object_)
 

@@ -9,6 +9,7 @@ class CorbaNaming:
     def __init__(self, orb, name_server=None):
         self._orb = orb
         self._root = None
+        self._name_server = name_server
         if name_server:
             self.init(name_server)
 
@@ -36,7 +37,7 @@ class CorbaNaming:
     def resolve(self, name):
         return self._root.resolve(self.toName(name))
 
-    resolveStr = resolve
+    resolveStr = resolveByString = resolve
 
     def bind(self, name, object_, force=True):
         try:
@@ -48,6 +49,43 @@ class CorbaNaming:
             self._root.bind(self.toName(name), object_)
 
     bindByString = bind
+
+    def bindRecursive(self, context, name, object_):
+        """Binds below the context, and makes the contexts of the name that are missing."""
+        self._recursive(context, self.toName(name), "bind", object_)
+
+    def rebindRecursive(self, context, name, object_):
+        self._recursive(context, self.toName(name), "rebind", object_)
+
+    def bindContext(self, name, context, force=True):
+        self._root.bind_context(self.toName(name), context)
+
+    bindContextByString = bindContext
+
+    def rebindContext(self, name, context, force=True):
+        self._root.rebind_context(self.toName(name), context)
+
+    rebindContextByString = rebindContext
+
+    def bindOrResolve(self, context, name, object_):
+        """The object that has the name; this one, if none has it yet."""
+        try:
+            context.bind(name, object_)
+            return object_
+        except CosNaming.NamingContext.AlreadyBound:
+            return context.resolve(name)
+
+    def bindOrResolveContext(self, context, name, new_context=None):
+        return self.bindOrResolve(context, name, self.newContext() if new_context is None else new_context)
+
+    @staticmethod
+    def _recursive(context, name, operation, object_):
+        for part in name[:-1]:
+            try:
+                context = context.resolve([part])._narrow(CosNaming.NamingContext)
+            except CosNaming.NamingContext.NotFound:
+                context = context.bind_new_context([part])
+        getattr(context, operation)(name[-1:], object_)
 
     def rebind(self, name, object_, force=True):
         try:
@@ -70,11 +108,32 @@ class CorbaNaming:
     def unbind(self, name):
         self._root.unbind(self.toName(name))
 
+    unbindByString = unbind
+
+    def getNameServer(self):
+        return self._name_server
+
+    def destroy(self, context):
+        context.destroy()
+
+    @staticmethod
+    def objIsNamingContext(object_):
+        return object_._narrow(CosNaming.NamingContext) is not None
+
+    def nameIsNamingContext(self, name):
+        return self.objIsNamingContext(self.resolve(name))
+
+    @staticmethod
+    def subName(name, begin, end=None):
+        return name[begin:] if end is None or end < 0 else name[begin:end + 1]
+
     def newContext(self):
         return self._root.new_context()
 
     def bindNewContext(self, name, force=True):
         return self._root.bind_new_context(self.toName(name))
+
+    bindNewContextByString = bindNewContext
 
     def list(self, context=None, how_many=1000, bindings=None, iterator=None):
         found, further = (context or self._root).list(how_many)
@@ -87,6 +146,8 @@ class CorbaNaming:
         if bindings is not None:
             bindings[:] = [found]
         return found
+
+    listBinding = list
 
     def listByKind(self, context_name, kind):
         context = self._root if not context_name else self.resolve(context_name)._narrow(CosNaming.NamingContext)

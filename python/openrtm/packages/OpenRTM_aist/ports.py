@@ -4,6 +4,7 @@ import omniORB
 import RTC
 from omniORB import CORBA as _CORBA, tcInternal as _tc
 
+from .logger import Logger
 from .listeners import _Registered, data_function as _data_function, event_function as _event_function
 
 __all__ = ["PortBase", "InPortBase", "OutPortBase", "InPort", "OutPort", "CorbaPort", "CorbaConsumer", "CorbaConsumerBase",
@@ -77,6 +78,22 @@ class PortBase:
 
     get_port_profile = getPortProfile = getProfile
 
+    @property
+    def _profile(self):
+        return self.getProfile()
+
+    @property
+    def _properties(self):
+        return self.properties()
+
+    @property
+    def _objref(self):
+        return self._reference()
+
+    @property
+    def _rtcout(self):
+        return Logger(self.getName())
+
     def get_connector_profiles(self):
         return self._reference().get_connector_profiles()
 
@@ -126,6 +143,9 @@ class _DataPort(PortBase):
 
     def getConnectorNames(self):
         return [one.name for one in self._connectors()]
+
+    def isExistingConnection(self):
+        return bool(self._connectors())
 
     def getConnectorById(self, id_):
         return next((one for one in self._connectors() if one.id == id_), None)
@@ -300,6 +320,13 @@ class CorbaConsumer:
 
     def releaseObject(self):
         self._object = self._servant = None
+
+    def setIOR(self, text):
+        """Connect to the object of an IOR."""
+        return self.setObject(_CORBA.ORB_init().string_to_object(text))
+
+    def equals(self, other):
+        return self._object is not None and other is not None and self._object._is_equivalent(other._object)
 
     def _ptr(self, get_ref=False):
         """The servant itself if it is in this process (get_ref: the stub all the same), else a stub; None if not connected."""

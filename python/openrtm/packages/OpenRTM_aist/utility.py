@@ -4,8 +4,8 @@ import time
 
 import _openrtm_core as _core
 
-__all__ = ["Async_tInvoker", "Async_t", "Async_ref_t", "ScopedLock", "Task", "Time", "TimeValue", "TimeMeasure", "ClockManager",
-           "Guard"]
+__all__ = ["Async_tInvoker", "Async_ref_tInvoker", "Async_t", "Async_ref_t", "ScopedLock", "Task", "Time", "TimeValue", "TimeMeasure",
+           "ClockManager", "Guard", "Timer", "PeriodicTask", "ListenerObject", "ListenerFunc", "toTypename"]
 
 
 class uuid1:
@@ -34,7 +34,7 @@ class Async_tInvoker:
         return self._thread is None or not self._thread.is_alive()
 
 
-Async_t = Async_ref_t = Async_tInvoker
+Async_t = Async_ref_t = Async_ref_tInvoker = Async_tInvoker
 
 
 class ScopedLock:
@@ -48,7 +48,8 @@ class ScopedLock:
         self.mutex.release()
 
 
-Guard = ScopedLock
+class Guard(ScopedLock):
+    ScopedLock = ScopedLock
 
 
 class Task:
@@ -133,16 +134,182 @@ class TimeValue:
 
 
 class Time:
-    """The time of now, by the clock in force."""
+    """The time of now, by the clock in force; a difference of two is a Time, too."""
 
-    def __init__(self):
+    def __init__(self, sec=None, usec=0):
+        if sec is not None:
+            self.sec, self.usec = sec, usec
+            return
         self.sec, nsec = _core.current_time()
         self.usec = nsec // 1000
+
+    def __sub__(self, other):
+        sec, usec = divmod((self.sec - other.sec) * 1000000 + self.usec - other.usec, 1000000)
+        return Time(sec, usec)
+
+    def __add__(self, other):
+        return Time(*divmod((self.sec + other.sec) * 1000000 + self.usec + other.usec, 1000000))
 
     def getTime(self):
         return TimeValue(self.sec, self.usec)
 
     gettimeofday = getTime
+
+
+
+class ListenerObject:
+    """Calls function(obj)."""
+
+    def __init__(self, obj, function):
+        self.invoke = lambda: function(obj)
+
+
+class ListenerFunc:
+    def __init__(self, function):
+        self.invoke = function
+
+
+class PeriodicTask:
+    """Calls a function at a period on a thread of its own: setTask, setPeriod, activate; finalize ends it."""
+
+    def __init__(self):
+        self._function = None
+        self._period = 0.0
+        self._thread = None
+        self._changed = threading.Condition()
+        self._is_over = self._is_suspended = self._is_told = False
+
+    def setTask(self, function, delete_in_dtor=True):
+        self._function = getattr(function, "svc", function)
+        return True
+
+    def setPeriod(self, period):
+        """Seconds, or a TimeValue."""
+        self._period = period.toDouble() if hasattr(period, "toDouble") else float(period)
+
+    def activate(self):
+        if self._thread is None and self._function is not None:
+            self._is_over = False
+            self._thread = threading.Thread(target=self._run, daemon=True)
+            self._thread.start()
+
+    def suspend(self):
+        self._is_suspended = True
+        return 0
+
+    def resume(self):
+        with self._changed:
+            self._is_suspended = False
+            self._changed.notify()
+        return 0
+
+    def signal(self):
+        """Call it now, although its time has not come or it is suspended."""
+        with self._changed:
+            self._is_told = True
+            self._changed.notify()
+
+    def finalize(self):
+        with self._changed:
+            self._is_over = True
+            self._changed.notify()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join()
+        self._thread = None
+
+    def _run(self):
+        due = time.monotonic()
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._is_over or self._is_told, max(due - time.monotonic(), 0))
+                self._changed.wait_for(lambda: self._is_over or self._is_told or not self._is_suspended)
+                if self._is_over:
+                    return
+                self._is_told = False
+            self._function()
+            due = max(due + self._period, time.monotonic())
+
+
+class Timer:
+    """Calls listeners at their periods, on a thread of its own between start() and stop()."""
+
+    def __init__(self, interval):
+        self._interval = interval
+        self._tasks = {}
+        self._is_running = False
+
+    def registerListener(self, listener, period):
+        task = PeriodicTask()
+        task.setTask(listener.invoke)
+        task.setPeriod(period)
+        self._tasks[listener] = task
+        if self._is_running:
+            task.activate()
+        return listener
+
+    def registerListenerObj(self, obj, function, period):
+        return self.registerListener(ListenerObject(obj, function), period)
+
+    def registerListenerFunc(self, function, period):
+        return self.registerListener(ListenerFunc(function), period)
+
+    def unregisterListener(self, listener):
+        task = self._tasks.pop(listener, None)
+        if task is not None:
+            task.finalize()
+        return task is not None
+
+    def start(self):
+        self._is_running = True
+        for task in list(self._tasks.values()):
+            task.activate()
+
+    def stop(self):
+        self._is_running = False
+        for task in list(self._tasks.values()):
+            task.finalize()
+
+
+class _Factory:
+    """The factory of one kind of object in this process; the methods return 0 for success, 2 and 3 for an id that exists, that does not."""
+    FACTORY_OK, FACTORY_ERROR, ALREADY_EXISTS, NOT_FOUND, INVALID_ARG, UNKNOWN_ERROR = range(6)
+
+    @classmethod
+    def instance(cls):
+        if "_the_one" not in vars(cls):
+            cls._the_one = cls()
+            cls._the_one._creators = {}
+        return cls._the_one
+
+    def addFactory(self, id_, creator, deleter=None):
+        if not id_ or creator is None:
+            return self.INVALID_ARG
+        code = self._add(id_, creator)
+        if code == self.FACTORY_OK:
+            self._creators[id_] = creator
+        return code
+
+    def removeFactory(self, id_):
+        self._creators.pop(id_, None)
+        return self._remove(id_)
+
+    def hasFactory(self, id_):
+        return id_ in self.getIdentifiers()
+
+    def getIdentifiers(self):
+        return list(self._identifiers())
+
+    def createObject(self, id_):
+        """Of those that Python has registered; None for others."""
+        return self._creators[id_]() if id_ in self._creators else None
+
+    def deleteObject(self, object_, id_=None):
+        return self.FACTORY_OK
+
+
+def toTypename(value):
+    """The repository id of a value of an IDL type."""
+    return value._NP_RepositoryId
 
 
 class TimeMeasure:

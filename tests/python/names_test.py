@@ -1,0 +1,66 @@
+# Small helpers of the flat namespace, in the forms of 1.x and 2.x.
+import threading
+
+import OpenRTM_aist
+import pytest
+import RTC
+
+
+def test_texts_are_changed_in_a_list_of_one_as_in_1_x_and_returned_as_in_2_x():
+    for name, before, after in (("eraseBlank", " a b\t", "ab"), ("eraseHeadBlank", " a ", "a "), ("eraseTailBlank", " a ", " a"),
+                                ("normalize", " AbC ", "abc"), ("eraseBothEndsBlank", " a ", "a")):
+        text = [before]
+        getattr(OpenRTM_aist, name)(text)
+        assert text == [after]
+        assert getattr(OpenRTM_aist, name)(before) == after
+    text = ["a-b"]
+    OpenRTM_aist.replaceString(text, "-", "+")
+    assert text == ["a+b"]
+
+
+def test_a_word_that_is_neither_yes_nor_no_is_the_default():
+    assert OpenRTM_aist.toBool("maybe", "YES", "NO") is True
+    assert OpenRTM_aist.toBool("maybe", "YES", "NO", False) is False
+    assert OpenRTM_aist.toBool("no", "YES", "NO") is False
+
+
+def test_times_have_differences():
+    first = OpenRTM_aist.Time()
+    later = OpenRTM_aist.Time(first.sec + 2, first.usec)
+    assert (later - first).getTime().toDouble() == 2
+    assert (first - later).getTime().toDouble() == -2
+
+
+def test_a_timer_calls_its_listeners_until_they_are_taken_away():
+    called = threading.Semaphore(0)
+    timer = OpenRTM_aist.Timer(OpenRTM_aist.TimeValue(0, 1000))
+    one = timer.registerListenerFunc(called.release, OpenRTM_aist.TimeValue(0, 1000))
+    timer.start()
+    for _ in range(3):
+        assert called.acquire(timeout=30)
+    assert timer.unregisterListener(one)
+    assert not timer.unregisterListener(one)
+    timer.stop()
+
+
+def test_a_periodic_task_that_is_suspended_is_called_by_a_signal():
+    called = threading.Semaphore(0)
+    task = OpenRTM_aist.PeriodicTask()
+    task.setTask(called.release)
+    task.setPeriod(1000)
+    task.suspend()
+    task.activate()
+    task.signal()
+    assert called.acquire(timeout=30)
+    task.finalize()
+
+
+def test_functions_of_references_are_in_the_flat_namespace_too():
+    assert OpenRTM_aist.connect is OpenRTM_aist.CORBA_RTCUtil.connect
+    assert OpenRTM_aist.Guard.ScopedLock is OpenRTM_aist.ScopedLock
+    assert OpenRTM_aist.toTypename(RTC.TimedLong(RTC.Time(0, 0), 0)) == "IDL:RTC/TimedLong:1.0"
+
+
+def test_a_name_that_is_missing_says_where_the_names_are():
+    with pytest.raises(AttributeError, match="OpenRTM_aist.InPortPushConnector is not part of this implementation"):
+        OpenRTM_aist.InPortPushConnector
