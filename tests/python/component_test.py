@@ -288,6 +288,9 @@ def test_a_script_finds_connects_and_activates_components_by_their_references(sy
     assert "profile Counter IDL:RTC/TimedLong:1.0" in said
     assert "activate RTC_OK 100.0" in said
     assert "parameter 1" in said and "set True" in said
+    assert "as in 1.x True" in said and "root True" in said and "by url True" in said and "by name True" in said
+    assert "direct RTC_OK PORT_OK" in said
+    says(system, printer, "received 4712")
     says(system, printer, "connected connector0 push")
     await_("the new step", lambda: any(int(line.split()[1]) > 2000 for line in system.log(printer).splitlines() if line.startswith("received")))
 

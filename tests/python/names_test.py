@@ -61,6 +61,20 @@ def test_functions_of_references_are_in_the_flat_namespace_too():
     assert OpenRTM_aist.toTypename(RTC.TimedLong(RTC.Time(0, 0), 0)) == "IDL:RTC/TimedLong:1.0"
 
 
+def test_files_of_the_original_are_found_by_their_names():
+    from OpenRTM_aist import CorbaConsumer, CorbaNaming, RTObject, SystemLogger  # noqa: F401
+    import OpenRTM_aist.RTM_IDL  # noqa: F401
+    assert RTObject.RTObject_impl is OpenRTM_aist.RTObject_impl and SystemLogger.Logger is OpenRTM_aist.Logger
+    names = {}
+    exec("from CorbaNaming import *", names)
+    assert names["CorbaNaming"] is CorbaNaming and names["CosNaming"].nobject and names["CORBA"].ORB_init and names["sys"]
+
+
+def test_lists_of_names_and_values_become_properties():
+    properties = OpenRTM_aist.NVUtil.toProperties([OpenRTM_aist.NVUtil.newNV("a.b", "c"), OpenRTM_aist.NVUtil.newNV("n", 3)])
+    assert properties.getProperty("a.b") == "c" and properties.getProperty("n") == "3"
+
+
 def test_a_name_that_is_missing_says_where_the_names_are():
     with pytest.raises(AttributeError, match="OpenRTM_aist.InPortPushConnector is not part of this implementation"):
         OpenRTM_aist.InPortPushConnector

@@ -63,8 +63,12 @@ def reset(rtc, ec_id=0):
     return _change("reset_component", rtc, ec_id)
 
 
-def get_state(rtc, ec_id=0):
-    """(True, state), or (False, CREATED_STATE)."""
+def get_state(rtc, ec_id=0, *more):
+    """(True, state), or (False, CREATED_STATE). The form of 1.x, get_state(list, rtc, ec_id), puts the state into the list."""
+    if isinstance(rtc, list):
+        is_known, state = get_state(ec_id, *more)
+        rtc[:] = [state]
+        return is_known
     ec = None if CORBA.is_nil(rtc) else get_actual_ec(rtc, ec_id)
     return (False, RTC.CREATED_STATE) if ec is None else (True, ec.get_component_state(rtc))
 

@@ -26,6 +26,10 @@ class EventInPort(_core.EventPort, _DataPort):
         self._fsm = fsm
         self._registered = []
 
+    @property
+    def _connectors(self):
+        return _core.InPortBase._connectors(self)
+
     def bindEvent0(self, name, handler):
         """The event calls the method of the current state that has the name of `handler`, a method of the top state."""
         self._bind(name, handler, None)

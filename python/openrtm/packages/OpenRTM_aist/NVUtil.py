@@ -22,8 +22,12 @@ def copyToProperties(properties, nvs):
         properties.setProperty(one.name, value if isinstance(value, str) else str(value))
 
 
-def toProperties(properties, nvs):
+def toProperties(nvs):
+    """The list as Properties."""
+    from _openrtm_core import Properties
+    properties = Properties()
     copyToProperties(properties, nvs)
+    return properties
 
 
 def copy(to, from_):

@@ -25,6 +25,8 @@ _LATER = {
     "CorbaNaming": ("naming", "CorbaNaming"),
     "uuid": ("utility", None), "EventPort": ("EventPort", None), "CSPEventPort": ("CSPEventPort", None),
     "CSPMachine": ("CSPMachine", None),
+    # Files of the original whose names are no classes.
+    "RTObject": ("component", None), "SystemLogger": ("logger", None), "RTCUtil": ("ports", None), "Async": ("utility", None),
 }
 for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):
     _LATER.setdefault(_name, ("StaticFSM", _name))

@@ -34,6 +34,10 @@ class CorbaNaming:
     def getRootContext(self):
         return self._root
 
+    @property
+    def _rootContext(self):
+        return self._root
+
     def resolve(self, name):
         return self._root.resolve(self.toName(name))
 

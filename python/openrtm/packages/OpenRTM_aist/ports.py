@@ -133,25 +133,25 @@ class _DataPort(PortBase):
         return self._name
 
     def getConnectorProfiles(self):
-        return self._connectors()
+        return self._connectors
 
     def connectors(self):
-        return self._connectors()
+        return self._connectors
 
     def getConnectorIds(self):
-        return [one.id for one in self._connectors()]
+        return [one.id for one in self._connectors]
 
     def getConnectorNames(self):
-        return [one.name for one in self._connectors()]
+        return [one.name for one in self._connectors]
 
     def isExistingConnection(self):
-        return bool(self._connectors())
+        return bool(self._connectors)
 
     def getConnectorById(self, id_):
-        return next((one for one in self._connectors() if one.id == id_), None)
+        return next((one for one in self._connectors if one.id == id_), None)
 
     def getConnectorByName(self, name):
-        return next((one for one in self._connectors() if one.name == name), None)
+        return next((one for one in self._connectors if one.name == name), None)
 
     def addConnectorDataListener(self, type_, listener, autoclean=True):
         """Call the listener at events of samples. Returns what removeConnectorDataListener takes."""
@@ -192,6 +192,10 @@ class InPort(_core.InPort, _DataPort):
         self._on_read = self._on_read_convert = None
         self._registered = []
 
+    @property
+    def _connectors(self):
+        return _core.InPortBase._connectors(self)
+
     def read(self, name=None):
         """The oldest unread value as a new object; the last one again if there is no new one."""
         if self._on_read is not None:
@@ -225,6 +229,10 @@ class OutPort(_core.OutPort, _DataPort):
         self._name = name
         self._on_write = self._on_write_convert = None
         self._registered = []
+
+    @property
+    def _connectors(self):
+        return _core.OutPort._connectors(self)
 
     def write(self, value=None):
         """Send the value, or the one of the constructor. False: no connection, one of them failed, or the value does not fit."""
