@@ -69,6 +69,14 @@ char* SimulationServiceImpl::spawn(const char* sdf, const char* name, const rtms
 
 void SimulationServiceImpl::remove(const char* model) { ask_or_throw(server_id_, shm::DeleteRequest{model}); }
 
+void SimulationServiceImpl::push(const char* name, const rtmsim::Wrench& pushed, CORBA::Double seconds) {
+  ask_or_throw(server_id_, shm::WrenchRequest{name, {pushed.fx, pushed.fy, pushed.fz}, {pushed.tx, pushed.ty, pushed.tz}, seconds});
+}
+
+void SimulationServiceImpl::push_joint(const char* model, const char* joint, CORBA::Double effort, CORBA::Double seconds) {
+  ask_or_throw(server_id_, shm::WrenchRequest{std::string(model) + "::" + joint, {effort}, {}, seconds, true});
+}
+
 RTCSimulation::RTCSimulation(RTC::Manager* manager)
     : RTC::DataFlowComponentBase(manager),
       link_(shm::IfaceType::simulation,

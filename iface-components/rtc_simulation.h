@@ -34,6 +34,8 @@ class SimulationServiceImpl : public virtual POA_rtmsim::SimulationService, publ
   void set_pose(const char* model, const rtmsim::Pose& target) override;
   char* spawn(const char* sdf, const char* name, const rtmsim::Pose& target) override;
   void remove(const char* model) override;
+  void push(const char* name, const rtmsim::Wrench& pushed, CORBA::Double seconds) override;
+  void push_joint(const char* model, const char* joint, CORBA::Double effort, CORBA::Double seconds) override;
 
  private:
   std::atomic<int> server_id_{0};

@@ -86,6 +86,7 @@ struct Encoder {
     std::copy(r.force, r.force + 3, raw.body.values);
     std::copy(r.torque, r.torque + 3, raw.body.values + 3);
     raw.body.values[6] = r.duration;
+    raw.body.flags = r.is_joint ? flag_1 : 0;
   }
   void operator()(const ListRequest&) {}
   void operator()(const TreeRequest& r) { name(r.model); }
@@ -239,6 +240,9 @@ base::Result<Request> Decoder::twist() const {
     return fail("duration must not be negative (or -1: until the next), got " + base::format_number(request.duration));
   std::copy(values(), values() + 3, request.force);
   std::copy(values() + 3, values() + 6, request.torque);
+  request.is_joint = (body().flags & flag_1) != 0;
+  if (request.is_joint && std::any_of(values() + 1, values() + 6, [](double value) { return value != 0; }))
+    return fail("of a joint takes one number");
   return Request(request);
 }
 

@@ -44,8 +44,9 @@ struct WrenchRequest {
   std::string name;
   double force[3] = {}, torque[3] = {};
   double duration = 0;  // [s], 0 = one step; until_the_next
-  // The wrench stays, in place of all others of the link that stay; one of zeros ends them.
+  // The wrench stays, in place of all others of the link or joint that stay; one of zeros ends them.
   static constexpr double until_the_next = -1;
+  bool is_joint = false;  // name = MODEL::JOINT; force[0] is its effort [N m or N] beside those of its motor, the others are 0
 };
 struct ListRequest {};
 struct TreeRequest {

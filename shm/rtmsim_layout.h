@@ -782,7 +782,7 @@ enum {
   RTMSIM_REQUEST_GET_VELOCITY = 7, /* name = model or link; reply values 0..5 = linear, angular, world frame */
   RTMSIM_REQUEST_SET_VELOCITY = 8, /* name = model; values 0..5; the whole model moves as one body */
   RTMSIM_REQUEST_WRENCH = 9,  /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = [s], 0: one step,
-                                 -1: until the next -1 */
+                                 -1: until the next -1. flags 1: name = MODEL::JOINT; values 0 = its effort [N m or N] */
   RTMSIM_REQUEST_LIST = 10,   /* reply text: JSON, see docs/shared-memory.md */
   RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors */
   RTMSIM_REQUEST_SPAWN = 12,  /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a

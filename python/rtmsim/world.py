@@ -352,10 +352,14 @@ class World:
         """Sets the velocity of a whole model: linear [m/s], angular [rad/s], world frame."""
         self._line().set_velocity(model, list(map(float, linear)), list(map(float, angular)), self.timeout)
 
-    def push(self, name: str, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), duration: float = 0.0) -> None:
+    def push(self, name: str, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), duration: float = 0.0, persistent: bool = False) -> None:
         """Applies a wrench to MODEL or MODEL::LINK: force [N] at the centre of mass, torque [N m], world frame, for `duration` simulated
-        seconds; 0: one step."""
-        self._line().push(name, list(map(float, force)), list(map(float, torque)), float(duration), self.timeout)
+        seconds; 0: one step. `persistent`: until the next one of the link that is persistent, or a reset; one of zeros ends it."""
+        self._line().push(name, list(map(float, force)), list(map(float, torque)), float(duration), persistent, self.timeout)
+
+    def push_joint(self, model: str, joint: str, effort: float, duration: float = 0.0, persistent: bool = False) -> None:
+        """Pushes a joint that turns or slides by `effort` [N m or N], beside what its motor does. Times as of push()."""
+        self._line().push_joint(f"{model}::{joint}", float(effort), float(duration), persistent, self.timeout)
 
     def contacts(self, model: str) -> list[dict]:
         """Contacts of a model in the last step: link, other, position [m], normal, depth [m]."""

@@ -112,11 +112,15 @@ void add_requests(py::class_<Simulator>& type) {
            })
       .def("push",
            [](Simulator& s, const std::string& name, const std::vector<double>& force, const std::vector<double>& torque, double duration,
-              double timeout) {
-             shm::WrenchRequest request{name, {}, {}, duration};
+              bool stays, double timeout) {
+             shm::WrenchRequest request{name, {}, {}, stays ? shm::WrenchRequest::until_the_next : duration};
              three(force, request.force, "force");
              three(torque, request.torque, "torque");
              s.ask(request, seconds(timeout));
+           })
+      .def("push_joint",
+           [](Simulator& s, const std::string& name, double effort, double duration, bool stays, double timeout) {
+             s.ask(shm::WrenchRequest{name, {effort}, {}, stays ? shm::WrenchRequest::until_the_next : duration, true}, seconds(timeout));
            })
       .def("spawn", &spawn)
       .def("delete", [](Simulator& s, const std::string& model, double timeout) { s.ask(shm::DeleteRequest{model}, seconds(timeout)); })

@@ -110,6 +110,13 @@ void JointInstance::set_parameter(int axis, int base_parameter, double value) {
   }
 }
 
+bool JointInstance::takes_effort() const {
+  if (joint_.id() == nullptr) return false;
+  const auto type = dJointGetType(joint_.id());
+  return type == dJointTypeHinge || type == dJointTypeSlider || type == dJointTypePiston || type == dJointTypeUniversal ||
+         type == dJointTypeHinge2;
+}
+
 void JointInstance::add_effort(int axis, double effort) {
   const dJointID joint = joint_.id();
   const double signed_effort = sign_ * effort;

@@ -93,6 +93,10 @@ class JointInstance {
   const JointSeat& seat_on_parent() const { return seat_on_parent_; }
   const JointSeat& seat_on_child() const { return seat_on_child_; }
 
+  // For the next step, on the child against the parent [N m] or [N]. It does nothing where takes_effort() is false.
+  void add_effort(int axis, double effort);
+  bool takes_effort() const;
+
   bool has_stand_in() const { return stand_in_.id() != nullptr; }
   bool has_forces() const { return has_forces_ || coupling_; }
   // What must be done before each step: springs, the damping that ODE's motors cannot do, couplings.
@@ -122,7 +126,6 @@ class JointInstance {
   bool is_asleep() const;
   Eigen::Vector3d axis_in_world(int axis) const;
   double inertia_along(int axis) const;
-  void add_effort(int axis, double effort);
   void couple(dJointGroupID step_joints, double dt);
 
   const JointDef* def_;

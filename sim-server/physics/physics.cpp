@@ -323,6 +323,18 @@ std::optional<LinkId> Physics::find_link(std::string_view name) const {
   return std::nullopt;
 }
 
+std::optional<JointId> Physics::find_joint(std::string_view name) const {
+  for (auto at = name.find("::"); at != std::string_view::npos; at = name.find("::", at + 2)) {
+    const auto model = find(name.substr(0, at));
+    if (!model) continue;
+    const auto& joints = def(*model).joints;
+    for (std::uint32_t i = 0; i < joints.size(); ++i) {
+      if (joints[i].name == name.substr(at + 2)) return JointId{*model, i};
+    }
+  }
+  return std::nullopt;
+}
+
 base::Result<ModelId> Physics::spawn(std::shared_ptr<const ModelDef> model, std::vector<std::string>& notes) {
   if (find(model->name)) return base::Error{fmt::format("model {}: a model of that name exists", model->name)};
   auto blueprint = Blueprint::of(std::move(model));
@@ -454,6 +466,25 @@ base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force
   instance.wake();
   dBodyAddForce(body, force.x(), force.y(), force.z());
   dBodyAddTorque(body, torque.x(), torque.y(), torque.z());
+  return {};
+}
+
+base::Result<void> Physics::check_effort(JointId joint, double effort) const {
+  const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
+  const std::string& name = def(joint.model).joints[joint.joint].name;
+  if (!(std::abs(effort) < 1e7))
+    return base::Error{fmt::format("model {}: the effort of joint {} must be finite and below 1e7", def(joint.model).name, name)};
+  if (instance == nullptr || !instance->takes_effort())
+    return base::Error{fmt::format("model {}: joint {} neither turns nor slides", def(joint.model).name, name)};
+  return {};
+}
+
+base::Result<void> Physics::add_effort(JointId joint, double effort) {
+  if (const auto good = check_effort(joint, effort); !good) return good;
+  ModelInstance& model = impl_->at(joint.model);
+  model.stop_rolling();
+  model.wake();
+  model.joint(joint.joint)->add_effort(0, effort);
   return {};
 }
 

@@ -113,6 +113,7 @@ class Physics {
   std::shared_ptr<const ModelDef> shared_def(ModelId model) const;
   // "model" or "model::link" (nested: "model::arm::hand"); a model's name stands for its canonical link.
   std::optional<LinkId> find_link(std::string_view name) const;
+  std::optional<JointId> find_joint(std::string_view name) const;  // "model::joint"
   LinkId canonical_link(ModelId model) const;
 
   // Name must be new; fails with a line when the model cannot be simulated.
@@ -135,6 +136,10 @@ class Physics {
   base::Result<void> set_model_twist(ModelId model, const Twist& twist);
   // For the next step only, at the centre of mass of the link's body.
   base::Result<void> add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
+  // For the next step only, about or along the first axis of the joint, beside what its motor does: [N m] or [N], on the child against the
+  // parent. Fails as check_effort() does: for a joint that neither turns nor slides, and for efforts of 1e7 and more.
+  base::Result<void> add_effort(JointId joint, double effort);
+  base::Result<void> check_effort(JointId joint, double effort) const;
   void set_gravity(ModelId model, bool on);
   // Moves as it is told from now on, whatever it touches. For models without joints that move; false for others.
   bool make_kinematic(ModelId model);

@@ -33,6 +33,16 @@ shm::Reply no_model(const Physics& physics, const std::string& name) {
   return refused(shm::RequestStatus::not_found, "no model or link " + name + base::suggestion(name, known));
 }
 
+shm::Reply no_joint(const Physics& physics, const std::string& name) {
+  const auto model = physics.find(name.substr(0, name.find("::")));
+  if (!model) return no_model(physics, name.substr(0, name.find("::")));
+  std::vector<std::string> known;
+  for (const auto& joint : physics.def(*model).joints) known.push_back(physics.def(*model).name + "::" + joint.name);
+  const std::string similar = base::suggestion(name, known);
+  if (!similar.empty() || known.size() > 20) return refused(shm::RequestStatus::not_found, "no joint " + name + similar);
+  return refused(shm::RequestStatus::not_found, "no joint " + name + "; joints: " + (known.empty() ? "none" : base::join(known, ", ")));
+}
+
 shm::Reply no_iface(const Simulation& simulation, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& device : simulation.devices()) {
@@ -62,11 +72,12 @@ bool is_one_of(const shm::Request& request) {
   return (std::holds_alternative<Kinds>(request) || ...);
 }
 
-// May be served in the middle of a tick: the run goes on as without it.
-bool leaves_the_world_alone(const shm::Request& request) {
-  return is_one_of<shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest, shm::TreeRequest,
-                   shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest, shm::ExportRequest,
-                   shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest, shm::PoseLogRequest>(request);
+// May be served in the middle of a tick: the run goes on as without it, or a wrench begins with the next step. So components can push in
+// their ticks, and wait for the answer; the order in which several do does not matter.
+bool fits_into_a_tick(const shm::Request& request) {
+  return is_one_of<shm::WrenchRequest, shm::PauseRequest, shm::RunRequest, shm::GetPoseRequest, shm::GetVelocityRequest, shm::ListRequest,
+                   shm::TreeRequest, shm::StatsRequest, shm::SetRtfRequest, shm::ContactsRequest, shm::DropParticipantRequest,
+                   shm::ExportRequest, shm::PosesRequest, shm::FaultsRequest, shm::ModelsRequest, shm::PoseLogRequest>(request);
 }
 
 // How long a request that needs the world to stand between two steps waits for a tick to end. Clients wait for ten seconds.
@@ -147,6 +158,7 @@ struct ServerLoop::Handler {
     return done ? shm::Reply{} : failed(done.error());
   }
   shm::Reply operator()(const shm::WrenchRequest& request) {
+    if (request.is_joint) return push_joint(request);
     const auto link = physics.find_link(request.name);
     if (!link) return no_model(physics, request.name);
     if (request.duration == shm::WrenchRequest::until_the_next) {
@@ -155,6 +167,15 @@ struct ServerLoop::Handler {
     }
     const auto duration = std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e6) * 1e9));
     const auto done = simulation.add_wrench(*link, vector(request.force), vector(request.torque), duration);
+    return done ? shm::Reply{} : failed(done.error());
+  }
+  shm::Reply push_joint(const shm::WrenchRequest& request) {
+    const auto joint = physics.find_joint(request.name);
+    if (!joint) return no_joint(physics, request.name);
+    const double effort = request.force[0];
+    const auto duration = std::chrono::nanoseconds(std::llround(std::min(request.duration, 1e6) * 1e9));
+    const bool stays = request.duration == shm::WrenchRequest::until_the_next;
+    const auto done = stays ? simulation.keep_effort(*joint, effort) : simulation.add_effort(*joint, effort, duration);
     return done ? shm::Reply{} : failed(done.error());
   }
   shm::Reply operator()(const shm::ListRequest&) {
@@ -393,7 +414,7 @@ void ServerLoop::handle_requests(When when) {
   for (auto& [asked, since] : waiting) {
     // What its client was told has failed must not happen later.
     if (!board_.is_awaited(asked.ticket)) continue;
-    if (when == When::in_tick && !leaves_the_world_alone(asked.request)) {
+    if (when == When::in_tick && !fits_into_a_tick(asked.request)) {
       if (Clock::now() - since < longest_delay) {
         postponed_.push_back({std::move(asked), since});
       } else {

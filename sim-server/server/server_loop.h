@@ -52,7 +52,8 @@ class ServerLoop {
   void stop();
 
  private:
-  // In a tick that waits for a participant only what changes nothing in the world is served; the rest waits for the end of the tick.
+  // In a tick that waits for a participant only what changes nothing in the world is served, and wrenches, which begin with the next step;
+  // the rest waits for the end of the tick.
   enum class When { between_steps, in_tick };
   void handle_requests(When when);
   shm::Reply handle(const shm::Request& request, const shm::RequestTicket& ticket);

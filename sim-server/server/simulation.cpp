@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <tuple>
 
 #include "base/text.h"
 #include "devices/faulty_device.h"
@@ -149,6 +150,10 @@ void Simulation::step(PartTimes& times) {
 void Simulation::push() {
   for (const auto& wrench : wrenches_) {
     if (!physics_->exists(wrench.link.model)) continue;
+    if (wrench.joint) {
+      (void)physics_->add_effort({wrench.link.model, *wrench.joint}, wrench.force.x());
+      continue;
+    }
     Eigen::Vector3d torque = wrench.torque;
     if (wrench.is_at_origin)
       torque += (physics_->link_pose(wrench.link).translation() - physics_->center_of_mass(wrench.link)).cross(wrench.force);
@@ -160,7 +165,7 @@ void Simulation::add_standing_wrenches(ModelId model) {
   for (const StandingWrench& wrench : standing_) {
     const auto link = physics_->find_link(wrench.entity);
     if (!link || link->model != model || !physics_->can_move(*link)) continue;
-    wrenches_.push_back({*link, wrench.force, wrench.torque, std::chrono::nanoseconds::max(), true, true});
+    put({*link, wrench.force, wrench.torque, std::chrono::nanoseconds::max(), true, true});
   }
 }
 
@@ -397,15 +402,50 @@ base::Result<void> Simulation::set_pose(ModelId model, const Eigen::Isometry3d& 
 base::Result<void> Simulation::add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
                                           std::chrono::nanoseconds duration) {
   if (const auto good = check_wrench(link, force, torque); !good) return good;
-  wrenches_.push_back({link, force, torque, time_ + std::max(duration, step_)});
+  put({link, force, torque, time_ + std::max(duration, step_)});
   return {};
 }
 
 base::Result<void> Simulation::keep_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
   if (const auto good = check_wrench(link, force, torque); !good) return good;
-  std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.stays && wrench.link == link; });
-  if (!force.isZero(0) || !torque.isZero(0)) wrenches_.push_back({link, force, torque, std::chrono::nanoseconds::max(), true});
+  std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.stays && !wrench.joint && wrench.link == link; });
+  if (!force.isZero(0) || !torque.isZero(0)) put({link, force, torque, std::chrono::nanoseconds::max(), true});
   return {};
+}
+
+base::Result<void> Simulation::add_effort(JointId joint, double effort, std::chrono::nanoseconds duration) {
+  if (const auto good = physics_->check_effort(joint, effort); !good) return good;
+  put({.link = {joint.model, 0},
+       .force = {effort, 0, 0},
+       .torque = {0, 0, 0},
+       .until = time_ + std::max(duration, step_),
+       .joint = joint.joint});
+  return {};
+}
+
+base::Result<void> Simulation::keep_effort(JointId joint, double effort) {
+  if (const auto good = physics_->check_effort(joint, effort); !good) return good;
+  std::erase_if(wrenches_, [&](const Wrench& wrench) {
+    return wrench.stays && wrench.link.model == joint.model && wrench.joint && *wrench.joint == joint.joint;
+  });
+  if (effort == 0) return {};
+  put({.link = {joint.model, 0},
+       .force = {effort, 0, 0},
+       .torque = {0, 0, 0},
+       .until = std::chrono::nanoseconds::max(),
+       .stays = true,
+       .joint = joint.joint});
+  return {};
+}
+
+void Simulation::put(const Wrench& wrench) {
+  const auto key = [](const Wrench& w) {
+    const Eigen::Vector3d &f = w.force, &t = w.torque;
+    return std::tuple(w.link.model, w.link.link, w.joint, w.stays, w.until, f.x(), f.y(), f.z(), t.x(), t.y(), t.z());
+  };
+  const auto after = std::upper_bound(wrenches_.begin(), wrenches_.end(), wrench,
+                                      [&](const Wrench& one, const Wrench& other) { return key(one) < key(other); });
+  wrenches_.insert(after, wrench);
 }
 
 base::Result<void> Simulation::check_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) const {
@@ -429,10 +469,11 @@ std::uint64_t Simulation::hash() const {
   for (const auto& device : devices_) device->add_to(hash);
   attachments_.add_to(hash);
   for (const auto& wrench : wrenches_) {
-    if (!wrench.stays) continue;
     hash.add_all(std::uint64_t{wrench.link.model}, std::uint64_t{wrench.link.link});
     hash.add(wrench.force);
     hash.add(wrench.torque);
+    if (wrench.joint) hash.add(std::uint64_t{*wrench.joint});
+    if (!wrench.stays) hash.add(static_cast<std::uint64_t>(wrench.until.count()));
   }
   return hash.value();
 }

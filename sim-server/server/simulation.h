@@ -74,6 +74,9 @@ class Simulation {
   // The same until the next of these for the link, in place of all that stay there; of zeros: ends them. A reset brings back those of the
   // world's file and ends all others.
   base::Result<void> keep_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque);
+  // The same of a joint: an effort [N m or N] beside what its motor does.
+  base::Result<void> add_effort(JointId joint, double effort, std::chrono::nanoseconds duration);
+  base::Result<void> keep_effort(JointId joint, double effort);
 
   // Whether a fault can be of this: an iface, or a joint of one (arm::joints::elbow) whatever it is called.
   bool can_have_faults(std::string_view name) const;
@@ -121,8 +124,11 @@ class Simulation {
     Eigen::Vector3d force, torque;
     std::chrono::nanoseconds until;
     bool stays = false, is_at_origin = false;  // of the link; else at the centre of mass
+    std::optional<std::uint32_t> joint = {};   // of the link's model, which force.x() pushes in place of the link
   };
   void push();
+  // In an order that does not depend on who came first: forces are added up, and round.
+  void put(const Wrench& wrench);
   base::Result<void> check_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) const;
   // Those of the world's file that mean the model.
   void add_standing_wrenches(ModelId model);

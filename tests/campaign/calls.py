@@ -20,8 +20,8 @@ duration: 1
 """
 
 
-def plan(text, name="plan.yaml"):
-    (folder / name).write_text(START + text)
+def plan(text, name="plan.yaml", start=START):
+    (folder / name).write_text(start + text)
     return str(folder / name)
 
 

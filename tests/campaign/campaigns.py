@@ -253,6 +253,10 @@ def refused():
         ('faults: [{at: 0, sensor: "pioneer2dx::position2d", is: missing}]', "fault missing of pioneer2dx::position2d: only lasers and sonars have beams"),
         ('hunt: {faults: [{actuator: "pioneer2dx::laser"}]}', " of pioneer2dx::laser: it is no position2d"),
         ("events: [{at: 1, push: {model: nobody, force: [1, 0, 0]}}]", 'events: the world has no model "nobody"; models: '),
+        ("events: [{at: 1, wrench: {model: nobody, force: [1, 0, 0]}}]", 'events: the world has no model "nobody"; models: '),
+        ("events: [{at: 1, wrench: {model: box_1, torque: [1, 0, 0]}}]", 'model "box_1" is static and cannot be pushed'),
+        ("events: [{at: 1, joint_force: {model: nobody, joint: nose, force: 1}}]", 'events: the world has no model "nobody"; models: '),
+        ("events: [{at: 1, joint_force: {model: pioneer2dx, joint: nose, force: 1}}]", 'events: model "pioneer2dx" has no joint "nose"; joints: '),
         ("events: [{at: 1, set: {component: LaserObstacleAvoid0, parameter: gain, value: 1}}]", 'has no parameter "gain"; parameters: clearance_cap, distance_gain'),
         ("events: [{at: 1, disconnect: nobody}]", 'events: the system has no connection "nobody"'),
         ("events: [{when: {component: Nobody0, is: Error}, delete: pioneer2dx}]", 'events: the system has no component "Nobody0"'),
@@ -391,6 +395,13 @@ eventually:
   - {port: "LaserObstacleAvoid0:velocity", member: data.vx, min: -1, within: 0.5}
 """, "busy.yaml")
     assert busy["state"] != quiet["state"] and busy["passed"], busy
+    # Wrenches that stay until they are cleared, and a force on a joint: a wheel that brakes turns the robot.
+    pushed = twice(measured + """events:
+  - {at: 0.2, wrench: {model: pioneer2dx, force: [0, 10, 0], torque: [0, 0, 3], persistent: true}}
+  - {at: 0.5, wrench: {model: pioneer2dx, clear: true}}
+  - {at: 0.6, joint_force: {model: pioneer2dx, joint: left_wheel_joint, force: -6, for: 0.2}}
+""", "pushed.yaml")
+    assert pushed["state"] != quiet["state"] and pushed["passed"], pushed
     # The only model that moves goes: the run goes on, and its way is measured as far as it went.
     gone = twice(measured + "events: [{at: 0.5, delete: pioneer2dx}]\n", "gone.yaml")
     assert gone["passed"] and 0 < gone["measures"]["path_length"] < quiet_path, gone
@@ -478,6 +489,19 @@ def faults():
     for fault in ("naming: gone", "for: 0.3, component: LaserObstacleAvoid0, is: slow"):
         seen = twice(f"faults: [{{at: 0.2, {fault}}}]\n", "harmless.yaml")
         assert seen["state"] == quiet["state"] and seen["passed"], (fault, seen)
+    # A vehicle in the air: slower, deaf, or with a rotor that has lost half of its thrust. Without a list a hunt breaks its drive, too.
+    flight = lambda text, name: plan(f"system: {source}/worlds/systems/quadcopter.xml\nworld: {source}/worlds/quadcopter.sdf\nduration: 3\n" + text, name, start="")
+    found = {}
+    for number, fault in enumerate(["", 'actuator: "quadcopter::position3d", is: weak', 'actuator: "quadcopter::position3d", is: stuck',
+                                    'actuator: "quadcopter::joints::motor_0", is: weak', 'sensor: "quadcopter::position3d", is: bias']):
+        text = "measure: [{path_length: {model: quadcopter}}]\n" + (f"faults: [{{at: 1, {fault}}}]\n" if fault else "")
+        row = [json.loads(rtse("--json", "sweep", flight(text, f"flight{number}.yaml"), "--row", 1, "--keep", folder / f"flight{turn}").stdout) for turn in range(2)]
+        assert row[0]["passed"] and row[0]["state"] == row[1]["state"], (fault, row)
+        assert found.setdefault(row[0]["state"], fault) == fault, (fault, found)
+    seen = json.loads(rtse("--json", "hunt", flight("", "search.yaml"), "--cases", 1).stdout)
+    assert seen["finds"] == [], seen
+    done = rtse("sweep", flight('faults: [{at: 0, actuator: "quadcopter::imu", is: weak}]\n', "imu.yaml"), code=1)
+    assert "fault weak of quadcopter::imu: it is no position2d or position3d and has no joints" in done.stderr, done.stderr
     # A host that is killed comes back; the run with it is the same each time.
     twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")
     done = rtse("sweep", plan("hang_timeout: 1\nfaults: [{at: 0.3, component: LaserObstacleAvoid0, is: hang}]\n"), "--row", 1, code=1)

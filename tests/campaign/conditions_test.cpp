@@ -110,16 +110,24 @@ TEST(Events, change_models_and_leave_those_that_do_not_exist) {
   push.kind = Event::Kind::push;
   push.target = "robot";
   push.numbers = {"1", "0", "0"};
+  auto wrench = push;
+  wrench.kind = Event::Kind::wrench;
+  wrench.numbers.resize(6, "2");
+  wrench.stays = true;
+  auto joint = push;
+  joint.kind = Event::Kind::joint_force;
+  joint.target = "robot::elbow";
+  joint.numbers = {"1"};
   auto pose = push;
   pose.kind = Event::Kind::pose;
   auto missing = push;
   missing.target = "nobody";
-  for (const auto& event : {push, pose, missing}) {
+  for (const auto& event : {push, wrench, joint, pose, missing}) {
     const auto done = carry_out_event(s.scene, event);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(*done, "");
   }
-  EXPECT_EQ(s.simulator.asked, (std::vector<std::string>{"push robot 3", "pose robot 3"}));
+  EXPECT_EQ(s.simulator.asked, (std::vector<std::string>{"push robot 3", "push robot 6 stays", "push robot::elbow 1", "pose robot 3"}));
 }
 
 TEST(Events, a_model_whose_name_is_taken_is_not_spawned_and_the_reason_is_told) {

@@ -42,7 +42,10 @@ TEST_F(Plans, hold_what_is_written_in_them) {
                          "  light/sun/intensity: {from: 0.5, to: 1, steps: 3}\nsampling: sobol\nsamples: 4\n"
                          "measure:\n  - value: {port: 'A0:out', member: data, take: mean, as: m}\n"
                          "faults:\n  - {at: 2, for: 1, sensor: robot::laser, is: bias, amount: 0.25}\n"
-                         "events:\n  - {at: 1, push: {model: robot, force: [1, 0, 0], for: 0.5}}\n");
+                         "events:\n  - {at: 1, push: {model: robot, force: [1, 0, 0], for: 0.5}}\n"
+                         "  - {at: 2, wrench: {model: 'robot::arm', torque: [0, 0, 2], persistent: true}}\n"
+                         "  - {at: 3, wrench: {model: 'robot::arm', clear: true}}\n"
+                         "  - {at: 4, joint_force: {model: robot, joint: elbow, force: -3, for: 0.2}}\n");
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->run.system, (folder_ / "s.xml").string());
   EXPECT_EQ(plan->repeat, 3U);
@@ -54,8 +57,14 @@ TEST_F(Plans, hold_what_is_written_in_them) {
   EXPECT_EQ(plan->measures[0].name, "m");
   ASSERT_EQ(plan->faults.size(), 1U);
   EXPECT_EQ(plan->faults[0].text(), "{at: 2, for: 1, sensor: \"robot::laser\", is: bias, amount: 0.25}");
-  ASSERT_EQ(plan->events.size(), 1U);
+  ASSERT_EQ(plan->events.size(), 4U);
   EXPECT_EQ(plan->events[0].numbers, (std::vector<std::string>{"1", "0", "0"}));
+  EXPECT_EQ(plan->events[1].numbers, (std::vector<std::string>{"0", "0", "0", "0", "0", "2"}));
+  EXPECT_TRUE(plan->events[1].stays && plan->events[2].stays && !plan->events[3].stays);
+  EXPECT_EQ(plan->events[2].numbers, std::vector<std::string>(6, "0"));
+  EXPECT_EQ(plan->events[3].target, "robot::elbow");
+  EXPECT_EQ(plan->events[3].numbers, std::vector<std::string>{"-3"});
+  EXPECT_EQ(plan->events[3].duration_s, 0.2);
 }
 
 TEST_F(Plans, measure_joints_and_grips) {
@@ -105,6 +114,19 @@ TEST_F(Plans, say_line_and_column_of_what_is_wrong) {
             ":5:38: to must be x y yaw, x y z yaw or x y z roll pitch yaw, got 2 numbers");
   EXPECT_EQ(error(start_ + "events:\n  - {at: 1, push: {model: robot, force: [1]}}\n"),
             ":5:41: force must be 3 numbers of a force or 6 of a force and a torque, got 1 number");
+  for (const auto& [wrong, expected] : {
+           std::pair{"wrench: {model: robot}", ":5:21: wrench needs force, torque or clear"},
+           std::pair{"wrench: {model: robot, force: [1, 2]}", ":5:43: force must be 3 numbers, got 2 numbers"},
+           std::pair{"wrench: {model: robot, torque: [1, 2, .nan]}", ":5:51: torque must hold finite numbers, got \".nan\""},
+           std::pair{"wrench: {model: robot, force: [1, 0, 0], for: 1, persistent: true}", ":5:59: for does not go with persistent"},
+           std::pair{"wrench: {model: robot, clear: true, for: 1}", ":5:54: for does not go with clear"},
+           std::pair{"wrench: {model: robot, clear: true, force: [1, 0, 0]}", ":5:56: force does not go with clear"},
+           std::pair{"wrench: {force: [1, 0, 0]}", ":5:21: wrench needs model"},
+           std::pair{"joint_force: {model: robot, force: 1}", ":5:26: joint_force needs joint"},
+           std::pair{"joint_force: {model: robot, joint: elbow}", ":5:26: joint_force needs force or clear"},
+           std::pair{"joint_force: {model: robot, joint: elbow, force: much}", ":5:62: force must be a number, got \"much\""},
+       })
+    EXPECT_EQ(error(start_ + "events:\n  - {at: 1, " + wrong + "}\n"), expected) << wrong;
   EXPECT_EQ(error(start_ + "never:\n  - {port: 'A0:out', member: data, min: 2, max: 1}\n"), ":5:49: max must not be less than min");
   EXPECT_EQ(error("{"), ":1:1: is no YAML: end of map flow not found");
   EXPECT_EQ(error(start_ + "duration: 6\n"), ":4:1: plan has duration twice");

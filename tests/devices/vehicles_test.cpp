@@ -476,5 +476,45 @@ TEST(JointForce, joints_of_the_plugin_take_efforts) {
   EXPECT_NEAR(joints.state(0).velocity, 2, 0.01);
 }
 
+TEST(JointForce, of_a_client_is_added_to_what_the_motor_does_and_ends_when_it_should) {
+  SimulationFixture f(world_of_text(
+      weightless +
+      "<model name='m'><link name='a'/><link name='b'><inertial><inertia><izz>0.5</izz></inertia></inertial></link>"
+      "<link name='c'><inertial><mass>2</mass></inertial></link><joint name='a' type='revolute'><parent>a</parent><child>b</child>"
+      "<axis><xyz>0 0 1</xyz></axis></joint><joint name='slide' type='prismatic'><parent>a</parent><child>c</child><axis><xyz>1 0 0</xyz>"
+      "</axis></joint><joint name='w' type='fixed'><parent>world</parent><child>a</child></joint></model>"));
+  Simulation& s = *f.simulation;
+  const auto joint = [&](const char* name) { return *s.physics().find_joint(name); };
+  const auto turning = [&] { return s.physics().joint_state(joint("m::a")).velocity; };  // a link has that name, too
+  EXPECT_FALSE(s.physics().find_joint("m::b"));
+  EXPECT_FALSE(s.physics().find_joint("nobody::a"));
+  const auto calm = s.hash();
+  ASSERT_TRUE(s.add_effort(joint("m::a"), 1, std::chrono::milliseconds(500)));
+  const auto pushed = s.hash();
+  EXPECT_NE(pushed, calm);
+  ASSERT_TRUE(s.keep_effort(joint("m::slide"), -4));
+  EXPECT_NE(s.hash(), pushed);
+  f.run(1);
+  EXPECT_NEAR(turning(), 1 / 0.5 * 0.5, 1e-6);
+  EXPECT_NEAR(s.physics().joint_state(joint("m::slide")).velocity, -4.0 / 2, 1e-6);
+  ASSERT_TRUE(s.keep_effort(joint("m::slide"), 0));
+  f.run(0.5);
+  EXPECT_NEAR(s.physics().joint_state(joint("m::slide")).velocity, -2, 1e-6);
+  // Beside a client of the joints: its effort and this one.
+  Joints joints(f, "m");
+  joints.command(0, RTMSIM_JOINT_EFFORT, 1);
+  ASSERT_TRUE(s.add_effort(joint("m::a"), 2, std::chrono::seconds(1)));
+  f.run(1);
+  EXPECT_NEAR(turning(), 1 + (1 + 2) / 0.5, 0.02);
+  EXPECT_EQ(s.add_effort(joint("m::w"), 1, {}).error().message, "model m: joint w neither turns nor slides");
+  EXPECT_EQ(s.keep_effort(joint("m::a"), NAN).error().message, "model m: the effort of joint a must be finite and below 1e7");
+  ASSERT_TRUE(s.keep_effort(joint("m::slide"), 5));
+  std::vector<std::string> notes;
+  ASSERT_TRUE(s.reset(notes));
+  EXPECT_EQ(s.hash(), calm);
+  f.run(0.1);
+  EXPECT_EQ(s.physics().joint_state(joint("m::slide")).velocity, 0);
+}
+
 }  // namespace
 }  // namespace sim

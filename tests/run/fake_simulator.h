@@ -71,8 +71,8 @@ class FakeSimulator final : public Simulator {
     return note("pose " + model + " " + std::to_string(numbers.size()));
   }
   base::Result<void> push(const std::string& name, const Push& push) override {
-    if (!poses.contains(name)) return base::Error{"wrench: no model or link " + name};
-    return note("push " + name + " " + std::to_string(push.numbers.size()));
+    if (!poses.contains(name.substr(0, name.find("::")))) return base::Error{"wrench: no model or link " + name};
+    return note("push " + name + " " + std::to_string(push.numbers.size()) + (push.stays ? " stays" : ""));
   }
   base::Result<void> screenshot(const std::string& file, std::uint32_t) override { return note("screenshot " + file); }
   base::Result<void> begin_steps(std::int64_t steps, bool) override {

@@ -1,4 +1,5 @@
 # Many processes in lock step with one simulator, and what happens to the rest when one of them fails: lockstep.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
 import re
 import signal
 import subprocess
@@ -365,6 +366,32 @@ with System(bin_dir, lib_dir) as s:
             before = s.stats()["steps"]
             s.simctl("step", "3")
             assert s.stats()["steps"] == before + 3 and s.stats()["paused"]
+
+    elif case == "pushes_in_a_tick":
+        # A component can push in its tick and wait for the answer: the wrench begins with the next step, in one order whoever asked first.
+        s.naming()
+        box = ("<sdf version='1.9'><model name='box'><pose>0 0 50 0 0 0</pose><link name='l'><gravity>false</gravity><inertial><mass>2</mass></inertial></link>"
+               "</model></sdf>")
+        found = []
+        for forces in ("0.1", "0.2", "0.3"), ("0.3", "0.2", "0.1"):
+            server = s.server(empty, "--lockstep", "--rtf", "0", "--paused", "--wait-for", "1")
+            s.simctl("spawn", box)
+            host = s.host(relay("Hangs"))
+            join(s, 1)
+            s.simctl("step", "100")
+            host.send_signal(signal.SIGSTOP)
+            s.until("a stopped process", lambda: is_stopped(host))
+            stepper = s.start(f"{bin_dir}/simctl", "-s", s.server_id, "step", "100")
+            s.until("a tick that waits", lambda: any(p["late"] for p in s.participants()))
+            for force in forces:
+                s.simctl("wrench", "box", force, "0", "0")
+            host.send_signal(signal.SIGCONT)
+            assert stepper.wait(60) == 0, s.log(stepper)
+            found.append(json.loads(s.simctl("--json", "velocity", "box"))["linear"][0])
+            for process in (host, server):
+                process.send_signal(signal.SIGTERM)
+                process.wait(60)
+        assert found[0] == found[1] and abs(found[0] - 0.6 / 2 * 0.001) < 1e-9, found
 
     elif case == "refused_in_a_hang":
         # What needs the world to stand between two steps is refused with the name of who hangs, and does not happen later.

@@ -100,6 +100,23 @@ def motion():
     ok("wrench", "crate", "--clear")
     ok("step", "100")
     near(read("velocity", "crate")["linear"][0:1], [0.2 - 4 / 2 * 100 * step], 1e-3)
+    # A joint, beside what its motor does; a link may have its name.
+    swing = ("<sdf version='1.9'><model name='swing'><link name='base'/><joint name='hold' type='fixed'><parent>world</parent><child>base</child></joint><link name='arm'>"
+             "<inertial><inertia><ixx>1</ixx><iyy>1</iyy><izz>0.5</izz></inertia></inertial></link><joint name='arm' type='revolute'><parent>base</parent><child>arm</child>"
+             "<axis><xyz>0 0 1</xyz></axis></joint></model></sdf>")
+    ok("spawn", swing, "--name", "swing", "--pose", "3", "0", "50", "0")
+    ok("wrench", "swing", "--joint", "arm", "2", "--for", "0.1")
+    ok("step", "200")
+    near(read("velocity", "swing::arm")["angular"], (0, 0, 2 / 0.5 * 0.1), 1e-3)
+    ok("wrench", "swing", "--joint", "arm", "--persistent", "-2")
+    ok("step", "100")
+    ok("wrench", "swing", "--joint", "arm", "--clear")
+    near(read("velocity", "swing::arm")["angular"], (0, 0, 0.4 - 4 * 100 * step), 1e-3)
+    refused("wrench", "swing", "--joint", "elbow", "1", says="no joint swing::elbow; joints: swing::hold, swing::arm")
+    refused("wrench", "swing", "--joint", "hold", "1", says="joint hold neither turns nor slides")
+    refused("wrench", "swig", "--joint", "arm", "1", says="no model or link swig")
+    for words in (["1", "0", "0"], [], ["--clear", "1"]):
+        refused("wrench", "swing", "--joint", "arm", *words, code=2)
     for words in (["--clear", "1", "0", "0"], ["--persistent"], ["--persistent", "--for", "1", "1", "0", "0"]):
         refused("wrench", "crate", *words, code=2)
 

@@ -67,6 +67,12 @@ class SimulationProbe : public RTC::DataFlowComponentBase {
         "</collision></link></model></sdf>",
         "parcel", {4, 4, 1, 0, 0, 0});
     const bool is_there = expect("y of what was spawned", simulation_->get_pose(name).y, 4);
+    // While time stands still: it falls, and moves as it is pushed.
+    simulation_->push(name, {0, 2, 0, 0, 0, 0}, 0.1);
+    simulation_->step(100);
+    const bool is_pushed = simulation_->get_pose(name).y > 4 + 1e-5;
+    if (!is_pushed) return expect("whether it was pushed", is_pushed, 1);
+    if (!refuses("a joint that is not there", [&] { simulation_->push_joint(name, "hinge", 1, 0); })) return false;
     simulation_->remove(name);
     return is_there && refuses("a pose of what was removed", [&] { simulation_->get_pose(name); });
   }

@@ -32,6 +32,10 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   const auto wrench = there_and_back(WrenchRequest{"robot::link", {1, 2, 3}, {4, 5, 6}, 0.5});
   EXPECT_EQ(wrench.torque[2], 6);
   EXPECT_EQ(wrench.duration, 0.5);
+  EXPECT_FALSE(wrench.is_joint);
+  const auto joint = there_and_back(WrenchRequest{"arm::elbow", {3}, {}, WrenchRequest::until_the_next, true});
+  EXPECT_EQ(joint.force[0], 3);
+  EXPECT_TRUE(joint.is_joint);
   EXPECT_EQ(there_and_back(SetVelocityRequest{"m", {1, 2, 3}, {4, 5, 6}}).angular[0], 4);
   const auto spawn = there_and_back(SpawnRequest{"<sdf/>", false, "box", true, planar_pose(1, 0, 0, 1)});
   EXPECT_EQ(spawn.sdf, "<sdf/>");

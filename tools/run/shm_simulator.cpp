@@ -170,13 +170,14 @@ Result<void> ShmSimulator::set_pose(const std::string& model, const std::vector<
 
 Result<void> ShmSimulator::push(const std::string& name, const Push& push) {
   const auto& v = push.numbers;
-  if (v.size() != 3 && v.size() != 6)
-    return Error{"push: expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(v.size()) + " numbers"};
+  if (push.is_joint ? v.size() != 1 : v.size() != 3 && v.size() != 6)
+    return Error{"push: expected FX FY FZ or FX FY FZ TX TY TZ, of a joint one number, got " + std::to_string(v.size()) + " numbers"};
   shm::WrenchRequest request;
   request.name = name;
-  std::copy_n(v.begin(), 3, request.force);
+  request.is_joint = push.is_joint;
+  std::copy_n(v.begin(), push.is_joint ? 1 : 3, request.force);
   if (v.size() == 6) std::copy_n(v.begin() + 3, 3, request.torque);
-  request.duration = push.duration_s;
+  request.duration = push.stays ? shm::WrenchRequest::until_the_next : push.duration_s;
   const auto reply = ask(request);
   return reply ? Result<void>() : reply.error();
 }

@@ -53,8 +53,10 @@ struct ModelToSpawn {
 };
 
 struct Push {
-  std::vector<double> numbers;  // force [N], three; then torque [N m], three or none; in the world frame
+  std::vector<double> numbers;  // force [N], three; then torque [N m], three or none; in the world frame. Of a joint one [N m or N]
   double duration_s = 0;        // simulated; 0: one step
+  bool stays = false;           // until the next one of the link or joint that stays; one of zeros ends it
+  bool is_joint = false;
 };
 
 class Simulator {
@@ -87,7 +89,7 @@ class Simulator {
   virtual base::Result<void> remove(const std::string& model) = 0;
   // Numbers as those of ModelToSpawn; X Y YAW keeps height and tilt.
   virtual base::Result<void> set_pose(const std::string& model, const std::vector<double>& numbers) = 0;
-  // At the centre of mass of MODEL or MODEL::LINK.
+  // At the centre of mass of MODEL or MODEL::LINK, or of MODEL::JOINT.
   virtual base::Result<void> push(const std::string& name, const Push& push) = 0;
 
   // The world from above with the rays of range finders, a square PNG.

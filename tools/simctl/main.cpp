@@ -155,18 +155,24 @@ void add_control(base::Command& app, Work& work) {
   auto forces = option_value<std::vector<double>>();
   auto duration = option_value(0.0);
   wrench->add_option("MODEL", *pushed, "Model or MODEL::LINK; the force acts at its centre of mass")->required();
-  wrench->add_option("NUMBERS", *forces, "FX FY FZ [N], TX TY TZ [N m], in the world")->expected(0, 6);
+  wrench->add_option("NUMBERS", *forces, "FX FY FZ [N], TX TY TZ [N m], in the world; with --joint: one, N m or N")->expected(0, 6);
+  auto pushed_joint = option_value<std::string>();
+  wrench->add_option("--joint", *pushed_joint, "Push this joint of MODEL, beside what its motor does");
   auto* for_time =
       wrench->add_option("--for", *duration, "Duration [simulated s] (default: one step)")->check(base::number_between(0.0, 1e6));
   auto* stays = wrench->add_flag("--persistent")->description("Push until --clear, another --persistent or a reset")->excludes(for_time);
-  auto* clear = wrench->add_flag("--clear")->description("End the persistent wrenches of the link")->excludes(for_time)->excludes(stays);
-  wrench->callback([&work, pushed, forces, duration, stays, clear] {
+  auto* clear =
+      wrench->add_flag("--clear")->description("End the persistent wrenches of the link or joint")->excludes(for_time)->excludes(stays);
+  wrench->callback([&work, pushed, pushed_joint, forces, duration, stays, clear] {
+    const bool is_joint = !pushed_joint->empty();
     if (clear->count() > 0 && !forces->empty()) base::reject_command_line("wrench", "--clear takes no numbers");
-    if (clear->count() > 0) forces->assign(3, 0);
+    if (clear->count() > 0) forces->assign(is_joint ? 1 : 3, 0);
     if (clear->count() > 0 || stays->count() > 0) *duration = shm::WrenchRequest::until_the_next;
-    if (forces->size() != 3 && forces->size() != 6)
-      base::reject_command_line("wrench", "expected FX FY FZ or FX FY FZ TX TY TZ, got " + std::to_string(forces->size()) + " numbers");
-    work = [=](Control& c) { simctl::wrench(c, *pushed, *forces, *duration); };
+    const bool is_right = is_joint ? forces->size() == 1 : forces->size() == 3 || forces->size() == 6;
+    if (!is_right)
+      base::reject_command_line("wrench", std::string("expected ") + (is_joint ? "one number" : "FX FY FZ or FX FY FZ TX TY TZ") +
+                                              ", got " + std::to_string(forces->size()) + " numbers");
+    work = [=](Control& c) { simctl::wrench(c, {*pushed, *pushed_joint}, *forces, *duration); };
   });
 
   auto* odometry = app.add_subcommand("odometry", "Set the odometry of a robot: odometry IFACE [X Y A]");

@@ -60,10 +60,11 @@ void model_velocity(Control& control, const std::string& model, const std::vecto
   control.ask(request);
 }
 
-void wrench(Control& control, const std::string& name, const std::vector<double>& v, double seconds) {
+void wrench(Control& control, const Pushed& what, const std::vector<double>& v, double seconds) {
   shm::WrenchRequest request;
-  request.name = name;
-  std::copy(v.begin(), v.begin() + 3, request.force);
+  request.is_joint = !what.joint.empty();
+  request.name = request.is_joint ? what.name + "::" + what.joint : what.name;
+  std::copy(v.begin(), v.begin() + (request.is_joint ? 1 : 3), request.force);
   if (v.size() == 6) std::copy(v.begin() + 3, v.end(), request.torque);
   request.duration = seconds;
   const auto reply = control.ask(request);

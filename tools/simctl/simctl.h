@@ -44,9 +44,13 @@ void velocity(Control& control, const std::string& iface, const std::vector<doub
 bool is_position_iface(std::uint32_t server_id, const std::string& name);
 // Shows that of a model or MODEL::LINK when there are no numbers; VX VY VA or all six set it, in the world [m/s, rad/s].
 void model_velocity(Control& control, const std::string& model, const std::vector<double>& values);
-// Three numbers of force [N] or six with torque [N m], in the world, for so long [s]; 0: one step. Returns when that is over, and at once
-// where time stands still.
-void wrench(Control& control, const std::string& name, const std::vector<double>& values, double seconds);
+struct Pushed {
+  std::string name;   // MODEL or MODEL::LINK
+  std::string joint;  // of MODEL; empty: the link
+};
+// Three numbers of force [N] or six with torque [N m], in the world, or one of a joint [N m or N], for so long [s]; 0: one step. Returns
+// when that is over, and at once where time stands still.
+void wrench(Control& control, const Pushed& what, const std::vector<double>& values, double seconds);
 // To X Y A, or to 0 when there are no numbers.
 void reset_odometry(Control& control, const std::string& iface, const std::vector<double>& values);
 struct JointOptions {

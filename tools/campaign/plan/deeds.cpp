@@ -75,6 +75,8 @@ constexpr std::array event_rows = {
     EventRow{"spawn", Event::Kind::spawn},
     EventRow{"delete", Event::Kind::remove},
     EventRow{"push", Event::Kind::push},
+    EventRow{"wrench", Event::Kind::wrench},
+    EventRow{"joint_force", Event::Kind::joint_force},
     EventRow{"pose", Event::Kind::pose},
     EventRow{"set", Event::Kind::set},
     EventRow{"activate", Event::Kind::activate},
@@ -87,6 +89,36 @@ constexpr std::array event_rows = {
 
 constexpr const char* pose_words = "x y yaw, x y z yaw or x y z roll pitch yaw";
 
+// How long it pushes. True: `clear` ends those that stay, so that it has no numbers.
+bool read_push_time(const YAML::Node& what, Event& event) {
+  const auto is_set = [&](const char* key) { return what[key] && what[key].Scalar() == "true"; };
+  const bool clears = is_set("clear");
+  event.stays = clears || is_set("persistent");
+  if (what["for"] && event.stays) fail_at(what["for"], std::string("for does not go with ") + (clears ? "clear" : "persistent"));
+  if (what["for"]) event.duration_s = *base::parse_number(what["for"].Scalar());
+  for (const char* key : {"force", "torque", "persistent"}) {
+    if (clears && what[key]) fail_at(what[key], std::string(key) + " does not go with clear");
+  }
+  return clears;
+}
+
+void read_wrench(const YAML::Node& what, Event& event) {
+  event.target = word(what, "model");
+  const bool clears = read_push_time(what, event);
+  if (!clears && !what["force"] && !what["torque"]) fail_at(what, "wrench needs force, torque or clear");
+  for (const char* key : {"force", "torque"}) {
+    const auto numbers = what[key] ? numbers_of(what[key], key, {3}, "3 numbers") : std::vector<std::string>(3, "0");
+    event.numbers.insert(event.numbers.end(), numbers.begin(), numbers.end());
+  }
+}
+
+void read_joint_force(const YAML::Node& what, Event& event) {
+  event.target = word(what, "model") + "::" + word(what, "joint");
+  const bool clears = read_push_time(what, event);
+  if (!clears && !what["force"]) fail_at(what, "joint_force needs force or clear");
+  event.numbers = {clears ? "0" : base::format_number(*base::parse_number(what["force"].Scalar()))};
+}
+
 void read_details(const YAML::Node& what, Event& event) {
   switch (event.kind) {
     case Event::Kind::spawn:
@@ -98,6 +130,12 @@ void read_details(const YAML::Node& what, Event& event) {
       event.target = word(what, "model");
       event.numbers = numbers_of(what["force"], "force", {3, 6}, "3 numbers of a force or 6 of a force and a torque");
       if (what["for"]) event.duration_s = *base::parse_number(what["for"].Scalar());
+      break;
+    case Event::Kind::wrench:
+      read_wrench(what, event);
+      break;
+    case Event::Kind::joint_force:
+      read_joint_force(what, event);
       break;
     case Event::Kind::pose:
       event.target = word(what, "model");

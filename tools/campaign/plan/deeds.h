@@ -23,16 +23,17 @@ struct Condition {
 };
 
 struct Event {
-  enum class Kind { spawn, remove, push, pose, set, activate, deactivate, reset, connect, disconnect, command };
+  enum class Kind { spawn, remove, push, wrench, joint_force, pose, set, activate, deactivate, reset, connect, disconnect, command };
   Kind kind = Kind::command;
   std::string text;  // in one line, for reports
   std::optional<double> at_s;
   std::optional<Condition> when;
-  std::string target;                // model, component, connection, file to spawn, command line
+  std::string target;                // model, component, connection, file to spawn, command line; MODEL::JOINT of a joint_force
   std::string name;                  // of what is spawned; of the parameter
   std::string value;                 // of the parameter
   std::vector<std::string> numbers;  // pose, force
-  double duration_s = 0;             // of a push
+  double duration_s = 0;             // of a push, wrench or joint_force
+  bool stays = false;                // likewise: until the next one that stays
 };
 
 struct Fault {

@@ -126,6 +126,8 @@ constexpr std::array event_keys = {
     Key{"spawn", Form::map, "spawn", false, "Adds a model"},
     Key{"delete", Form::text, {}, false, "Removes a model"},
     Key{"push", Form::map, "push", false, "Pushes a model"},
+    Key{"wrench", Form::map, "wrench", false, "Pushes a link by a force and a torque"},
+    Key{"joint_force", Form::map, "joint_force", false, "Pushes a joint, beside what its motor does"},
     Key{"pose", Form::map, "pose", false, "Puts a model somewhere"},
     Key{"set", Form::map, "set", false, "Sets a configuration parameter"},
     Key{"activate", Form::text, {}, false, "Activates a component"},
@@ -144,6 +146,22 @@ constexpr std::array push_keys = {
     Key{"model", Form::text, {}, true, "Model or MODEL::LINK"},
     Key{"force", Form::values, {}, true, "FX FY FZ [N], and TX TY TZ [N m]"},
     Key{"for", Form::positive, {}, false, "Simulated seconds; default: one step"},
+};
+constexpr std::array wrench_keys = {
+    Key{"model", Form::text, {}, true, "Model or MODEL::LINK, at its centre of mass"},
+    Key{"force", Form::values, {}, false, "FX FY FZ [N], world frame; default: 0 0 0"},
+    Key{"torque", Form::values, {}, false, "TX TY TZ [N m], world frame; default: 0 0 0"},
+    Key{"for", Form::positive, {}, false, "Simulated seconds; default: one step"},
+    Key{"persistent", Form::flag, {}, false, "Push until the next one of the link that is persistent"},
+    Key{"clear", Form::flag, {}, false, "End what is persistent"},
+};
+constexpr std::array joint_force_keys = {
+    Key{"model", Form::text, {}, true, "Model of the world"},
+    Key{"joint", Form::text, {}, true, "Joint of the model that turns or slides"},
+    Key{"force", Form::number, {}, false, "Torque about or force along its axis [N m or N]"},
+    Key{"for", Form::positive, {}, false, "Simulated seconds; default: one step"},
+    Key{"persistent", Form::flag, {}, false, "Push until the next one of the joint that is persistent"},
+    Key{"clear", Form::flag, {}, false, "End what is persistent"},
 };
 constexpr std::array pose_keys = {
     Key{"model", Form::text, {}, true, "Model of the world"},
@@ -206,6 +224,8 @@ constexpr std::array shapes = {
     Shape{"event", event_keys},
     Shape{"spawn", spawn_keys},
     Shape{"push", push_keys},
+    Shape{"wrench", wrench_keys},
+    Shape{"joint_force", joint_force_keys},
     Shape{"pose", pose_keys},
     Shape{"set", set_keys},
     Shape{"joint", joint_keys},

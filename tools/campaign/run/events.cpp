@@ -115,7 +115,11 @@ Result<void> do_it(editor::RunScene& scene, const Event& event) {
     case Event::Kind::remove:
       return unless_missing(scene, event.target, scene.simulator.remove(event.target));
     case Event::Kind::push:
-      return unless_missing(scene, event.target, scene.simulator.push(event.target, {numbers_of(event), event.duration_s}));
+    case Event::Kind::wrench:
+    case Event::Kind::joint_force: {
+      const editor::Push push{numbers_of(event), event.duration_s, event.stays, event.kind == Event::Kind::joint_force};
+      return unless_missing(scene, event.target, scene.simulator.push(event.target, push));
+    }
     case Event::Kind::pose:
       return unless_missing(scene, event.target, scene.simulator.set_pose(event.target, numbers_of(event)));
     case Event::Kind::set:

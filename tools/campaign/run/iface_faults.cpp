@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 using Object = Fault::Object;
 
 // Components that command the iface that they name.
-constexpr std::array<std::string_view, 7> actuator_types = {
-    ":RTCPosition2d:", ":RTCActArray:", ":RTCGripper:", ":RTCLimb:", ":RTCManipulator:", ":RTCPTZ:", ":RTCRobotHardware:"};
+constexpr std::array<std::string_view, 8> actuator_types = {":RTCPosition2d:", ":RTCPosition3d:",  ":RTCActArray:", ":RTCGripper:",
+                                                            ":RTCLimb:",       ":RTCManipulator:", ":RTCPTZ:",      ":RTCRobotHardware:"};
 
 std::string parameter(const editor::SavedComponent& component, const std::string& name) {
   for (const auto& set : component.configuration_sets) {

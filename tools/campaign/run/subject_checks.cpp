@@ -210,8 +210,14 @@ class SubjectChecks {
       case Event::Kind::remove:
         return check_model(where, event.target);
       case Event::Kind::push:
+      case Event::Kind::wrench:
         if (is_static(event.target)) fail(where, "model " + base::in_quotes(event.target) + " is static and cannot be pushed");
         return check_model(where, event.target);
+      case Event::Kind::joint_force: {
+        const auto colons = event.target.find("::");
+        check_model(where, event.target.substr(0, colons));
+        return check_joint(where, event.target.substr(0, colons), event.target.substr(colons + 2));
+      }
       case Event::Kind::pose:
         return check_model(where, event.target);
       case Event::Kind::set:
