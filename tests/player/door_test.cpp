@@ -53,9 +53,9 @@ TEST(ClientTimeouts, ends_with_those_who_do_not_end_a_message) {
   EXPECT_TRUE(timeouts.expired(start + seconds(130), true, true));
   // One message after another is no long message.
   ClientTimeouts other(start);
-  EXPECT_FALSE(other.look(start + seconds(1), true, true));
-  EXPECT_FALSE(other.look(start + seconds(20), true, false));
-  EXPECT_FALSE(other.look(start + seconds(40), true, true));
+  EXPECT_FALSE(other.expired(start + seconds(1), true, true));
+  EXPECT_FALSE(other.expired(start + seconds(20), true, false));
+  EXPECT_FALSE(other.expired(start + seconds(40), true, true));
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ Result<std::string> write_run_page(const PageCall& call, const Json& summary) {
 Result<PageBesideRun> PageBesideRun::start(const PageCall& call) {
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return about(call.file, "no socket for rtse-page");
-  shm::FileHandle ours(ends[0]), theirs(ends[1]);
+  base::FileHandle ours(ends[0]), theirs(ends[1]);
   auto words = words_of(call);
   words.emplace_back("--follow");
   auto child = ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
@@ -98,12 +98,12 @@ Result<PageBesideRun> PageBesideRun::start(const PageCall& call) {
 
 PageBesideRun::~PageBesideRun() {
   if (line_.get() < 0) return;
-  line_ = shm::FileHandle();
+  line_ = base::FileHandle();
   process_.wait(given_up_limit);
 }
 
 Result<std::string> PageBesideRun::finish(const Json& summary) {
-  const shm::FileHandle line = std::exchange(line_, shm::FileHandle());
+  const base::FileHandle line = std::exchange(line_, shm::FileHandle());
   const auto text = text_of(summary);
   for (std::string_view rest = text; !rest.empty() && process_.is_running();) {
     const auto sent = ::send(line.get(), rest.data(), rest.size(), MSG_NOSIGNAL);

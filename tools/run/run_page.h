@@ -7,7 +7,7 @@
 
 #include "base/child_process.h"
 #include "run/run_system.h"
-#include "shm/file_handle.h"
+#include "base/file_handle.h"
 
 namespace editor {
 
@@ -38,12 +38,12 @@ class PageBesideRun {
   Result<std::string> finish(const nlohmann::ordered_json& summary);
 
  private:
-  PageBesideRun(PageCall call, ChildProcess process, shm::FileHandle line)
+  PageBesideRun(PageCall call, ChildProcess process, base::FileHandle line)
       : call_(std::move(call)), process_(std::move(process)), line_(std::move(line)) {}
 
   PageCall call_;
   ChildProcess process_;
-  shm::FileHandle line_;
+  base::FileHandle line_;
 };
 
 }  // namespace editor
