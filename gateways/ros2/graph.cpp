@@ -181,6 +181,14 @@ void Graph::judge_family(const Peer& peer) {
   }
 }
 
+// Another reader of ours on the topic does.
+bool Graph::takes_best_effort(const EndpointSettings& topic) const {
+  return std::ranges::any_of(own_, [&](const auto& other) {
+    const auto& [settings, is_writer, node] = other.second;
+    return !is_writer && !settings.is_reliable && settings.topic == topic.topic && settings.type == topic.type;
+  });
+}
+
 void Graph::judge_fit(const Peer& peer) {
   const std::string name = peer.topic.starts_with("rt/") ? peer.topic.substr(2) : peer.topic;
   for (const auto& [guid, own] : own_) {
@@ -196,7 +204,7 @@ void Graph::judge_fit(const Peer& peer) {
       words = "is offered as volatile, but transient local is requested by a reader";
     } else if (own.is_writer && peer.is_reliable && !own.settings.is_reliable) {
       words = "is offered as best effort, but reliable is requested by a reader";
-    } else if (!own.is_writer && own.settings.is_reliable && !peer.is_reliable) {
+    } else if (!own.is_writer && own.settings.is_reliable && !peer.is_reliable && !takes_best_effort(own.settings)) {
       words = "is requested as reliable, but best effort is offered by a writer";
     } else if (!own.is_writer && own.settings.is_transient && !peer.is_transient) {
       words = "is requested as transient local, but volatile is offered by a writer";

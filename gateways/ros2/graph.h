@@ -75,6 +75,7 @@ class Graph {
   void see(const Peer& peer);
   void judge_family(const Peer& peer);
   void judge_fit(const Peer& peer);
+  bool takes_best_effort(const EndpointSettings& topic) const;
   void learn(const Received& message);
   void tell();
 

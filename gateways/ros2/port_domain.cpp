@@ -70,10 +70,13 @@ class PortDomain {
     if (writer) graph_->add_endpoint(node_, (*writer)->guid(), topic, true);
     return writer;
   }
-  base::Result<std::unique_ptr<Reader>> add_reader(const EndpointSettings& topic, std::shared_ptr<Sink> sink) {
+  // Beside a reliable reader, one that is not leaves out what the reliable one receives.
+  base::Result<std::unique_ptr<Reader>> add_reader(const EndpointSettings& topic, std::shared_ptr<Sink> sink, bool is_beside) {
     const auto mine = turn_.take();
-    auto reader = participant_->make_reader(
-        topic, [this, sink = std::move(sink)](Received& received) { arrived_.emplace_back(sink, std::move(received.bytes)); });
+    auto reader = participant_->make_reader(topic, [this, sink = std::move(sink), is_beside](Received& received) {
+      const Peer* from = is_beside ? graph_->peer(received.identity.writer) : nullptr;
+      if (from == nullptr || !from->is_reliable) arrived_.emplace_back(sink, std::move(received.bytes));
+    });
     if (reader) graph_->add_endpoint(node_, (*reader)->guid(), topic, false);
     return reader;
   }
@@ -145,16 +148,21 @@ class PortPublication final : public Publication {
 
 class PortSubscription final : public Subscription {
  public:
-  PortSubscription(std::shared_ptr<PortDomain> domain, std::unique_ptr<Reader> reader, std::shared_ptr<Sink> sink)
-      : domain_(std::move(domain)), reader_(std::move(reader)), sink_(std::move(sink)) {}
+  PortSubscription(std::shared_ptr<PortDomain> domain, std::shared_ptr<Sink> sink) : domain_(std::move(domain)), sink_(std::move(sink)) {}
   ~PortSubscription() override {
-    domain_->remove(std::move(reader_));
+    for (auto& reader : readers_) domain_->remove(std::move(reader));
     sink_->close();
+  }
+  base::Result<void> add(const EndpointSettings& topic, bool is_beside) {
+    auto reader = domain_->add_reader(topic, sink_, is_beside);
+    if (!reader) return reader.error();
+    readers_.push_back(std::move(*reader));
+    return {};
   }
 
  private:
   const std::shared_ptr<PortDomain> domain_;
-  std::unique_ptr<Reader> reader_;
+  std::vector<std::unique_ptr<Reader>> readers_;
   const std::shared_ptr<Sink> sink_;
 };
 
@@ -169,13 +177,18 @@ base::Result<std::unique_ptr<Publication>> publish_port(const PortDomainSettings
 }
 
 base::Result<std::unique_ptr<Subscription>> subscribe_port(const PortDomainSettings& settings, const EndpointSettings& topic,
-                                                           OnBytes receiver) {
+                                                           bool takes_all, OnBytes receiver) {
   auto domain = PortDomain::of(settings);
   if (!domain) return domain.error();
-  auto sink = std::make_shared<Sink>(std::move(receiver));
-  auto reader = (*domain)->add_reader(topic, sink);
-  if (!reader) return reader.error();
-  return std::unique_ptr<Subscription>(std::make_unique<PortSubscription>(*domain, std::move(*reader), std::move(sink)));
+  auto made = std::make_unique<PortSubscription>(*domain, std::make_shared<Sink>(std::move(receiver)));
+  // The one of best effort comes first: the reliable one would be reported as one that does not fit.
+  if (takes_all) {
+    EndpointSettings other = topic;
+    other.is_reliable = false;
+    if (auto done = made->add(other, true); !done) return done.error();
+  }
+  if (auto done = made->add(topic, false); !done) return done.error();
+  return std::unique_ptr<Subscription>(std::move(made));
 }
 
 }  // namespace ros2

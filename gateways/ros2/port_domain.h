@@ -40,7 +40,8 @@ using OnBytes = std::function<void(std::span<const std::uint8_t>)>;
 
 // The settings count for the first topic of the process only.
 base::Result<std::unique_ptr<Publication>> publish_port(const PortDomainSettings& settings, const EndpointSettings& topic);
+// `takes_all`: the samples of all writers, each once, for a topic whose settings are reliable.
 base::Result<std::unique_ptr<Subscription>> subscribe_port(const PortDomainSettings& settings, const EndpointSettings& topic,
-                                                           OnBytes receiver);
+                                                           bool takes_all, OnBytes receiver);
 
 }  // namespace ros2

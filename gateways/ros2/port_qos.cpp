@@ -48,7 +48,8 @@ void name_useless_keys(const coil::Properties& connection, const std::string& no
 
 }  // namespace
 
-base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, EndpointSettings& endpoint) {
+base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic) {
+  EndpointSettings& endpoint = topic.endpoint;
   const std::string python = name + (is_writer ? ".writer_qos." : ".reader_qos.");
   const std::string cpp = name + (is_writer ? ".publisher." : ".subscriber.");
   const auto policy = [&](const std::string& in_python, const std::string& in_cpp, const std::string& own) {
@@ -58,8 +59,9 @@ base::Result<void> read_qos(const coil::Properties& connection, const std::strin
                                    "_durability_qos", endpoint.is_transient);
   if (!transient) return transient.error();
   endpoint.is_transient = *transient;
-  const auto reliable = is_second(policy("reliability.kind", "qos.reliability.kind", "reliability"), "best_effort", "reliable",
-                                  "_reliability_qos", endpoint.is_reliable);
+  const auto reliability = policy("reliability.kind", "qos.reliability.kind", "reliability");
+  topic.takes_all = !is_writer && reliability.value.empty();
+  const auto reliable = is_second(reliability, "best_effort", "reliable", "_reliability_qos", endpoint.is_reliable);
   if (!reliable) return reliable.error();
   endpoint.is_reliable = *reliable;
   const auto keep_all =

@@ -5,6 +5,8 @@
 //   NAME.publisher.qos.* and NAME.subscriber.qos.*      as OpenRTM's FastRTPSTransport of C++
 //   NAME.reliability, NAME.durability, NAME.depth       for both directions: reliable, best_effort; volatile, transient_local; a number
 //
+// Without a reliability a writer is reliable, and a reader receives from all writers.
+//
 // Policies that OpenRTM has and this transport does not are named in a warning. Pure, except for that line; any thread.
 #pragma once
 
@@ -17,6 +19,11 @@
 
 namespace ros2 {
 
-base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, EndpointSettings& endpoint);
+struct PortTopic {
+  EndpointSettings endpoint{};
+  bool takes_all = false;  // a reader of reliable and of best effort writers
+};
+
+base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic);
 
 }  // namespace ros2

@@ -39,7 +39,7 @@ bool is_large(const std::string& type) {
 }
 
 // The message of a connection: that of marshaling_type, or the default one of the data type.
-base::Result<EndpointSettings> endpoint_of_type(const coil::Properties& connection, bool is_writer) {
+base::Result<PortTopic> topic_of_type(const coil::Properties& connection, bool is_writer) {
   std::string marshaling = text_of_one_side(connection, is_writer, "marshaling_type");
   if (marshaling.empty()) marshaling = default_mapping;
   const std::string prefix = std::string(default_mapping) + ":";
@@ -51,26 +51,27 @@ base::Result<EndpointSettings> endpoint_of_type(const coil::Properties& connecti
   if (made == nullptr)
     return base::Error{"marshaling_type must be ros2:PKG/TYPE of a mapped message, or must be left out, got " +
                        base::in_quotes(marshaling)};
-  EndpointSettings endpoint;
+  PortTopic topic;
+  EndpointSettings& endpoint = topic.endpoint;
   endpoint.type = type_on_wire(made->name());
   endpoint.user_data = "typehash=" + ros::TypeHash::of_text(made->definition()) + ";";
   endpoint.is_large = is_writer && is_large(made->name());
   types.deleteObject(made);
-  return endpoint;
+  return topic;
 }
 
 // The topic of a connection as it is on the wire.
-base::Result<EndpointSettings> endpoint_of(const coil::Properties& connection, bool is_writer) {
+base::Result<PortTopic> topic_of(const coil::Properties& connection, bool is_writer) {
   const std::string name = text_of_one_side(connection, is_writer, "interface_type");
   std::string topic = std::string(base::trim(connection.getProperty(name + ".topic")));
   if (topic.empty()) return base::Error{name + ".topic is missing: expected a topic, as in " + name + ".topic=/cmd_vel"};
   if (topic.front() != '/') topic.insert(0, "/");
   if (const auto problem = problem_of_name(topic)) return base::Error{name + ".topic " + *problem};
-  auto endpoint = endpoint_of_type(connection, is_writer);
-  if (!endpoint) return endpoint;
-  endpoint->topic = topic_on_wire(topic);
-  if (auto read = read_qos(connection, name, is_writer, *endpoint); !read) return read.error();
-  return endpoint;
+  auto made = topic_of_type(connection, is_writer);
+  if (!made) return made;
+  made->endpoint.topic = topic_on_wire(topic);
+  if (auto read = read_qos(connection, name, is_writer, *made); !read) return read.error();
+  return made;
 }
 
 std::string setting_of_process(const char* key) {
@@ -114,9 +115,9 @@ class TopicWriter final : public RTC::InPortConsumer {
   bool subscribeInterface(const SDOPackage::NVList&) override {
     const auto settings = settings_of_process();
     if (!settings) return complain(settings.error());
-    const auto endpoint = endpoint_of(connection_, true);
-    if (!endpoint) return complain(endpoint.error());
-    auto made = publish_port(*settings, *endpoint);
+    const auto topic = topic_of(connection_, true);
+    if (!topic) return complain(topic.error());
+    auto made = publish_port(*settings, topic->endpoint);
     if (!made) return complain(made.error());
     publication_ = std::move(*made);
     return true;
@@ -142,14 +143,14 @@ class TopicReader final : public RTC::InPortProvider {
   bool publishInterface(SDOPackage::NVList&) override {
     auto settings = settings_of_process();
     if (!settings) return complain(settings.error());
-    auto endpoint = endpoint_of(connection_, false);
-    if (!endpoint) return complain(endpoint.error());
+    auto topic = topic_of(connection_, false);
+    if (!topic) return complain(topic.error());
     settings_ = std::move(*settings);
-    topic_ = std::move(*endpoint);
+    topic_ = std::move(*topic);
     return true;
   }
   void setConnector(RTC::InPortConnector* connector) override {
-    auto made = subscribe_port(settings_, topic_, [connector](std::span<const std::uint8_t> bytes) {
+    auto made = subscribe_port(settings_, topic_.endpoint, topic_.takes_all, [connector](std::span<const std::uint8_t> bytes) {
       RTC::ByteData data(bytes.data(), bytes.size());
       connector->write(data);
     });
@@ -160,7 +161,7 @@ class TopicReader final : public RTC::InPortProvider {
  private:
   coil::Properties connection_;
   PortDomainSettings settings_;
-  EndpointSettings topic_;
+  PortTopic topic_;
   std::unique_ptr<Subscription> subscription_;
 };
 

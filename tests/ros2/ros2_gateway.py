@@ -666,7 +666,7 @@ def ports():
         peer = rig.peer()
         peer.subscribe("/smooth", "geometry_msgs/TwistStamped")
         peer.advertise("/raw", "geometry_msgs/Twist")
-        peer.await_matched("/raw")
+        peer.await_matched("/raw", 2)
         peer.await_matched("/smooth")
 
         def passes():
@@ -682,7 +682,7 @@ def ports():
         rig.rtse("con", "Relay0:out", *numbers, "-p", "ros2.topic=/relayed")
         peer.subscribe("/relayed", "std_msgs/Int32")
         peer.advertise("/number", "std_msgs/Int32")
-        peer.await_matched("/number")
+        peer.await_matched("/number", 2)
         peer.await_matched("/relayed")
         peer.put("/number", "std_msgs/Int32", {"data": -7})
         peer.message("/relayed", "std_msgs/Int32", lambda m: m["data"] == -7)

@@ -9,6 +9,7 @@ import threading
 
 from ros2_rig import Rig, await_, case, lib_dir, source, wire
 
+both = 2  # readers of a port that receives from all writers: one for those of best effort
 STAMP = {"sec": 1234, "nanosec": 567000000}
 TURN = {"x": 0.0, "y": 0.0, "z": math.sin(0.3), "w": math.cos(0.3)}  # about z by 0.6 rad
 
@@ -232,7 +233,7 @@ def types():
             thread.join()
         assert not failures, (failures, rig.log(host))
         for i, row in enumerate(rows):
-            peer.await_matched(f"/in_{i}")
+            peer.await_matched(f"/in_{i}", both)
             peer.await_matched(f"/out_{i}")
         # A port of several rows sends to all of their topics: a sample of the row before may still be on its way.
         for i, row in enumerate(rows):
@@ -263,7 +264,7 @@ def bad_values():
         for topic, kind in (("/image", "sensor_msgs/Image"), ("/cloud", "sensor_msgs/PointCloud2")):
             peer.advertise(topic, kind)
             peer.subscribe(topic + "_out", kind)
-            peer.await_matched(topic)
+            peer.await_matched(topic, both)
             peer.await_matched(topic + "_out")
         image = {"header": header("any"), "height": 2, "width": 2, "encoding": "mono8", "is_bigendian": 0, "step": 2, "data": b"1234"}
         for change in ({"encoding": "yuv422"}, {"step": 2**31, "height": 2**31}, {"data": b"123"}, {"width": 70000, "step": 70000}, {"is_bigendian": 1, "encoding": "mono16", "step": 4}):
@@ -293,7 +294,27 @@ def qos():
                     "-p", "fast-rtps.publisher.qos.deadline.period.seconds=1", "-p", "marshaling_type=ros2:std_msgs/Int32", transport="fast-rtps")
         rig.connect("Long_out", "/plain", "-p", "ros2.reliability=best_effort")
         rig.connect("Long_out", "/kept", "-p", "ros2.durability=transient_local", "-p", "ros2.depth=1")
-        rig.connect("Double_in", "/strict")
+        rig.connect("Double_in", "/strict", "-p", "ros2.reliability=reliable")
+        # Without a reliability a reader receives from all writers, each sample once.
+        rig.connect("Short_in", "/any")
+        rig.connect("Short_out", "/any_out")
+        peer.subscribe("/any_out", "std_msgs/Int16")
+        for name, reliability in (("sure", "reliable"), ("weak_one", "best_effort")):
+            peer.writer(name, "rt/any", wire.type_on_wire("std_msgs/Int16"), reliability)
+        peer.await_matched("sure", both)
+        peer.await_matched("weak_one")
+        peer.await_matched("/any_out")
+        for i in range(20):
+            peer.put("sure", "std_msgs/Int16", {"data": i})
+        await_("the last reliable number", lambda: {"data": 19} in peer.messages("/any_out", "std_msgs/Int16"))
+
+        def weak_one_passes():
+            peer.put("weak_one", "std_msgs/Int16", {"data": -1})
+            return {"data": -1} in peer.messages("/any_out", "std_msgs/Int16")
+
+        await_("a number of the best effort writer", weak_one_passes, 0.1)
+        numbers = [one["data"] for one in peer.messages("/any_out", "std_msgs/Int16") if one["data"] >= 0]
+        assert len(numbers) == len(set(numbers)), numbers
         assert "fast-rtps.publisher.qos.deadline.period.seconds without effect" in rig.log(host), rig.log(host)
         peer.advertise("/sensor", "std_msgs/Int32", "best_effort")
         for topic in ("/fast", "/plain"):
@@ -388,7 +409,8 @@ def own_mapping():
         peer.advertise("/label", "shop_msgs/Label")
         peer.subscribe("/label_out", "shop_msgs/Label")
         peer.subscribe("/text_out", "std_msgs/String")
-        for topic in ("/label", "/label_out", "/text_out"):
+        peer.await_matched("/label", both)
+        for topic in ("/label_out", "/text_out"):
             peer.await_matched(topic)
         peer.put("/label", "shop_msgs/Label", {"header": header("any"), "text": "nails"})
         assert peer.message("/label_out", "shop_msgs/Label") == {"header": header("shelf"), "text": "nails"}
