@@ -159,4 +159,5 @@ with tempfile.TemporaryDirectory() as work:
     row("  with the rolling step", min(pair[2][1] for pair in pairs) / all_simulated, "s")
     row("  the simulator with the components", used[1] / all_simulated, "s")
     row("  all hosts", used[2] / all_simulated, "s")
+    row("  the simulation alone / simulator and hosts", used[0] / (used[1] + used[2]), "")
     stage(work)
