@@ -1,4 +1,4 @@
-# What the page of a run costs beside its recording: page_bench.py BIN_DIR LIB_DIR SOURCE_DIR. Runs of the obstacle course with --record, and with --record --page, in
+# What the page of a run costs beside its recording: page_bench.py BIN_DIR LIB_DIR SOURCE_DIR [cost] [memories]. Runs of the obstacle course with --record, and with --record --page, in
 # turn: the ratio of their speeds in the simulated time, without what is written afterwards. Then the memory of rtse-page for runs with a camera. Exit 1 when a limit is missed.
 import json
 import os
@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-bin_dir, lib_dir, source = sys.argv[1:]
+bin_dir, lib_dir, source, *chosen = sys.argv[1:]
 rounds = int(os.environ.get("RTMSIM_BENCH_ROUNDS", "6"))
 seconds = os.environ.get("RTMSIM_BENCH_SECONDS", "600")
 missed = 0
@@ -56,11 +56,16 @@ def memory(recording, page, *more):
     return peak / 1024
 
 
-with tempfile.TemporaryDirectory() as place:
+def memories(place):
     for name, system, world, length in (("obstacle course", "obstacle_avoidance", "obstacle_course", "600"), ("farm with a camera", "farm", "farm", "120")):
         file = f"{place}/{world}.mcap"
         run(system, world, "--duration", length, "--record", file)
         peak = memory(file, f"{place}/{world}.html")
         row(f"memory of rtse-page, {name}, {length} s ({os.path.getsize(file) / 1e6:.0f} MB)", f"{peak:.0f} MiB", "64 MiB", peak <= 64)
-    cost(place)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    for part in (memories, cost):
+        if not chosen or part.__name__ in chosen:
+            part(folder)
 sys.exit(1 if missed else 0)
