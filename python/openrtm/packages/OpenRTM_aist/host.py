@@ -4,6 +4,7 @@ A module is imported under a name of its own, so that two files X.py of differen
 also known under its bare name. Its folder comes first in sys.path.
 """
 import os
+import re
 import sys
 
 import _openrtm_core as _core
@@ -25,8 +26,8 @@ def load(file, init_function):
         module = _import(file)
     except SyntaxError as problem:
         return syntax_problem(file, problem)
-    except BaseException:
-        return "cannot be imported: " + traceback.format_exc().rstrip()
+    except BaseException as problem:
+        return old_name(problem) or "cannot be imported: " + traceback.format_exc().rstrip()
     stem = os.path.splitext(os.path.basename(file))[0]
     names = [init_function] if init_function else [stem + "Init", stem[:1].upper() + stem[1:] + "Init", "MyModuleInit"]
     function = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
@@ -35,8 +36,8 @@ def load(file, init_function):
     from .manager import Manager
     try:
         function(Manager.instance())
-    except BaseException:
-        return "%s raised: %s" % (function.__name__, traceback.format_exc().rstrip())
+    except BaseException as problem:
+        return old_name(problem) or "%s raised: %s" % (function.__name__, traceback.format_exc().rstrip())
     return ""
 
 
@@ -63,19 +64,54 @@ def _import(file):
     return module
 
 
+# What Python 2 wrote so: a pattern of the line, and what to write instead.
+_OLD_SYNTAX = (
+    (r"print\b", "print(...) instead of `%s`"), (r"except\s.*,", "`except Error as name:` instead of `%s`"), (r"exec\s", "exec(...) instead of `%s`"),
+    (r"raise\s+[\w.]+\s*,", "`raise Error(...)` instead of `%s`"), (r".*<>", "`!=` instead of `<>` in `%s`"), (r".*`", "repr(...) instead of backquotes in `%s`"),
+    (r".*\b\d+[lL]\b", "integers without L in `%s`"), (r".*\b[uU][rR]['\"]", "r'...' instead of ur'...' in `%s`"),
+)
+_OLD_MODULES = {
+    "Tkinter": "tkinter", "tkMessageBox": "tkinter.messagebox", "tkFileDialog": "tkinter.filedialog", "Tix": "tkinter.tix", "ttk": "tkinter.ttk",
+    "Queue": "queue", "ConfigParser": "configparser", "StringIO": "io", "cStringIO": "io", "cPickle": "pickle", "thread": "_thread",
+    "commands": "subprocess", "urllib2": "urllib.request", "urlparse": "urllib.parse", "httplib": "http.client", "SocketServer": "socketserver",
+    "BaseHTTPServer": "http.server", "SimpleHTTPServer": "http.server", "xmlrpclib": "xmlrpc.client", "SimpleXMLRPCServer": "xmlrpc.server",
+    "__builtin__": "builtins", "HTMLParser": "html.parser", "copy_reg": "copyreg", "sets": "the builtin set", "exceptions": "builtins",
+}
+_OLD_NAMES = {"unicode": "str", "xrange": "range", "raw_input": "input", "long": "int", "basestring": "str", "unichr": "chr",
+              "reduce": "functools.reduce", "file": "open", "execfile": "exec(open(...).read())", "cmp": "(a > b) - (a < b)"}
+
+
 def syntax_problem(file, problem):
     """One line; for sources of Python 2 with what to write instead."""
     where = "%s:%s: " % (os.path.basename(problem.filename or file), problem.lineno)
     text = (problem.text or "").strip()
     if isinstance(problem, TabError):
         return where + "mixes tabs and blanks, which Python 3 does not accept: use blanks only"
-    if "print" in (problem.msg or "") or text.startswith("print "):
-        return where + "is Python 2: write print(...) instead of `%s`" % text
-    if text.startswith("except ") and "," in text:
-        return where + "is Python 2: write `except Error as name:` instead of `%s`" % text
-    if text.startswith("exec "):
-        return where + "is Python 2: write exec(...) instead of `%s`" % text
+    if "leading zeros" in (problem.msg or ""):
+        octal = re.search(r"\b0(\d+)", text)
+        return where + "is Python 2: write 0o%s in `%s`" % (octal.group(1) if octal else "...", text)
+    for pattern, instead in _OLD_SYNTAX:
+        if re.match(pattern, text):
+            return where + "is Python 2: write " + instead % text
     return where + "%s: `%s`" % (problem.msg, text)
+
+
+def old_name(problem):
+    """One line for an exception that a source of Python 2 raises; empty for others."""
+    instead = ""
+    if isinstance(problem, ModuleNotFoundError) and problem.name in _OLD_MODULES:
+        instead = "the module %s is %s now" % (problem.name, _OLD_MODULES[problem.name])
+    elif isinstance(problem, NameError) and getattr(problem, "name", None) in _OLD_NAMES:
+        instead = "the name %s is %s now" % (problem.name, _OLD_NAMES[problem.name])
+    elif isinstance(problem, AttributeError) and getattr(problem, "name", None) in ("has_key", "iteritems", "itervalues", "iterkeys"):
+        instead = "write `key in dictionary` instead of has_key" if problem.name == "has_key" else "write %s()" % problem.name[4:]
+    elif isinstance(problem, TypeError) and "non-int of type 'float'" in str(problem):
+        instead = "write // instead of /, which gives a float"
+    if not instead:
+        return ""
+    import traceback
+    last = traceback.extract_tb(problem.__traceback__)[-1]
+    return "%s:%s: is Python 2: %s" % (os.path.basename(last.filename), last.lineno, instead)
 
 
 def main(argv):
