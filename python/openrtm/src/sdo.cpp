@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace python {
 namespace {
 
-const char* const profile_id = "IDL:org.omg/SDOPackage/ServiceProfile:1.0";
+const char* const service_profile_id = "IDL:org.omg/SDOPackage/ServiceProfile:1.0";
 
 // Python object with the methods of a service; the same for both directions. Without the lock.
 class ServiceObject {
@@ -23,11 +23,11 @@ class ServiceObject {
 
   bool init(RTC::RTObject_impl& component, const SDOPackage::ServiceProfile& profile) {
     profile_ = profile;
-    return told("init", [&] { return py::make_tuple(python_component(&component), to_python(profile, profile_id)); });
+    return told("init", [&] { return py::make_tuple(python_component(&component), to_python(profile, service_profile_id)); });
   }
   bool reinit(const SDOPackage::ServiceProfile& profile) {
     profile_ = profile;
-    return told("reinit", [&] { return py::make_tuple(to_python(profile, profile_id)); });
+    return told("reinit", [&] { return py::make_tuple(to_python(profile, service_profile_id)); });
   }
   const SDOPackage::ServiceProfile& profile() const { return profile_; }
   void finalize() {
@@ -152,7 +152,7 @@ void add_factory(py::module_& module, const std::string& prefix, int (*add)(cons
 void add_sdo_of_components(py::class_<Component, std::shared_ptr<Component>>& cls) {
   cls.def("addSdoServiceProvider",
           [](Component& self, const py::object& profile, const py::object& provider) {
-            const auto said = from_python<SDOPackage::ServiceProfile>(profile, profile_id);
+            const auto said = from_python<SDOPackage::ServiceProfile>(profile, service_profile_id);
             Provider* const made = provider_of(provider);
             return unlocked([&] {
               const bool is_added = self.addSdoServiceProvider(said, made);
@@ -164,7 +164,7 @@ void add_sdo_of_components(py::class_<Component, std::shared_ptr<Component>>& cl
            [](Component& self, const std::string& id) { return unlocked([&] { return self.removeSdoServiceProvider(id.c_str()); }); })
       .def("addSdoServiceConsumer",
            [](Component& self, const py::object& profile) {
-             const auto said = from_python<SDOPackage::ServiceProfile>(profile, profile_id);
+             const auto said = from_python<SDOPackage::ServiceProfile>(profile, service_profile_id);
              return unlocked([&] { return self.addSdoServiceConsumer(said); });
            })
       .def("removeSdoServiceConsumer",
