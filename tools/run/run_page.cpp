@@ -103,7 +103,7 @@ PageBesideRun::~PageBesideRun() {
 }
 
 Result<std::string> PageBesideRun::finish(const Json& summary) {
-  const base::FileHandle line = std::exchange(line_, shm::FileHandle());
+  const base::FileHandle line = std::exchange(line_, base::FileHandle());
   const auto text = text_of(summary);
   for (std::string_view rest = text; !rest.empty() && process_.is_running();) {
     const auto sent = ::send(line.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
