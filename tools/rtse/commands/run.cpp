@@ -14,6 +14,7 @@
 
 #include "base/child_process.h"
 #include "base/command_line.h"
+#include "base/file_handle.h"
 #include "base/guarded.h"
 #include "base/interrupt.h"
 #include "base/text.h"
@@ -24,7 +25,6 @@
 #include "run/run_options.h"
 #include "run/run_system.h"
 #include "run/run_twice.h"
-#include "base/file_handle.h"
 
 namespace editor {
 namespace {

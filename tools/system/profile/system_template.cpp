@@ -136,7 +136,8 @@ base::Result<SavedSystem> filled_in(SavedSystem system, const std::vector<std::s
                       repeat(system.start_up, *list, is_used) && repeat(system.shut_down, *list, is_used);
     if (!fits) return base::Error{"--for " + base::in_quotes(*text) + ": makes more than 1000000 components or connections"};
     if (!is_used)
-      return base::Error{"--for " + base::in_quotes(*text) + ": system " + base::in_quotes(file) + " does not contain {" + list->name + "}"};
+      return base::Error{"--for " + base::in_quotes(*text) + ": system " + base::in_quotes(file) + " does not contain {" + list->name +
+                         "}"};
   }
   if (const auto good = check_names(system, file); !good) return good.error();
   return system;
