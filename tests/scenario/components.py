@@ -209,6 +209,7 @@ def goals():
     call("path_done")
     call("path")
     await_("a robot at the end of its path", lambda: is_at(0.3, 0.3, 1.5))
+    await_("a robot that stands there", lambda: max(map(abs, rig.robot()["velocity"])) < 0.002)
     call("path_done")
     call("path_on_hold")
     call("path_nan")

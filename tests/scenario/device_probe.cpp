@@ -78,7 +78,7 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
         {"pressed", [this] { return is_pressed(); }},
         {"path", [this] { return path_->SetPath(a_path(0.3)), path_->Enable(true), path_->GetCurrentWaypointIndex() == 0; }},
         {"path_on_hold",
-         [this] { return path_->SetPath(a_path(0.6)), path_->Enable(false), is_near(path_->GetCurrentWaypoint().target.position.x, 0.6); }},
+         [this] { return path_->Enable(false), path_->SetPath(a_path(0.6)), is_near(path_->GetCurrentWaypoint().target.position.x, 0.6); }},
         {"path_done", [this] { return has_no_path(); }},
         {"path_nan", [this] { return refuses([this] { path_->SetPath(a_path(std::nan(""))); }); }},
         {"path_huge",
