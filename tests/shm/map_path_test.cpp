@@ -24,8 +24,7 @@ void occupy(WorldMap& map, double x0, double y0, double x1, double y1) {
   for (int row = 0; row < area.height; ++row) {
     for (int column = 0; column < area.width; ++column) {
       const double x = area.x + (column + 0.5) * area.resolution, y = area.y + (row + 0.5) * area.resolution;
-      if (x > x0 && x < x1 && y > y0 && y < y1)
-        map.pixels[static_cast<std::size_t>((area.height - 1 - row) * area.width + column)] = 0;
+      if (x > x0 && x < x1 && y > y0 && y < y1) map.pixels[static_cast<std::size_t>((area.height - 1 - row) * area.width + column)] = 0;
     }
   }
 }
