@@ -52,7 +52,7 @@ struct EndpointSettings {
   std::size_t depth = 10;     // samples that are kept; readers: all, as deliver() takes them
   bool is_large = false;      // sent by a thread of its own
   bool is_local_ignored = false;
-  bool is_reliable = true;    // a reader that is not takes the samples of all writers
+  bool is_reliable = true;  // a reader that is not takes the samples of all writers
 };
 
 // An endpoint of another participant.
