@@ -111,11 +111,8 @@ bool carry_different_types(const PortView& a, const PortView& b) {
   return !fits_all(a.data_type()) && !fits_all(b.data_type()) && a.data_type() != b.data_type();
 }
 
-Result<void> connect_ports(const std::vector<const PortView*>& ends, const std::string& id, const std::string& name,
+Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& given) {
-  // A saved connection of a port with a topic has the port at both ends.
-  const bool is_one = ends.size() == 2 && ends[0] == ends[1];
-  const auto ports = is_one ? std::vector{ends[0]} : ends;
   const auto properties = with_defaults(*ports.front(), given);
   if (const auto fit = check_ports(ports, properties); !fit) return fit;
   for (std::size_t i = 1; i < ports.size(); ++i) {

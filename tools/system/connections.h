@@ -12,7 +12,7 @@ namespace editor {
 // Of the runtime itself, all of which connect two ports; other interface types are of modules.
 bool is_own_transport(std::string_view interface_type);
 
-// Connects ports in the given order; the first starts. The same view twice is one port, connected to a topic. Empty id: the runtime makes one. The error says what does not fit.
+// Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& properties);
 // Whether the types of two data ports are known and differ. "Any", as of ports of events, fits all.

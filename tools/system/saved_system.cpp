@@ -169,7 +169,9 @@ Result<void> restore_connection(const Matched& matched, const SavedConnector& sa
   for (const auto* port : {source, target}) {
     if (const auto done = clear_leftovers(*port, saved.id); !done) return done;
   }
-  return connect_ports({source, target}, saved.id, saved.name, properties);
+  std::vector<const PortView*> ports = {source};
+  if (!saved.has_one_port()) ports.push_back(target);
+  return connect_ports(ports, saved.id, saved.name, properties);
 }
 
 // The values that the component can take; what it has said that it cannot is added to `problems`.

@@ -80,7 +80,9 @@ Result<void> connection(editor::RunScene& scene, const Event& event) {
   if (event.kind == Event::Kind::disconnect) return editor::disconnect_connector(*source, saved->id);
   const auto target = port(scene, saved->target);
   if (!target) return target.error();
-  return editor::connect_ports({&*source, &*target}, saved->id, saved->name, editor::restored_properties(*saved));
+  std::vector<const editor::PortView*> ports = {&*source};
+  if (!saved->has_one_port()) ports.push_back(&*target);
+  return editor::connect_ports(ports, saved->id, saved->name, editor::restored_properties(*saved));
 }
 
 // The component that an event needs and that was killed; empty: none.

@@ -16,8 +16,7 @@ RowScript::RowScript(const Campaign& campaign, const Row& row, RowScriptOptions 
   for (auto& watched : deeds_.watched()) watched_.push_back(std::move(watched));
   if (!options_.checks_invariants) return;
   for (const auto& connector : campaign.system().connectors) {
-    // A port with a topic is at both ends, and may be an InPort.
-    if (!connector.is_data || connector.source.port_name == connector.target.port_name) continue;
+    if (!connector.is_data || connector.has_one_port()) continue;  // which may be an InPort
     const auto& name = connector.source.port_name;
     const auto port = connector.source.instance + ":" + name.substr(name.find('.') + 1);
     if (std::ranges::find(invariant_ports_, port) != invariant_ports_.end()) continue;

@@ -80,6 +80,9 @@ struct SavedConnector {
   SavedTarget source;
   SavedTarget target;
   NamedValues properties;
+
+  // A port with a topic is at both ends, since the format wants two.
+  bool has_one_port() const { return source.instance == target.instance && source.port_name == target.port_name; }
 };
 
 // One entry of a StartUp, Activation, ... list: a component to send to, in the order of `sequence`.
