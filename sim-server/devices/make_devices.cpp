@@ -35,8 +35,8 @@ struct Makers {
   std::vector<std::string>& left_out;
   std::vector<std::unique_ptr<Device>> devices;
   std::optional<base::Error> failure;
-  std::map<std::uint32_t, std::string> driven;  // joints, and the plugins whose motors turn them
-  std::shared_ptr<Propellers> propellers;       // null: none
+  std::map<std::uint32_t, std::string> driven, belts;  // joints and tracks, and the plugins whose motors turn them
+  std::shared_ptr<Propellers> propellers;              // null: none
 
   // False, with a line, for names that are too long: those of models may fill an iface's name alone.
   bool can_name(const std::string& iface, const std::string& what) {
@@ -52,6 +52,10 @@ struct Makers {
     }
   }
 };
+
+void leave_out(Makers& m, const PluginDef& plugin, const std::string& why) {
+  m.left_out.push_back(fmt::format("{}: plugin {}: {}; the plugin is left out", plugin.source, plugin.name, why));
+}
 
 const SensorMaker* maker_of(SensorKind kind) {
   const auto row = std::find_if(sensor_makers.begin(), sensor_makers.end(), [&](const SensorMaker& maker) { return maker.kind == kind; });
@@ -149,17 +153,56 @@ void make_follower(Makers& m, const PluginDef& plugin) {
   m.take(Position3d::make(m.world, m.model, plugin, std::move(*path)));
 }
 
-// False, with a line, for a second drive of the same wheels: files that were written for several simulators name one drive for each.
-bool can_drive(Makers& m, const PluginDef& plugin, const std::vector<std::uint32_t>& joints) {
-  for (const auto joint : joints) {
-    const auto other = m.driven.find(joint);
-    if (other == m.driven.end()) continue;
-    m.left_out.push_back(fmt::format("{}: plugin {}: joint {} is driven by {} already; the plugin is left out", plugin.source, plugin.name,
-                                     base::in_quotes(m.world.physics.def(m.model).joints[joint].name), other->second));
-    return false;
+// Why a drive cannot have this joint or track, of its `all`; empty: it can.
+std::string taken_by(const std::map<std::uint32_t, std::string>& taken, const std::vector<std::uint32_t>& all, std::size_t place) {
+  const auto other = taken.find(all[place]);
+  if (other != taken.end()) return " is driven by " + other->second + " already";
+  const auto here = all.begin() + static_cast<std::ptrdiff_t>(place);
+  return std::find(all.begin(), here, *here) != here ? " is named twice" : "";
+}
+
+// False, with a line, for what does not turn or is named twice, and for a second drive of the same wheels or tracks: files that were
+// written for several simulators name one drive for each.
+bool can_drive(Makers& m, const PluginDef& plugin, const DriveTrain& train) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  const auto joints = train.joints(), belts = train.belts();
+  if (def.is_static && train.moves_the_model()) return leave_out(m, plugin, "the model is static and cannot move"), false;
+  std::string why;
+  for (std::size_t i = 0; i < joints.size() && why.empty(); ++i) {
+    const JointDef& joint = def.joints[joints[i]];
+    const std::string problem = joint.axes.empty() ? " turns about no axis" : taken_by(m.driven, joints, i);
+    if (!problem.empty()) why = "joint " + base::in_quotes(joint.name) + problem;
   }
+  for (std::size_t i = 0; i < belts.size() && why.empty(); ++i) {
+    const std::string problem = taken_by(m.belts, belts, i);
+    if (!problem.empty()) why = "track " + base::in_quotes(def.links[belts[i]].name) + problem;
+  }
+  if (!why.empty()) return leave_out(m, plugin, why), false;
   for (const auto joint : joints) m.driven.emplace(joint, plugin.name);
+  for (const auto belt : belts) m.belts.emplace(belt, plugin.name);
   return true;
+}
+
+// What it publishes without the joints that the model lacks, one line each.
+void check_published_joints(Makers& m, const PluginDef& plugin) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  for (const ParameterNode& child : plugin.parameters.children) {
+    if (child.name != "joint_name" && child.name != "jointName") continue;
+    for (const std::string& name : base::split_list(child.text)) {
+      if (joint_named(def, plugin.scope, name)) continue;
+      m.left_out.push_back(fmt::format("{}: plugin {}: model {} has no joint {}; its state is left out", plugin.source, plugin.name,
+                                       def.name, base::in_quotes(name)));
+    }
+  }
+}
+
+// Its joint takes efforts by the iface of joints, as all do.
+void check_joint_force(Makers& m, const PluginDef& plugin) {
+  const ModelDef& def = m.world.physics.def(m.model);
+  const std::string name = plugin.parameters.text_of({"joint_name"}).value_or("");
+  const auto joint = joint_named(def, plugin.scope, name);
+  if (!joint) return leave_out(m, plugin, fmt::format("model {} has no joint {}", def.name, base::in_quotes(name)));
+  if (def.joints[*joint].axes.empty()) leave_out(m, plugin, fmt::format("joint {} turns about no axis", base::in_quotes(name)));
 }
 
 MadeTrain (*train_maker_of(PluginKind kind))(Physics&, ModelId, const PluginDef&) {
@@ -182,7 +225,7 @@ MadeTrain (*train_maker_of(PluginKind kind))(Physics&, ModelId, const PluginDef&
 void make_once(Makers& m, const PluginDef& plugin, MadeDevice (*make)(DeviceWorld&, ModelId, const PluginDef&)) {
   for (const auto& other : m.world.physics.def(m.model).plugins) {
     if (&other == &plugin) break;
-    if (other.scope == plugin.scope && kind_of(other) == kind_of(plugin)) return;
+    if (other.scope == plugin.scope && kind_of(other) == kind_of(plugin)) return leave_out(m, plugin, "the model has one already");
   }
   auto made = make(m.world, m.model, plugin);
   if (!made || *made) m.take(std::move(made));
@@ -207,7 +250,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       auto train = train_maker_of(kind_of(plugin))(m.world.physics, m.model, plugin);
       // A drive that is wrong is the world's fault, not the machine's: said, left out.
       if (!train) return m.left_out.push_back(train.error().message);
-      if (!can_drive(m, plugin, (*train)->joints())) return;
+      if (!can_drive(m, plugin, **train)) return;
       return m.take(Position2d::make(m.world, m.model, plugin, std::move(*train)));
     }
     case PluginKind::velocity_control:
@@ -220,13 +263,18 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
         m.left_out.push_back(fmt::format("{}: plugin {}: the model is static and cannot move", plugin.source, plugin.name));
         return;
       }
+      if (plugin.parameters.child("link_name") != nullptr && def.links.size() > 1)
+        m.left_out.push_back(fmt::format("{}: plugin {}: <link_name> is ignored; the whole model moves", plugin.source, plugin.name));
       return m.take(Position3d::make(m.world, m.model, plugin, path_of(m, plugin.scope)));
     case PluginKind::trajectory_follower:
       return make_follower(m, plugin);
     case PluginKind::odometry_publisher:
       return make_once(m, plugin, make_odometry);
     case PluginKind::joint_state_publisher:
+      check_published_joints(m, plugin);
       return make_once(m, plugin, make_joint_states);
+    case PluginKind::joint_force:
+      return check_joint_force(m, plugin);
     case PluginKind::wheel_slip:  // of the contacts
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
@@ -242,7 +290,6 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::rotor:  // make_vehicle and the joints have these
     case PluginKind::thruster:
     case PluginKind::multicopter_control:
-    case PluginKind::joint_force:
     case PluginKind::link_wrench:
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
@@ -259,7 +306,7 @@ bool flies_by_itself(const ModelDef& def) {
 // A position3d for a model with rotors or thrusters; those of a plugin for multicopters by its numbers.
 void make_vehicle(Makers& m) {
   const ModelDef& def = m.world.physics.def(m.model);
-  m.propellers = Propellers::of(m.world, m.model, m.left_out);
+  m.propellers = Propellers::of(m.world, m.model, m.driven, m.left_out);
   const auto plugin_of = [&](PluginKind kind) {
     return std::find_if(def.plugins.begin(), def.plugins.end(), [kind](const PluginDef& plugin) { return kind_of(plugin) == kind; });
   };
@@ -305,7 +352,7 @@ void make_batteries(Makers& m) {
 }  // namespace
 
 base::Result<std::vector<std::unique_ptr<Device>>> make_devices(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
-  Makers m{world, model, left_out, {}, {}, {}, {}};
+  Makers m{world, model, left_out, {}, {}, {}, {}, {}};
   const ModelDef& def = world.physics.def(model);
   for (const auto& plugin : def.plugins) make_plugin(m, plugin);
   make_vehicle(m);

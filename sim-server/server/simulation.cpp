@@ -73,16 +73,31 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (!s->can_have_faults(fault.iface)) return no_iface(fault);
   }
   s->sort_devices();
-  s->standing_ = standing_wrenches_of(*s->world_);
+  s->standing_ = standing_wrenches_of(*s->world_, dropped);
   for (ModelId id = 0; id < s->initial_models_; ++id) {
     if (s->physics_->exists(id)) s->add_standing_wrenches(id);
   }
-  for (const StandingWrench& wrench : s->standing_) {
-    if (!s->physics_->find_link(wrench.entity))
+  s->note_absent_models(notes, dropped);
+  return s;
+}
+
+// That plugins of the world mean: they may be spawned later.
+void Simulation::note_absent_models(std::vector<std::string>& notes, std::vector<std::string>& dropped) const {
+  for (const StandingWrench& wrench : standing_) {
+    const auto link = physics_->find_link(wrench.entity);
+    if (!link) {
       notes.push_back(wrench.source + ": there is no " + base::in_quotes(wrench.entity) +
                       " that <persistent> pushes; it is pushed when it is spawned");
+    } else if (!physics_->can_move(*link)) {
+      dropped.push_back(wrench.source + ": " + base::in_quotes(wrench.entity) + ", which <persistent> pushes, cannot move");
+    }
   }
-  return s;
+  if (!world_->physics.fluid) return;
+  for (const std::string& name : world_->physics.fluid->models) {
+    if (!physics_->find(name))
+      notes.push_back("plugin Buoyancy: there is no model " + base::in_quotes(name) +
+                      " that <enable> names; it is carried when it is spawned");
+  }
 }
 
 base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::string>& left_out) {

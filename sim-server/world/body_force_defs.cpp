@@ -34,6 +34,9 @@ std::optional<std::uint32_t> link_of_plugin(const ModelDef& model, const PluginD
         about(plugin) +
         (name ? "model " + base::in_quotes(model.name) + " has no link " + base::in_quotes(*name) : "expected a <link_name>") +
         "; the plugin is left out");
+  } else if (model.is_static) {
+    left_out.push_back(about(plugin) + "model " + base::in_quotes(model.name) + " is static and cannot move; the plugin is left out");
+    return std::nullopt;
   }
   return link;
 }
@@ -107,11 +110,14 @@ std::optional<WingDef> wing_of_plugin(const ModelDef& model, const PluginDef& pl
   take(wing.lift_by_joint, "control_joint_rad_to_cl");
   wing.is_radial = p.bool_of({"radial_symmetry"}).value_or(false);
   wing.center = vector_of(p, "cp", wing.center);
-  const auto direction = [&](Eigen::Vector3d& out, const char* name) {
-    const Eigen::Vector3d along = vector_of(p, name, out);
-    if (along.norm() > 1e-9) out = along.normalized();
-  };
-  direction(wing.forward, "forward"), direction(wing.upward, "upward");
+  wing.forward = vector_of(p, "forward", wing.forward), wing.upward = vector_of(p, "upward", wing.upward);
+  if (!(wing.forward.cross(wing.upward).norm() > 1e-6 * wing.forward.norm() * wing.upward.norm())) {
+    left_out.push_back(about(plugin) + "<forward> and <upward> must be two directions, got " +
+                       base::in_quotes(p.text_of({"forward"}).value_or("1 0 0")) + " and " +
+                       base::in_quotes(p.text_of({"upward"}).value_or("0 0 1")) + "; the plugin is left out");
+    return std::nullopt;
+  }
+  wing.forward.normalize(), wing.upward.normalize();
   if (const auto name = p.text_of({"control_joint_name"})) {
     wing.control_joint = joint_named(model, plugin.scope, *name);
     if (!wing.control_joint) {
@@ -150,14 +156,20 @@ Eigen::Vector3d vector_of(const ParameterNode& parameters, std::string_view name
   return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest ? vector : fallback;
 }
 
-std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world) {
+std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world, std::vector<std::string>& left_out) {
   std::vector<StandingWrench> wrenches;
   for (const PluginDef& plugin : world.plugins) {
     if (kind_of(plugin) != PluginKind::link_wrench) continue;
     for (const ParameterNode& one : plugin.parameters.children) {
       if (one.name != "persistent") continue;
-      wrenches.push_back({one.text_of({"entity_name"}).value_or(""), vector_of(one, "force", Eigen::Vector3d::Zero()),
-                          vector_of(one, "torque", Eigen::Vector3d::Zero()), plugin.source});
+      const std::string type = one.text_of({"entity_type"}).value_or("model"), name = one.text_of({"entity_name"}).value_or("");
+      if (name.empty() || (type != "model" && type != "link")) {
+        left_out.push_back(plugin.source + ": <persistent> needs an <entity_name> and an <entity_type> model or link, got " +
+                           base::in_quotes(name) + " and " + base::in_quotes(type) + "; it pushes nothing");
+        continue;
+      }
+      wrenches.push_back(
+          {name, vector_of(one, "force", Eigen::Vector3d::Zero()), vector_of(one, "torque", Eigen::Vector3d::Zero()), plugin.source});
     }
   }
   return wrenches;

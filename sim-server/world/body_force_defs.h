@@ -55,8 +55,8 @@ struct StandingWrench {
   Eigen::Vector3d force{0, 0, 0}, torque{0, 0, 0};  // [N], [N m]
   std::string source;                               // "file:line" of the plugin
 };
-// Those of the plugins ApplyLinkWrench of a world.
-std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world);
+// Those of the plugins ApplyLinkWrench of a world. One that names neither a model nor a link adds a line to `left_out`.
+std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world, std::vector<std::string>& left_out);
 
 // The link or joint of the model that a plugin of this scope means by a name: in its scope first.
 std::optional<std::uint32_t> link_named(const ModelDef& model, const std::string& scope, const std::string& name);

@@ -83,7 +83,13 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   plugin.scope = scope;
   plugin.parameters = parameters_of(node);
   plugin.source = context.complaints.place_of(node).text();
-  if (kind_of(plugin) == PluginKind::unsupported_drive) {
+  const bool is_in_world = std::string_view(node.parent().name()) == "world";
+  if (is_of_world(kind_of(plugin)).value_or(is_in_world) != is_in_world) {
+    context.complaints.warn(node,
+                            describe_in_context(node) +
+                                (is_in_world ? " means a model, but stands in the world" : " means the world, but stands in a model") +
+                                "; it is ignored");
+  } else if (kind_of(plugin) == PluginKind::unsupported_drive) {
     context.complaints.warn(node, "drive " + base::in_quotes(plugin.filename.empty() ? plugin.name : plugin.filename) + " (" +
                                       describe_in_context(node) + ") is not simulated; nothing drives the model");
   } else if (kind_of(plugin) == PluginKind::joint_controller) {
@@ -92,9 +98,7 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
                   " is not commanded: its joints keep the position or speed that it starts with, until a client of the iface joints "
                   "commands them");
     check_numbers(node, plugin, context.complaints);
-  } else if (kind_of(plugin) == PluginKind::unknown ||
-             ((kind_of(plugin) == PluginKind::buoyancy || kind_of(plugin) == PluginKind::link_wrench) &&
-              std::string_view(node.parent().name()) != "world")) {
+  } else if (kind_of(plugin) == PluginKind::unknown) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   } else if (kind_of(plugin) != PluginKind::implied) {
     check_numbers(node, plugin, context.complaints);

@@ -171,6 +171,13 @@ bool is_wheel_drive(PluginKind kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
+std::optional<bool> is_of_world(PluginKind kind) {
+  using enum PluginKind;
+  if (kind == buoyancy || kind == link_wrench) return true;
+  if (kind == unknown || kind == implied || kind == label || kind == thermal || kind == thermal_sensor) return std::nullopt;
+  return false;
+}
+
 std::vector<std::string> tracks_of(const PluginDef& vehicle, std::string_view side) {
   std::vector<std::string> links;
   for (const ParameterNode& track : vehicle.parameters.children) {

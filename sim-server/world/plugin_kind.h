@@ -48,6 +48,9 @@ PluginKind kind_of_plugin(std::string_view filename, std::string_view name);
 // Those with an iface position2d.
 bool is_wheel_drive(PluginKind kind);
 
+// Of the world; others mean a model, or what is in it. Nothing: it may stand in both, or is not known.
+std::optional<bool> is_of_world(PluginKind kind);
+
 // Propellers: their joints take commands like others, and push.
 bool is_propeller(PluginKind kind);
 // Of a model: false for a controller of a track that a vehicle's own plugin drives, which only gives limits.

@@ -14,7 +14,19 @@
 namespace sim {
 namespace {
 
-enum class Must { number, gain, positive, not_negative, not_positive, not_zero, one_or_minus_one, vector, vector_not_negative };
+enum class Must {
+  number,
+  gain,
+  positive,
+  not_negative,
+  not_positive,
+  not_zero,
+  one_or_minus_one,
+  two_or_three,
+  vector,
+  vector_not_negative,
+  push
+};
 
 struct NumberRow {
   std::string_view element;
@@ -81,7 +93,7 @@ constexpr std::array drive_rows{
     NumberRow{"update_rate", not_negative},
     NumberRow{"updateRate", not_negative},
     NumberRow{"gaussian_noise", not_negative},
-    NumberRow{"dimensions", positive},
+    NumberRow{"dimensions", two_or_three},
     NumberRow{"xyz_offset", vector},
     NumberRow{"rpy_offset", vector},
     NumberRow{"initial_linear", vector},
@@ -144,10 +156,11 @@ constexpr std::array water_rows{
 };
 // Its coefficients are checked by their reader.
 constexpr std::array current_rows{NumberRow{"default_current", vector}};
-constexpr std::array wrench_rows{NumberRow{"force", vector}, NumberRow{"torque", vector}};
+constexpr std::array wrench_rows{NumberRow{"force", push}, NumberRow{"torque", push}};
 constexpr std::array slip_rows{
     NumberRow{"slip_compliance_lateral", not_negative},
     NumberRow{"slip_compliance_longitudinal", not_negative},
+    NumberRow{"wheel_radius", positive},
 };
 
 // Elements of trajectory controllers come once for each joint.
@@ -206,20 +219,30 @@ std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
   }
 }
 
+constexpr double largest_number = 1e9;  // of a number that is no limit
+constexpr double largest_push = 1e7;    // [N], [N m]
+constexpr double largest_gain = 1e12;
+
 // What was expected; empty: the text is good.
 std::string_view expectation_failed(Must must, const std::string& text) {
-  if (must == vector || must == vector_not_negative) {
-    const auto numbers = parse_numbers(text);
-    const bool is_good = numbers && numbers->size() == 3 &&
-                         std::ranges::all_of(*numbers, [&](double one) { return std::isfinite(one) && (must == vector || one >= 0); });
-    return is_good ? "" : must == vector ? "three numbers" : "three numbers of 0 or more";
-  }
   const auto numbers = parse_numbers(text);
+  if (must == vector || must == vector_not_negative || must == push) {
+    const bool is_good = numbers && numbers->size() == 3 && std::ranges::all_of(*numbers, [&](double one) {
+                           return std::isfinite(one) && (must != vector_not_negative || one >= 0);
+                         });
+    if (!is_good) return must == vector_not_negative ? "three numbers of 0 or more" : "three numbers";
+    const double limit = must == push ? largest_push : largest_number;
+    if (std::ranges::all_of(*numbers, [&](double one) { return std::abs(one) < limit; })) return "";
+    return must == push ? "three numbers below 1e7" : "three numbers below 1e9";
+  }
   // A limit may be infinite, which is its default.
-  const bool is_number = numbers && numbers->size() == 1 && !std::isnan(numbers->front()) &&
-                         (must == not_negative || must == not_positive || std::isfinite(numbers->front()));
+  const bool may_be_infinite = must == not_negative || must == not_positive;
+  const double limit = must == gain ? largest_gain : largest_number;
+  const bool is_one = numbers && numbers->size() == 1 && !std::isnan(numbers->front());
+  if (is_one && !may_be_infinite && std::isfinite(numbers->front()) && std::abs(numbers->front()) > limit)
+    return must == gain ? "a number from 0 to 1e12" : "a number within 1e9";
+  const bool is_number = is_one && (may_be_infinite || std::isfinite(numbers->front()));
   const double value = is_number ? numbers->front() : 0;
-  constexpr double largest_gain = 1e12;
   switch (must) {
     case gain:
       return is_number && value >= 0 && value <= largest_gain ? "" : "a number from 0 to 1e12";
@@ -231,6 +254,8 @@ std::string_view expectation_failed(Must must, const std::string& text) {
       return is_number && value <= 0 ? "" : "a number of 0 or less";
     case not_zero:
       return is_number && value != 0 ? "" : "a number other than 0";
+    case two_or_three:
+      return is_number && (value == 2 || value == 3) ? "" : "2 or 3";
     case one_or_minus_one:
       return is_number && std::abs(value) == 1 ? "" : "1 or -1";
     default:

@@ -87,7 +87,7 @@ PhysicsDef build_physics(pugi::xml_node world, BuildContext& context) {
   return physics;
 }
 
-FluidDef build_fluid(const PluginDef& plugin) {
+FluidDef build_fluid(pugi::xml_node element, const PluginDef& plugin, BuildContext& context) {
   const auto density_of = [](const ParameterNode& node, std::initializer_list<std::string_view> spellings) {
     return std::clamp(node.number_of(spellings).value_or(1000), 0.0, 1e6);
   };
@@ -97,7 +97,11 @@ FluidDef build_fluid(const PluginDef& plugin) {
     fluid.density = density_of(*graded, {"default_density"});
     for (const ParameterNode& change : graded->children) {
       const auto above = change.number_of({"above_depth"});
-      if (change.name == "density_change" && above) fluid.changes.emplace_back(*above, density_of(change, {"density"}));
+      if (change.name != "density_change") continue;
+      if (above) fluid.changes.emplace_back(*above, density_of(change, {"density"}));
+      if (!above)
+        context.complaints.warn(element,
+                                describe_in_context(element) + ": a <density_change> needs a number <above_depth>; it is left out");
     }
     std::stable_sort(fluid.changes.begin(), fluid.changes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   }
@@ -236,7 +240,10 @@ WorldDef build_world(pugi::xml_node node, const ResolvedWorld& resolved, BuildCo
   }
   for (pugi::xml_node child : node.children("plugin")) {
     world.plugins.push_back(build_plugin(child, {}, context));
-    if (kind_of(world.plugins.back()) == PluginKind::buoyancy) world.physics.fluid = build_fluid(world.plugins.back());
+    if (kind_of(world.plugins.back()) != PluginKind::buoyancy) continue;
+    if (world.physics.fluid)
+      context.complaints.warn(child, describe_in_context(child) + " is the second one that fills the world; the last one counts");
+    world.physics.fluid = build_fluid(child, world.plugins.back(), context);
   }
   if (const pugi::xml_node camera = child_at(node, "gui/camera/pose")) world.gui_camera = parse_pose(camera);
   return world;

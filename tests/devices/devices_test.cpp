@@ -152,6 +152,26 @@ TEST(Position2d, a_second_drive_of_the_same_joints_is_one_line_and_no_iface) {
   EXPECT_EQ(f.simulation->device("robot::other_drive"), nullptr);
 }
 
+TEST(Position2d, a_drive_of_joints_that_cannot_be_its_wheels_is_one_line_and_no_iface) {
+  const auto line = [](const ModelDef& robot) {
+    SimulationFixture f(world_of({ground(), robot}));
+    EXPECT_EQ(f.simulation->device("robot::position2d"), nullptr);
+    return f.dropped.size() == 1 ? f.dropped[0].substr(f.dropped[0].find(": plugin")) : std::to_string(f.dropped.size()) + " lines";
+  };
+  const ModelDef good = pioneer("robot", at(0, 0, 0));
+  ModelDef robot = good;
+  parameter(robot, "left_joint").text = parameter(robot, "right_joint").text;
+  EXPECT_EQ(line(robot), ": plugin " + robot.plugins[0].name + ": joint \"right_wheel_hinge\" is named twice; the plugin is left out");
+  robot = good;
+  for (JointDef& joint : robot.joints) {
+    if (joint.name == "left_wheel_hinge") joint.kind = JointDef::Kind::ball, joint.axes.clear();
+  }
+  EXPECT_EQ(line(robot), ": plugin " + robot.plugins[0].name + ": joint \"left_wheel_hinge\" turns about no axis; the plugin is left out");
+  robot = good;
+  robot.is_static = true;
+  EXPECT_EQ(line(robot), ": plugin " + robot.plugins[0].name + ": the model is static and cannot move; the plugin is left out");
+}
+
 TEST(Laser, sees_walls_where_they_are_and_marks_what_is_too_near_or_nowhere) {
   ModelDef robot = pioneer("robot", at(0, 0, 0));
   std::get<RayDef>(robot.links[0].sensors[0].data).range_min = 0.5;

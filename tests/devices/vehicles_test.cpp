@@ -476,6 +476,63 @@ TEST(JointForce, joints_of_the_plugin_take_efforts) {
   EXPECT_NEAR(joints.state(0).velocity, 2, 0.01);
 }
 
+// One line each, and the rest runs.
+TEST(Vehicles, plugins_that_cannot_push_say_why) {
+  const auto plugin = [](const std::string& file, const std::string& content, const std::string& name = "p") {
+    return "<plugin filename='gz-sim-" + file + "-system' name='" + name + "'>" + content + "</plugin>";
+  };
+  const std::string rest =
+      "<model name='rock'><static>true</static><link name='l'/></model><model name='m'><link name='a'/><link name='b'/><joint name='j' "
+      "type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint><joint name='w' "
+      "type='ball'><parent>world</parent>"
+      "<child>a</child></joint>";
+  const std::string propeller = "<joint_name>j</joint_name><propeller_diameter>0.1</propeller_diameter>";
+  for (const auto& [of_world, of_model, expected] : {
+           std::tuple{"", plugin("apply-joint-force", "<joint_name>x</joint_name>"),
+                      "plugin p: model m has no joint \"x\"; the plugin is left out"},
+           std::tuple{"", plugin("apply-joint-force", ""), "plugin p: model m has no joint \"\"; the plugin is left out"},
+           std::tuple{"", plugin("apply-joint-force", "<joint_name>w</joint_name>"), "plugin p: joint \"w\" turns about no axis"},
+           std::tuple{"", plugin("lift-drag", "<link_name>a</link_name><forward>0 0 0</forward>"),
+                      "<forward> and <upward> must be two directions, got \"0 0 0\" and \"0 0 1\"; the plugin is left out"},
+           std::tuple{"", plugin("lift-drag", "<link_name>a</link_name><upward>-2 0 0</upward>"),
+                      "<forward> and <upward> must be two directions, got \"1 0 0\" and \"-2 0 0\"; the plugin is left out"},
+           std::tuple{"", plugin("thruster", propeller + "<min_thrust_cmd>5</min_thrust_cmd><max_thrust_cmd>-5</max_thrust_cmd>"),
+                      "<min_thrust_cmd> must not be more than <max_thrust_cmd>, got 5 and -5; -1000 to 1000 are taken"},
+           std::tuple{"", plugin("thruster", propeller) + plugin("thruster", propeller, "q"),
+                      "joint \"j\" has a propeller already; the plugin is left out"},
+           std::tuple{"", plugin("multicopter-motor-model", "<jointName>j</jointName><turningDirection>left</turningDirection>"),
+                      "<turningDirection> must be cw or ccw, got \"left\"; ccw is taken"},
+           std::tuple{"", plugin("multicopter-motor-model", "<jointName>j</jointName><motorType>position</motorType>"),
+                      "<motorType> must be velocity, got \"position\"; velocity is taken"},
+           std::tuple{"", plugin("joint-state-publisher", "<joint_name>j</joint_name><joint_name>x</joint_name>"),
+                      "plugin p: model m has no joint \"x\"; its state is left out"},
+           std::tuple{"", plugin("odometry-publisher", "") + plugin("odometry-publisher", "", "q"), "plugin q: the model has one already"},
+           std::tuple{"", plugin("track-controller", "<link>b</link>") + plugin("track-controller", "<link>b</link>", "q"),
+                      "plugin q: track \"b\" is driven by p already; the plugin is left out"},
+           std::tuple{"",
+                      plugin("tracked-vehicle",
+                             "<left_track><link>b</link></left_track><right_track><link>b</link></right_track><tracks_separation>1</"
+                             "tracks_separation>"),
+                      "plugin p: track \"b\" is named twice; the plugin is left out"},
+           std::tuple{"", plugin("velocity-control", "<link_name>b</link_name>"),
+                      "plugin p: <link_name> is ignored; the whole model moves"},
+           std::tuple{"<persistent><entity_name>rock</entity_name><force>1 0 0</force></persistent>", std::string(),
+                      "\"rock\", which <persistent> pushes, cannot move"},
+           std::tuple{"<persistent><force>1 0 0</force></persistent>", std::string(),
+                      "<persistent> needs an <entity_name> and an <entity_type> model or link, got \"\" and \"model\"; it pushes nothing"},
+           std::tuple{"<persistent><entity_name>m::j</entity_name><entity_type>joint</entity_type></persistent>", std::string(),
+                      "got \"m::j\" and \"joint\"; it pushes nothing"},
+       }) {
+    SimulationFixture f(
+        world_of_text(weightless + (*of_world != 0 ? plugin("apply-link-wrench", of_world) : "") + rest + of_model + "</model>"));
+    ASSERT_EQ(f.dropped.size(), 1U) << expected;
+    EXPECT_THAT(f.dropped[0], testing::HasSubstr(expected));
+  }
+  SimulationFixture f(world_of_text(weightless + plugin("buoyancy", "<enable>whale</enable>") + rest + "</model>"));
+  ASSERT_EQ(f.notes.size(), 1U);
+  EXPECT_THAT(f.notes[0], testing::HasSubstr("there is no model \"whale\" that <enable> names; it is carried when it is spawned"));
+}
+
 TEST(JointForce, of_a_client_is_added_to_what_the_motor_does_and_ends_when_it_should) {
   SimulationFixture f(world_of_text(
       weightless +

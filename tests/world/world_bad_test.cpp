@@ -369,6 +369,8 @@ TEST(BadWorld, impossible_numbers_of_drives_have_one_line_each_and_their_default
   for (const Bad& bad : {
            Bad{"diff-drive", "wheel_radius", "wide", "a number"},
            Bad{"diff-drive", "wheel_separation", "", "a number"},
+           Bad{"diff-drive", "wheel_separation", "1e300", "a number within 1e9"},
+           Bad{"lift-drag", "cp", "0 0 -1e10", "three numbers below 1e9"},
            Bad{"diff-drive", "max_linear_velocity", "-1", "a number of 0 or more"},
            Bad{"diff-drive", "max_wheel_torque", "0", "a positive number"},
            Bad{"ackermann-steering", "steering_limit", "-0.5", "a positive number"},
@@ -382,6 +384,7 @@ TEST(BadWorld, impossible_numbers_of_drives_have_one_line_each_and_their_default
            Bad{"multicopter-control", "velocityGain", "1 1", "three numbers of 0 or more"},
            Bad{"lift-drag", "area", "0", "a positive number"},
            Bad{"odometry-publisher", "gaussian_noise", "-0.1", "a number of 0 or more"},
+           Bad{"odometry-publisher", "dimensions", "7", "2 or 3"},
        }) {
     const std::string element = bad.element, value = bad.value;
     const LoadResult result =
@@ -404,6 +407,40 @@ TEST(BadWorld, impossible_numbers_of_drives_have_one_line_each_and_their_default
       "</model>");
   EXPECT_EQ(nested.findings.size(), 1U) << all_findings(nested);
   EXPECT_EQ(findings_with(nested, "<direction> of plugin \"p\" of model \"m\" must be 1 or -1, got \"0\""), 1) << all_findings(nested);
+}
+
+TEST(BadWorld, plugins_in_the_wrong_place_have_one_line_each) {
+  const std::string box = "<model name='m'><link name='l'/>", drive = "<plugin filename='gz-sim-diff-drive-system' name='p'/>",
+                    water =
+                        "<plugin filename='gz-sim-buoyancy-system' name='p'><uniform_fluid_density>1000</uniform_fluid_density></plugin>",
+                    push = "<plugin filename='gz-sim-apply-link-wrench-system' name='p'/>",
+                    wheels = "<plugin filename='gz-sim-wheel-slip-system' name='p'>";
+  const std::string slip =
+      "<wheel link_name='l'><slip_compliance_lateral>1</slip_compliance_lateral><wheel_normal_force>N</wheel_normal_force>"
+      "<wheel_radius>0.1</wheel_radius></wheel>";
+  const auto slip_of = [&](const std::string& force) { return std::string(slip).replace(slip.find(">N<") + 1, 1, force); };
+  for (const auto& [content, expected] : {
+           std::pair{drive + box + "</model>", "plugin \"p\" means a model, but stands in the world; it is ignored"},
+           std::pair{box + water + "</model>", "plugin \"p\" of model \"m\" means the world, but stands in a model; it is ignored"},
+           std::pair{box + push + "</model>", "plugin \"p\" of model \"m\" means the world, but stands in a model; it is ignored"},
+           std::pair{std::string("<plugin filename='gz-sim-buoyancy-system' name='p'><graded_buoyancy><density_change><density>1</density>"
+                                 "</density_change></graded_buoyancy></plugin>"),
+                     "plugin \"p\": a <density_change> needs a number <above_depth>; it is left out"},
+           std::pair{water + water, "plugin \"p\" is the second one that fills the world; the last one counts"},
+           std::pair{"<plugin filename='gz-sim-apply-link-wrench-system' name='p'><persistent><entity_name>m</entity_name>"
+                     "<force>1e8 0 0</force></persistent></plugin>" +
+                         box + "</model>",
+                     "<force> of plugin \"p\" must be three numbers below 1e7, got \"1e8 0 0\"; its default is taken"},
+           std::pair{box + wheels + "</plugin></model>", "plugin \"p\" of model \"m\" needs a <wheel>; it does nothing"},
+           std::pair{box + wheels + slip_of("heavy") + "</plugin></model>",
+                     "plugin \"p\" of model \"m\": wheel \"l\" needs a positive wheel_normal_force, got \"heavy\"; it does not slip"},
+           std::pair{box + wheels + slip_of("8") + slip_of("9") + "</plugin></model>",
+                     "plugin \"p\" of model \"m\": wheel \"l\" slips already; it is left out"},
+       }) {
+    const LoadResult result = WorldFiles().load(content);
+    EXPECT_EQ(result.findings.size(), 1U) << content << all_findings(result);
+    EXPECT_EQ(findings_with(result, expected), 1) << expected << all_findings(result);
+  }
 }
 
 TEST(BadWorld, a_flood_of_findings_is_cut) {

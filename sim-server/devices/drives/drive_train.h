@@ -38,6 +38,8 @@ class DriveTrain {
   virtual bool moves_the_model() const { return true; }
   // Those that its motors turn, by their place in the model.
   virtual std::vector<std::uint32_t> joints() const = 0;
+  // Links round which its belts run, likewise.
+  virtual std::vector<std::uint32_t> belts() const { return {}; }
   virtual double rate() const = 0;  // of samples [Hz]; 0: every step
   // The model is (again) at its initial state.
   virtual void reset() = 0;

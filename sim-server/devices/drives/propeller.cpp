@@ -16,7 +16,9 @@ constexpr double most_push = 1e6;     // [N]: nothing sane pushes more
 
 double fourth_power(double x) { return x * x * x * x; }
 
-Propeller::Setup thruster_of(const PluginDef& plugin) {
+std::string about_propeller(const PluginDef& plugin) { return plugin.source + ": plugin " + base::in_quotes(plugin.name) + ": "; }
+
+Propeller::Setup thruster_of(const PluginDef& plugin, std::vector<std::string>& left_out) {
   const ParameterNode& p = plugin.parameters;
   Propeller::Setup setup;
   setup.diameter = std::max(p.number_of({"propeller_diameter"}).value_or(0.02), 1e-6);
@@ -32,7 +34,12 @@ Propeller::Setup thruster_of(const PluginDef& plugin) {
   setup.constant = setup.scale * coefficient.value_or(setup.alpha_1.value_or(1));
   setup.most_thrust = p.number_of({"max_thrust_cmd"}).value_or(1000);
   setup.least_thrust = p.number_of({"min_thrust_cmd"}).value_or(-1000);
-  if (setup.least_thrust > setup.most_thrust) setup.least_thrust = -1000, setup.most_thrust = 1000;
+  if (setup.least_thrust > setup.most_thrust) {
+    left_out.push_back(about_propeller(plugin) + "<min_thrust_cmd> must not be more than <max_thrust_cmd>, got " +
+                       base::format_number(setup.least_thrust) + " and " + base::format_number(setup.most_thrust) +
+                       "; -1000 to 1000 are taken");
+    setup.least_thrust = -1000, setup.most_thrust = 1000;
+  }
   setup.deadband = p.number_of({"deadband"}).value_or(0);
   setup.has_motor = p.bool_of({"velocity_control"}).value_or(false);
   setup.p = p.number_of({"p_gain"}).value_or(0.1), setup.i = p.number_of({"i_gain"}).value_or(0),
@@ -40,7 +47,21 @@ Propeller::Setup thruster_of(const PluginDef& plugin) {
   return setup;
 }
 
-Propeller::Setup rotor_of(const PluginDef& plugin) {
+// The words of a rotor; what else a file says has a line.
+void check_rotor_words(const PluginDef& plugin, std::vector<std::string>& left_out) {
+  const auto expect = [&](const char* element, const std::string& otherwise, const std::string& expected, bool is_known) {
+    if (!is_known)
+      left_out.push_back(about_propeller(plugin) + "<" + element + "> must be " + expected + ", got " +
+                         base::in_quotes(plugin.parameters.text_of({element}).value_or("")) + "; " + otherwise + " is taken");
+  };
+  const std::string direction = plugin.parameters.text_of({"turningDirection"}).value_or("ccw");
+  const std::string type = plugin.parameters.text_of({"motorType"}).value_or("velocity");
+  expect("turningDirection", "ccw", "cw or ccw", direction == "cw" || direction == "ccw");
+  expect("motorType", "velocity", "velocity", type == "velocity");
+}
+
+Propeller::Setup rotor_of(const PluginDef& plugin, std::vector<std::string>& left_out) {
+  check_rotor_words(plugin, left_out);
   const ParameterNode& p = plugin.parameters;
   const auto number = [&](const char* name, double fallback) { return p.number_of({name}).value_or(fallback); };
   Propeller::Setup setup;
@@ -177,16 +198,15 @@ void Propeller::reset() {
 
 void Propeller::add_to(StateHash& hash) const { hash.add_all(wanted_speed_, wanted_thrust_, filtered_, integral_, last_error_); }
 
-std::shared_ptr<Propellers> Propellers::of(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out) {
+std::shared_ptr<Propellers> Propellers::of(DeviceWorld& world, ModelId model, const std::map<std::uint32_t, std::string>& driven,
+                                           std::vector<std::string>& left_out) {
   auto made = std::make_shared<Propellers>();
   const ModelDef& def = world.physics.def(model);
   for (const PluginDef& plugin : def.plugins) {
     if (!is_propeller(kind_of(plugin)) || def.is_static) continue;
     const std::string name = plugin.parameters.text_of({"joint_name", "jointName"}).value_or("");
     const auto joint = joint_named(def, plugin.scope, name);
-    const auto refuse = [&](const std::string& why) {
-      left_out.push_back(plugin.source + ": plugin " + base::in_quotes(plugin.name) + ": " + why + "; the plugin is left out");
-    };
+    const auto refuse = [&](const std::string& why) { left_out.push_back(about_propeller(plugin) + why + "; the plugin is left out"); };
     if (!joint) {
       refuse("model " + base::in_quotes(def.name) + " has no joint " + base::in_quotes(name));
       continue;
@@ -203,7 +223,11 @@ std::shared_ptr<Propellers> Propellers::of(DeviceWorld& world, ModelId model, st
       refuse("joint " + base::in_quotes(name) + " has a propeller already");
       continue;
     }
-    Propeller::Setup setup = kind_of(plugin) == PluginKind::rotor ? rotor_of(plugin) : thruster_of(plugin);
+    if (const auto other = driven.find(*joint); other != driven.end()) {
+      refuse("joint " + base::in_quotes(name) + " is driven by " + other->second + " already");
+      continue;
+    }
+    Propeller::Setup setup = kind_of(plugin) == PluginKind::rotor ? rotor_of(plugin, left_out) : thruster_of(plugin, left_out);
     setup.joint = {model, *joint};
     setup.link = {model, *link};
     setup.parent = {model, link_named(def, {}, joint_def.parent).value_or(*link)};

@@ -6,6 +6,7 @@
 // factor, since a rotor of a few grams turns several radians in a step.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,8 +76,10 @@ class Propeller {
 // Those of a model; commanded by two devices, by the client of single joints first.
 class Propellers {
  public:
-  // Nothing, when the model has none. A plugin that names no such joint, or one that has a propeller already, adds a line.
-  static std::shared_ptr<Propellers> of(DeviceWorld& world, ModelId model, std::vector<std::string>& left_out);
+  // Nothing, when the model has none. A plugin that names no such joint, one of `driven` (joints, and what drives them), or one that has a
+  // propeller already, adds a line.
+  static std::shared_ptr<Propellers> of(DeviceWorld& world, ModelId model, const std::map<std::uint32_t, std::string>& driven,
+                                        std::vector<std::string>& left_out);
 
   std::vector<Propeller>& all() { return all_; }
   const std::vector<Propeller>& all() const { return all_; }

@@ -156,6 +156,13 @@ class Tracks final : public DriveTrain {
   }
   bool moves_the_model() const override { return settings_.is_vehicle; }
   std::vector<std::uint32_t> joints() const override { return {}; }
+  std::vector<std::uint32_t> belts() const override {
+    std::vector<std::uint32_t> all;
+    for (const auto* tracks : {&settings_.left, &settings_.right}) {
+      for (const Track& track : *tracks) all.push_back(track.link);
+    }
+    return all;
+  }
   double rate() const override { return settings_.rate; }
   void reset() override {
     belts_ = asked_ = {0, 0};
