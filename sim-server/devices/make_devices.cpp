@@ -291,6 +291,7 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::thruster:
     case PluginKind::multicopter_control:
     case PluginKind::link_wrench:
+    case PluginKind::wind_effects:
     case PluginKind::implied:
     case PluginKind::unknown:  // the loader has said so
       return;

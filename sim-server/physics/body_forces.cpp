@@ -103,7 +103,8 @@ void BodyForces::add_waters() {
   memories_.resize(waters_.size());
 }
 
-void BodyForces::apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics) {
+void BodyForces::apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics,
+                       const Air& air) {
   for (const Float& one : floats_) {
     if (is_awake(bodies[one.assembly].id())) lift(one, bodies[one.assembly].id(), *physics.fluid, physics.gravity);
   }
@@ -118,17 +119,18 @@ void BodyForces::apply(const std::vector<ode::Body>& bodies, const std::vector<J
     for (const JointInstance& joint : joints) {
       if (wing.def.control_joint == joint.index()) control = joint.state(0).position;
     }
-    fly(wing, body, control, physics.wind);
+    fly(wing, body, control, air.wind);
   }
-  if (has_wind_) blow(bodies, physics);
+  is_blown_ = has_wind_ && !air.is_steady;
+  if (has_wind_) blow(bodies, air);
 }
 
-void BodyForces::blow(const std::vector<ode::Body>& bodies, const PhysicsDef& physics) const {
+void BodyForces::blow(const std::vector<ode::Body>& bodies, const Air& air) const {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const dBodyID body = bodies[i].id();
     const double mass = blueprint_.assemblies[i].wind_mass;
     if (mass <= 0 || !is_awake(body)) continue;
-    const Eigen::Vector3d force = mass * (physics.wind - ode::vector(dBodyGetLinearVel(body)));
+    const Eigen::Vector3d force = mass * air.scale * (air.wind - ode::vector(dBodyGetLinearVel(body)));
     dBodyAddForce(body, force.x(), force.y(), force.z());
   }
 }

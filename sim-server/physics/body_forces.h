@@ -13,6 +13,7 @@
 #include "physics/hash.h"
 #include "physics/ode.h"
 #include "physics/shapes.h"
+#include "physics/wind.h"
 #include "world/body_force_defs.h"
 
 namespace sim {
@@ -27,7 +28,9 @@ class BodyForces {
   bool is_empty() const { return !has_wind_ && floats_.empty() && waters_.empty() && wings_.empty(); }
   // Water or air carries it: it never rests but where it touches something.
   bool carries() const { return !floats_.empty() || !waters_.empty() || !wings_.empty(); }
-  void apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics);
+  // By a wind that was still changing in the last step: it does not rest.
+  bool is_blown() const { return is_blown_; }
+  void apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics, const Air& air);
 
   // What added mass remembers of the last step.
   struct Memory {
@@ -64,14 +67,14 @@ class BodyForces {
 
   void add_floats(ShapeStore& shapes, std::vector<std::string>& lost);
   void add_waters();
-  void blow(const std::vector<ode::Body>& bodies, const PhysicsDef& physics) const;
+  void blow(const std::vector<ode::Body>& bodies, const Air& air) const;
   static void lift(const Float& one, dBodyID body, const FluidDef& fluid, const Eigen::Vector3d& gravity);
   static void damp(const Water& water, Memory& memory, dBodyID body, double dt);
   static Vector6 drag_along(const Water& water, Memory& memory, const Vector6& velocity, double dt);
   static void fly(const Wing& wing, dBodyID body, double control, const Eigen::Vector3d& wind);
 
   const Blueprint& blueprint_;
-  bool has_wind_ = false;
+  bool has_wind_ = false, is_blown_ = false;
   std::vector<Float> floats_;
   std::vector<Water> waters_;
   std::vector<Memory> memories_;  // of waters_

@@ -336,12 +336,12 @@ void ModelInstance::set_row(JointInstance& joint, const JointRow& row) {
 
 bool ModelInstance::is_for_tree() const { return has_rows_ || !mimics_.empty() || tree_.places.size() >= TreeSolver::least_bodies; }
 
-void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& physics) {
+void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& physics, const Air& air) {
   if (!has_forces_) return;
   for (auto& joint : joints_) {
     if (joint.has_forces()) joint.apply(step_joints, physics.step);
   }
-  if (!forces_.is_empty()) forces_.apply(bodies_, joints_, physics);
+  if (!forces_.is_empty()) forces_.apply(bodies_, joints_, physics, air);
 }
 
 JointInstance* ModelInstance::joint(std::uint32_t index) {
@@ -414,7 +414,7 @@ bool ModelInstance::lies_still(double dt, bool touches) {
   constexpr double slow = 0.004, slow_turn = 0.01, slow_time = 0.5;
   constexpr double still = 0.0005, still_turn = 0.001, still_time = 0.1;
   constexpr std::uint32_t least_steps = 10;
-  if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches) || lies_on_belt) return false;
+  if (!blueprint_->model->allow_auto_disable || (forces_.carries() && !touches) || forces_.is_blown() || lies_on_belt) return false;
   double speed = 0, turn = 0;
   for (const auto& handle : bodies_) {
     if (handle.id() == nullptr) continue;

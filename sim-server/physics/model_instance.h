@@ -85,7 +85,7 @@ class ModelInstance {
   std::uint32_t moving_body_count() const { return moving_bodies_; }
 
   // Springs, couplings, water and air; before each step. Joints that hold for this step alone go into the group.
-  void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics);
+  void apply_forces(dJointGroupID step_joints, const PhysicsDef& physics, const Air& air);
   // Boxes of the moving shapes where they are now; the union.
   const Aabb& update_boxes();
   const Aabb& moving_box() const { return moving_box_; }

@@ -53,6 +53,7 @@ class Physics::Impl {
   std::vector<std::unique_ptr<Weld>> welds_;  // in the order in which they were made
   std::vector<ShapeInstance*> statics_;
   StaticIndex static_index_;
+  Wind wind_{{}, 1};
   std::uint64_t steps_ = 0;
   std::uint32_t moves_ = 0;
   bool may_roll_ = false;
@@ -67,6 +68,8 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
   statics_.clear();
   steps_ = 0;
   moves_ = 0;
+  if (dropped != nullptr) wind_ = Wind(wind_of(*world_, *dropped), world_->physics.step);
+  wind_.reset();
   if (dropped != nullptr) {
     for (const auto& model : world_->models) {
       auto blueprint = Blueprint::of(std::shared_ptr<const ModelDef>(world_, &model));
@@ -80,7 +83,7 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
       std::count_if(initial_.begin(), initial_.end(), [](const auto& blueprint) { return blueprint && !blueprint->is_static; }));
   const bool one = world_->physics.solver == PhysicsDef::Solver::iterative;
   const std::size_t shards = one ? 1 : std::clamp<std::size_t>(moving / 3, 1, most_shards);
-  for (std::size_t i = 0; i < shards; ++i) shards_.push_back(std::make_unique<Shard>(world_->physics));
+  for (std::size_t i = 0; i < shards; ++i) shards_.push_back(std::make_unique<Shard>(world_->physics, wind_.air()));
   models_.resize(initial_.size());
   for (ModelId id = 0; id < initial_.size(); ++id) {
     if (initial_[id]) add(id, initial_[id], dropped != nullptr ? *dropped : notes);
@@ -249,6 +252,7 @@ void Physics::Impl::put_back_insane(Shard& shard) {
 void Physics::Impl::step() {
   const auto step_one = [&](std::size_t i) { shards_[i]->step(statics_, steps_); };
   pool_.run(shards_.size(), step_one, pace_);
+  wind_.step();
   ++steps_;
   bool has_left = false;
   for (auto& shard : shards_) {
@@ -294,6 +298,7 @@ void Physics::reset_poses() {
 }
 
 double Physics::step_length() const { return impl_->world_->physics.step; }
+Eigen::Vector3d Physics::wind() const { return impl_->wind_.air().wind; }
 std::uint64_t Physics::steps() const { return impl_->steps_; }
 std::size_t Physics::model_slots() const { return impl_->models_.size(); }
 bool Physics::exists(ModelId model) const { return model < impl_->models_.size() && impl_->models_[model] != nullptr; }

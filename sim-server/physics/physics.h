@@ -104,7 +104,8 @@ class Physics {
   void reset_poses();
 
   double step_length() const;
-  std::uint64_t steps() const;  // since the start or the last reset
+  Eigen::Vector3d wind() const;  // in the next step [m/s]
+  std::uint64_t steps() const;   // since the start or the last reset
 
   std::size_t model_slots() const;  // ids are below this
   bool exists(ModelId model) const;

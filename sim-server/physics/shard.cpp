@@ -94,8 +94,9 @@ const Solid& solid_of(const ShapeInstance& shape) {
 
 }  // namespace
 
-Shard::Shard(const PhysicsDef& physics)
+Shard::Shard(const PhysicsDef& physics, const Air& air)
     : physics_(physics),
+      air_(air),
       gravity_(physics.gravity.norm()),
       erp_(physics.erp.value_or(0.2)),
       contact_joints_(dJointGroupCreate(0)),
@@ -179,7 +180,7 @@ void Shard::step(const std::vector<ShapeInstance*>& statics, std::uint64_t step_
   }
   tie_welded();
   find_contacts(statics);
-  for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_);
+  for (auto* model : active_) model->apply_forces(contact_joints_.id(), physics_, air_);
   impacts_.settle();
   groups_.keep_energies();
   find_turning();

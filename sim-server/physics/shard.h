@@ -20,7 +20,7 @@ namespace sim {
 
 class Shard {
  public:
-  explicit Shard(const PhysicsDef& physics);
+  Shard(const PhysicsDef& physics, const Air& air);
   Shard(const Shard&) = delete;
   Shard& operator=(const Shard&) = delete;
 
@@ -59,6 +59,7 @@ class Shard {
     std::size_t contact_a = 0, contact_b = 0;
   };
   const PhysicsDef& physics_;
+  const Air& air_;
   const double gravity_, erp_;  // [m/s^2]; the world's error reduction
   ode::World world_;
   ode::JointGroup contact_joints_;

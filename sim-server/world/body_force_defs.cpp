@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/text.h"
 #include "world/plugin_kind.h"
@@ -173,6 +174,36 @@ std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world, std::vec
     }
   }
   return wrenches;
+}
+
+WindDef wind_of(const WorldDef& world, std::vector<std::string>& left_out) {
+  WindDef wind;
+  wind.velocity = world.physics.wind;
+  const ParameterNode none;
+  const auto part = [&](const ParameterNode& node, std::string_view name) -> const ParameterNode& {
+    const ParameterNode* child = node.child(name);
+    return child != nullptr ? *child : none;
+  };
+  for (const PluginDef& plugin : world.plugins) {
+    if (kind_of(plugin) != PluginKind::wind_effects) continue;
+    const ParameterNode &horizontal = part(plugin.parameters, "horizontal"), &vertical = part(plugin.parameters, "vertical");
+    const ParameterNode &magnitude = part(horizontal, "magnitude"), &direction = part(horizontal, "direction");
+    wind.rises = true;
+    wind.scale = plugin.parameters.number_of({"force_approximation_scaling_factor"}).value_or(1);
+    wind.time = magnitude.number_of({"time_for_rise"}).value_or(1);
+    wind.vertical_time = vertical.number_of({"time_for_rise"}).value_or(1);
+    wind.amplitude = part(magnitude, "sin").number_of({"amplitude_percent"}).value_or(0);
+    wind.period = part(magnitude, "sin").number_of({"period"}).value_or(1);
+    wind.swing = part(direction, "sin").number_of({"amplitude"}).value_or(0) * std::numbers::pi / 180;
+    wind.swing_period = part(direction, "sin").number_of({"period"}).value_or(1);
+    for (const ParameterNode* with_noise : {&magnitude, &direction, &vertical}) {
+      const ParameterNode& noise = part(*with_noise, "noise");
+      if (noise.number_of({"stddev"}).value_or(0) == 0 && noise.number_of({"mean"}).value_or(0) == 0) continue;
+      left_out.push_back(about(plugin) + "its <noise> is not simulated");
+      break;
+    }
+  }
+  return wind;
 }
 
 std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out, std::vector<std::string>& notes) {

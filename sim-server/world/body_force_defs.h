@@ -58,6 +58,18 @@ struct StandingWrench {
 // Those of the plugins ApplyLinkWrench of a world. One that names neither a model nor a link adds a line to `left_out`.
 std::vector<StandingWrench> standing_wrenches_of(const WorldDef& world, std::vector<std::string>& left_out);
 
+// The wind of a world. Without a plugin WindEffects it blows from the beginning on and does not change.
+struct WindDef {
+  Eigen::Vector3d velocity{0, 0, 0};   // when it has risen [m/s]
+  double scale = 1;                    // of the force: mass times velocity against the wind [1/s]
+  bool rises = false;                  // from 0 at the start
+  double time = 1, vertical_time = 1;  // constants of that [s]
+  double amplitude = 0, period = 1;    // of its strength, a fraction; [s]
+  double swing = 0, swing_period = 1;  // of its direction [rad]; [s]
+};
+// Noise that a plugin asks for adds a line to `left_out`.
+WindDef wind_of(const WorldDef& world, std::vector<std::string>& left_out);
+
 // The link or joint of the model that a plugin of this scope means by a name: in its scope first.
 std::optional<std::uint32_t> link_named(const ModelDef& model, const std::string& scope, const std::string& name);
 std::optional<std::uint32_t> joint_named(const ModelDef& model, const std::string& scope, const std::string& name);

@@ -38,6 +38,7 @@ const std::map<std::string_view, PluginKind>& table() {
       {"multicoptercontrol", multicopter_control},
       {"applyjointforce", joint_force},
       {"applylinkwrench", link_wrench},
+      {"windeffects", wind_effects},
       {"jointpositioncontroller", joint_controller},
       {"jointcontroller", joint_controller},
       {"jointtrajectorycontroller", joint_controller},
@@ -71,7 +72,6 @@ const std::map<std::string_view, PluginKind>& table() {
       {"scenebroadcaster", implied},
       {"usercommands", implied},
       {"contact", implied},
-      {"windeffects", implied},
       {"wind", implied},
       {"ftsensor", implied},
       {"imu", implied},
@@ -173,7 +173,7 @@ bool is_wheel_drive(PluginKind kind) {
 
 std::optional<bool> is_of_world(PluginKind kind) {
   using enum PluginKind;
-  if (kind == buoyancy || kind == link_wrench) return true;
+  if (kind == buoyancy || kind == link_wrench || kind == wind_effects) return true;
   if (kind == unknown || kind == implied || kind == label || kind == thermal || kind == thermal_sensor) return std::nullopt;
   return false;
 }

@@ -27,6 +27,7 @@ enum class PluginKind {
   multicopter_control,  // turns rotors as a commanded velocity needs
   joint_force,          // a joint that clients command by its effort
   link_wrench,          // of the world: forces that stay
+  wind_effects,         // of the world: how its wind rises and swings
   // On land.
   mecanum_drive,          // four wheels with rollers at 45 degrees
   omni_drive,             // wheels with rollers that stand square to them, wherever they are

@@ -157,6 +157,13 @@ constexpr std::array water_rows{
 // Its coefficients are checked by their reader.
 constexpr std::array current_rows{NumberRow{"default_current", vector}};
 constexpr std::array wrench_rows{NumberRow{"force", push}, NumberRow{"torque", push}};
+constexpr std::array wind_rows{
+    NumberRow{"force_approximation_scaling_factor", positive},
+    NumberRow{"time_for_rise", positive},
+    NumberRow{"period", positive},
+    NumberRow{"amplitude_percent", number},
+    NumberRow{"amplitude", number},
+};
 constexpr std::array slip_rows{
     NumberRow{"slip_compliance_lateral", not_negative},
     NumberRow{"slip_compliance_longitudinal", not_negative},
@@ -210,6 +217,8 @@ std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
       return {water_rows};
     case PluginKind::link_wrench:
       return {wrench_rows};
+    case PluginKind::wind_effects:
+      return {wind_rows};
     case PluginKind::wheel_slip:
       return {slip_rows};
     case PluginKind::joint_controller:

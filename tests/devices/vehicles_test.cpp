@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "support/physics_fixture.h"
 #include "support/simulation_fixture.h"
@@ -460,6 +461,62 @@ TEST(Wrench, of_the_file_pushes_from_the_start_and_after_a_reset) {
   ASSERT_TRUE(f.simulation->reset(notes));
   f.run(1);
   EXPECT_NEAR(speed(), 1, 1e-6);
+}
+
+// --- wind
+
+TEST(Wind, rises_and_swings_as_its_plugin_says) {
+  const auto windy = [](const std::string& of_plugin) {
+    return weightless +
+           "<wind><linear_velocity>5 0 2</linear_velocity></wind><plugin filename='gz-sim-wind-effects-system' "
+           "name='gz::sim::systems::WindEffects'>" +
+           of_plugin +
+           "</plugin><model name='kite'><enable_wind>true</enable_wind><link name='l'><inertial><mass>3</mass></inertial></link></model>";
+  };
+  SimulationFixture f(
+      world_of_text(windy("<horizontal><magnitude><time_for_rise>2</time_for_rise></magnitude></horizontal>"
+                          "<force_approximation_scaling_factor>0.5</force_approximation_scaling_factor>")));
+  EXPECT_TRUE(f.dropped.empty());
+  const auto velocity = [&] { return f.simulation->physics().link_twist({0, 0}).linear; };
+  f.run(2);
+  EXPECT_NEAR(f.simulation->physics().wind().x(), 5 * (1 - std::exp(-1)), 0.003);
+  EXPECT_NEAR(velocity().x(), 5 * (1 - 2 * std::exp(-1)), 0.003);
+  EXPECT_NEAR(f.simulation->physics().wind().z(), 2 * (1 - std::exp(-2)), 0.003);
+  const auto hash = f.simulation->hash();
+  std::vector<std::string> notes;
+  ASSERT_TRUE(f.simulation->reset(notes));
+  EXPECT_NEAR(f.simulation->physics().wind().x(), 5 * 0.001 / 2, 1e-12);
+  f.run(2);
+  EXPECT_EQ(f.simulation->hash(), hash);
+  f.simulation.reset();
+  f.server.reset();
+  SimulationFixture swings(world_of_text(windy(
+      "<horizontal><magnitude><time_for_rise>0.001</time_for_rise><sin><amplitude_percent>0.5</amplitude_percent><period>4</period></sin>"
+      "<noise type='gaussian'><stddev>0.1</stddev></noise></magnitude><direction><sin><amplitude>90</amplitude><period>12</period></sin>"
+      "</direction></horizontal>")));
+  ASSERT_EQ(swings.dropped.size(), 1U);
+  EXPECT_THAT(swings.dropped[0], testing::HasSubstr("plugin \"gz::sim::systems::WindEffects\": its <noise> is not simulated"));
+  swings.run(1);
+  const Eigen::Vector3d wind = swings.simulation->physics().wind();
+  EXPECT_NEAR(wind.head<2>().norm(), 5 * 1.5, 0.01);
+  EXPECT_NEAR(std::atan2(wind.y(), wind.x()), std::numbers::pi / 4, 0.002) << "half of 90 degrees after a twelfth of the period";
+}
+
+TEST(Wind, that_rises_moves_what_has_lain_still) {
+  SimulationFixture f(world_of_text(
+      air + ground +
+      "<wind><linear_velocity>20 0 0</linear_velocity></wind><plugin filename='gz-sim-wind-effects-system' "
+      "name='gz::sim::systems::WindEffects'><horizontal><magnitude><time_for_rise>5</time_for_rise></magnitude></horizontal></plugin>"
+      "<model name='crate'><pose>0 0 0.5 0 0 0</pose><enable_wind>true</enable_wind><link "
+      "name='l'><inertial><mass>2</mass><inertia><ixx>0.3</ixx>"
+      "<iyy>0.3</iyy><izz>0.3</izz></inertia></inertial><collision name='c'><geometry><box><size>1 1 "
+      "1</size></box></geometry><surface><friction><ode><mu>0.3</mu><mu2>0.3</mu2></ode>"
+      "</friction></surface></collision></link></model>"));
+  const auto place = [&] { return f.simulation->physics().model_pose(*f.simulation->physics().find("crate")).translation().x(); };
+  f.run(0.5);
+  EXPECT_NEAR(place(), 0, 1e-3);
+  f.run(5);
+  EXPECT_GT(place(), 0.5);
 }
 
 TEST(JointForce, joints_of_the_plugin_take_efforts) {

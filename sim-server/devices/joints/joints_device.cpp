@@ -211,7 +211,7 @@ void JointsDevice::turn_propellers(const Moment& moment) {
     Propellers::Wish& wish = propellers_->followed[*axis.propeller];
     if (!axis.is_halted) wish = axis.owner != 0 ? own : propellers_->wishes[*axis.propeller];
     wish.is_thrust ? propeller.set_thrust(wish.value) : propeller.set_speed(wish.value);
-    propeller.before_step(world().physics, world().world.physics.wind, moment.dt);
+    propeller.before_step(world().physics, physics().wind(), moment.dt);
   }
 }
 

@@ -15,7 +15,7 @@ class AirSpeed final : public Sensor {
     constexpr double lapse = 0.0065, density_at_sea = 1.225, exponent = 4.256;  // [K/m], [kg/m^3]
     const Eigen::Isometry3d pose = mount_.in_world(physics());
     const PhysicsDef& air = world().world.physics;
-    const Eigen::Vector3d against_air = physics().point_velocity(mount_.link, pose.translation()) - air.wind;
+    const Eigen::Vector3d against_air = physics().point_velocity(mount_.link, pose.translation()) - physics().wind();
     const double speed = pose.linear().col(0).dot(against_air);
     const double altitude = world().world.spherical.elevation + pose.translation().z();
     const double temperature = std::max(1.0, air.atmosphere_temperature - lapse * altitude);
