@@ -493,7 +493,7 @@ def faults():
     flight = lambda text, name: plan(f"system: {source}/worlds/systems/quadcopter.xml\nworld: {source}/worlds/quadcopter.sdf\nduration: 3\n" + text, name, start="")
     found = {}
     for number, fault in enumerate(["", 'actuator: "quadcopter::position3d", is: weak', 'actuator: "quadcopter::position3d", is: stuck',
-                                    'actuator: "quadcopter::joints::motor_0", is: weak', 'sensor: "quadcopter::position3d", is: bias']):
+                                    'actuator: "quadcopter::joints::motor_0", is: weak']):
         text = "measure: [{path_length: {model: quadcopter}}]\n" + (f"faults: [{{at: 1, {fault}}}]\n" if fault else "")
         row = [json.loads(rtse("--json", "sweep", flight(text, f"flight{number}.yaml"), "--row", 1, "--keep", folder / f"flight{turn}").stdout) for turn in range(2)]
         assert row[0]["passed"] and row[0]["state"] == row[1]["state"], (fault, row)
