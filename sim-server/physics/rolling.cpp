@@ -376,7 +376,7 @@ bool Rolling::is_alone(const ModelInstance& model, const Statics& statics) const
   for (const ModelInstance* other : model.neighbours) {
     if (is_near(other->moving_box(), own + reach(other->fastest_body(), dt_))) return false;
   }
-  return is_on_ground(own);
+  return !ground_->belt && is_on_ground(own);
 }
 
 bool Rolling::step(ModelInstance& model) {

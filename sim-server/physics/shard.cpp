@@ -152,6 +152,8 @@ void Shard::find_active() {
   };
   for (std::size_t i = 0; i < active_.size(); ++i) {
     for (auto* other : active_[i]->neighbours) {
+      // One that has made its rolling step was alone, also where the boxes overlap that are wider than it is.
+      if (other->rolls() && !other->rolling->is_asleep()) continue;
       if (!other->is_active && active_[i]->moving_box().overlaps(other->moving_box())) add(other);
     }
     for (const Weld* weld : active_[i]->welds) {

@@ -190,6 +190,24 @@ TEST(RollingStep, ends_when_another_body_comes_near) {
   EXPECT_EQ(f.physics.statistics().rolling, 2U) << "and have parted";
 }
 
+TEST(RollingStep, goes_on_beside_a_body_that_moves_and_is_not_near) {
+  Rollers f(
+      robot_text("a", 0, 0) +
+      "<model name='ball'><pose>0.25 0.3 0.05 0 0 0</pose><link "
+      "name='l'><inertial><mass>1</mass><inertia><ixx>0.001</ixx><iyy>0.001</iyy><izz>0.001</izz></inertia></inertial><collision name='c'>"
+      "<geometry><sphere><radius>0.05</radius></sphere></geometry></collision></link></model>");
+  f.run(0.5);
+  ASSERT_TRUE(f.physics.set_model_twist(f.id("ball"), {{0, 0, 0}, {0, 0, 5}}));
+  f.drive("a", 0, 0.02);
+  for (int i = 0; i < 200; ++i) {
+    f.run(0.005);
+    ASSERT_TRUE(f.rolls()) << i;
+  }
+  EXPECT_EQ(f.physics.statistics().awake, 4U) << "the ball turns";
+  const Eigen::Matrix3d turn = f.physics.link_pose(f.link("a::base")).linear();
+  EXPECT_NEAR(std::atan2(turn(1, 0), turn(0, 0)), 0.02, 1e-4) << "one step at a time";
+}
+
 TEST(RollingStep, ends_when_somebody_pushes_places_or_throws_the_robot) {
   Rollers f(robot_text("a", 0, 0));
   ASSERT_TRUE(f.physics.add_wrench(f.link("a::base"), {0, 30, 0}, {0, 0, 0}));
