@@ -38,7 +38,7 @@ class Followed:
         self.grow(self.octets[: len(self.octets) * head // 100])
         with open(self.page, "w", encoding="utf8") as old:
             old.write("the page before")
-        self.process = subprocess.Popen([f"{bin_dir}/rtse-page", self.growing, "-o", self.page, "--follow"], stdin=subprocess.PIPE)
+        self.process = subprocess.Popen([f"{bin_dir}/rtse-page", self.growing, "-o", self.page, "--follow", "1"], stdin=subprocess.PIPE)
 
     def grow(self, octets):
         with open(self.growing, "ab") as file:

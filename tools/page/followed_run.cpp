@@ -14,9 +14,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto period = 50ms;
-constexpr double share = 0.03;     // of the time of one processor
-constexpr auto begin_after = 10s;  // until its share is enough to make the world's scene
+constexpr auto first_work = 450ms;  // of a processor: the scene of the world
 constexpr auto idle_window = 300ms;
+constexpr double idle_processors = 2;  // one is left for the run
 
 std::chrono::duration<double> used(int who) {
   rusage usage{};
@@ -36,7 +36,7 @@ std::uint64_t idle_ticks() {
 
 }  // namespace
 
-FollowedRun::FollowedRun() : idle_ticks_(idle_ticks()) {}
+FollowedRun::FollowedRun(double share) : share_(share), idle_ticks_(idle_ticks()) {}
 
 Recorded FollowedRun::wait(studio::Json& summary) {
   pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
@@ -58,12 +58,12 @@ Recorded FollowedRun::end(studio::Json& summary) const {
 }
 
 bool FollowedRun::may_work() {
-  const auto passed = Clock::now() - began_;
-  const bool is_in_share = passed > begin_after && used(RUSAGE_SELF) + used(RUSAGE_CHILDREN) < share * passed;
-  return is_in_share || is_processor_idle();
+  const auto granted = share_ * (Clock::now() - began_);
+  const bool is_in_share = granted > first_work && used(RUSAGE_SELF) + used(RUSAGE_CHILDREN) < granted;
+  return is_in_share || are_processors_idle();
 }
 
-bool FollowedRun::is_processor_idle() {
+bool FollowedRun::are_processors_idle() {
   const auto now = Clock::now();
   const std::chrono::duration<double> window = now - looked_;
   if (window < idle_window) return false;
@@ -71,7 +71,7 @@ bool FollowedRun::is_processor_idle() {
   const double idle_seconds = static_cast<double>(ticks - idle_ticks_) / static_cast<double>(::sysconf(_SC_CLK_TCK));
   looked_ = now;
   idle_ticks_ = ticks;
-  return idle_seconds > window.count();
+  return idle_seconds > idle_processors * window.count();
 }
 
 }  // namespace page

@@ -1,6 +1,6 @@
 // The run whose recording is followed. Its end comes by the standard input: the summary when the recording is whole, nothing if the run was
-// given up. Until then the work on the page gets only a small share of one processor, so that it does not slow the run down, or all of one
-// that is idle. One thread at a time.
+// given up. Until then the work on the page gets only a share of one processor, so that it does not slow the run down, or all of one if two
+// are idle. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,8 @@ namespace page {
 
 class FollowedRun {
  public:
-  FollowedRun();
+  // `share`: of the time of one processor.
+  explicit FollowedRun(double share);
   // Returns when there is time for some more work, or at the end of the run.
   Recorded wait(studio::Json& summary);
 
@@ -22,8 +23,9 @@ class FollowedRun {
 
   Recorded end(studio::Json& summary) const;
   bool may_work();
-  bool is_processor_idle();
+  bool are_processors_idle();
 
+  const double share_;
   const Clock::time_point began_ = Clock::now();
   Clock::time_point looked_ = began_;
   std::uint64_t idle_ticks_ = 0;  // of all processors, at that time

@@ -21,7 +21,7 @@ struct Settings {
   page::PageOptions page;
   double limit_mib = 64;
   std::string summary;
-  bool follows = false;
+  double share = 0;  // of a processor for a recording that is followed; 0: it is complete
 };
 
 void add_options(base::Command& app, Settings& settings) {
@@ -36,8 +36,11 @@ void add_options(base::Command& app, Settings& settings) {
       ->check(base::number_between(1.0, largest_page))
       ->capture_default_str();
   app.add_option("--summary", settings.summary, "JSON file with the result of the run (from rtse)")->check(base::existing_file());
-  app.add_flag("--follow", settings.follows,
-               "Follow a recording that is being written; its result comes by the standard input when it is complete (from rtse)");
+  app.add_option(
+         "--follow", settings.share,
+         "Follow a recording that is being written, with this share of a processor; its result comes by the standard input when it is "
+         "complete (from rtse)")
+      ->check(base::number_between(0, 1.0));
   app.add_option("--viewer", settings.page.viewer, "run.html of the built page of rtm-studio")->capture_default_str();
 }
 
@@ -54,10 +57,10 @@ int write_page(Settings& settings) {
     if (!settings.page.summary.is_object()) return fail({settings.summary + ": expected a JSON object"});
   }
   std::error_code ignored;
-  if (!settings.follows && !std::filesystem::is_regular_file(settings.page.recording, ignored))
+  if (settings.share == 0 && !std::filesystem::is_regular_file(settings.page.recording, ignored))
     return fail({settings.page.recording + ": there is no such file"});
-  page::FollowedRun run;
-  if (settings.follows) {
+  page::FollowedRun run(settings.share);
+  if (settings.share > 0) {
     ::signal(SIGINT, SIG_IGN);  // it is for the run, which then ends our input
     settings.page.follow = [&run](studio::Json& summary) { return run.wait(summary); };
   }

@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::minutes longest_writing{30};
 constexpr std::chrono::seconds given_up_limit{5};
+constexpr std::string_view share_beside_run = "0.015";  // of a processor, so that the run loses less than 2 %
 constexpr std::string_view program_name = "rtse-page: ";
 
 Error about(const std::string& page, const std::string& what) { return {"page " + base::in_quotes(page) + ": " + what}; }
@@ -90,7 +91,7 @@ Result<PageBesideRun> PageBesideRun::start(const PageCall& call) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return about(call.file, "no socket for rtse-page");
   base::FileHandle ours(ends[0]), theirs(ends[1]);
   auto words = words_of(call);
-  words.emplace_back("--follow");
+  words.insert(words.end(), {"--follow", std::string(share_beside_run)});
   auto child = ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
   if (!child) return about(call.file, child.error().message);
   return PageBesideRun(call, std::move(*child), std::move(ours));
