@@ -4,8 +4,9 @@
 // Python code). Rights: Python objects are touched with the lock only; a caller of the runtime gives the lock back first (Released), and
 // no thread takes it while it holds a lock of the runtime. A thread of the runtime gets one thread state, kept until it ends, because
 // making one costs 7 us. Failure cases: a thread that keeps the lock for ever stops all others that want it; the end of the process does
-// not want it (manager/end.cpp ends the process within its time limit). After the interpreter has begun to finalize, entering blocks for
-// ever, except for the main thread, which finalizes it: the process ends in that moment.
+// not want it (manager/end.cpp ends the process within its time limit). A thread that wants the lock of an interpreter that is being
+// finalized would be ended by Python inside our frames, which aborts the process. So close_doors() comes before: from then on entering
+// blocks for ever, except for the main thread, which finalizes the interpreter; the process ends in that moment.
 #pragma once
 
 #include <Python.h>
@@ -16,6 +17,13 @@
 
 namespace python {
 
+// Before the interpreter is finalized, on the main thread with the lock. Waits until nobody is on the way in, and asks callbacks that still
+// run Python code to end with SystemExit; those that wait in a call of the system stay where they are. Takes at most two seconds.
+void close_doors();
+
+// Takes the lock with this thread state, unless the doors are closed: then it never returns.
+void enter(PyThreadState* state);
+
 // Holds the interpreter's lock; nested ones are free.
 class Locked {
  public:
@@ -25,14 +33,15 @@ class Locked {
   Locked& operator=(const Locked&) = delete;
 
  private:
-  bool is_nested_;
+  bool is_nested_;  // the thread has the lock already
+  bool is_outermost_ = false;
 };
 
 // Gives the lock back while it lives. Needs the lock.
 class Released {
  public:
   Released() : state_(PyEval_SaveThread()) {}
-  ~Released() { PyEval_RestoreThread(state_); }
+  ~Released() { enter(state_); }
   Released(const Released&) = delete;
   Released& operator=(const Released&) = delete;
 

@@ -181,6 +181,7 @@ void add_life(py::module_& module) {
   module.def("manager_run", &run);
   module.def("manager_shutdown", [] { unlocked([] { the_manager().shutdown(); }); });
   module.def("manager_terminate", [] { unlocked([] { the_manager().terminate(); }); });
+  module.def("close_doors", &close_doors);
   module.def("manager_join", [] { unlocked([] { the_manager().join(); }); });
   module.def("manager_is_running", [] { return the_manager().isRunning(); });
   module.def("manager_set_init_function", [](const py::object& function) {

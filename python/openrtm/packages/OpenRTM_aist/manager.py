@@ -299,4 +299,5 @@ def _seconds(value):
 def _end():
     if Manager._instance is not None and _core.manager_exists():
         _core.manager_shutdown()
-        sys.stdout.flush()
+    sys.stdout.flush()
+    _core.close_doors()
