@@ -98,7 +98,7 @@ def test_what_python_users_assign_is_encoded(value, read):
     (RTC.TimedString(stamp, b"octets"), "data: expected string, got bytes"),
     (RTC.TimedString(stamp, "a\0b"), "without the character 0"),
     (RTC.TimedPose2D(stamp, RTC.Pose2D(RTC.Point2D(1, "x"), 0)), "data.position.y: expected double, got str 'x'"),
-    (RTC.TimedPose2D(stamp, 7), "data.position: expected RTC/Point2D, got none: int has no such member"),
+    (RTC.TimedPose2D(stamp, 7), "data: expected RTC/Pose2D, got int 7, which has no member position"),
 ])
 def test_a_value_that_does_not_fit_is_named_with_its_place_and_types(value, why):
     with pytest.raises(CORBA.BAD_PARAM) as raised:

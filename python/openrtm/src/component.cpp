@@ -150,7 +150,7 @@ bool Component::bind_parameter(const std::string& name, const std::string& defau
 namespace {
 
 template <class Call>
-void heard(const Function& function, Call arguments) {
+void heard(const Function& function, Complaint& complaint, Call arguments) {
   const Locked locked;
   std::string problem;
   try {
@@ -162,6 +162,7 @@ void heard(const Function& function, Call arguments) {
     error.restore();
     problem = take_error();
   }
+  if (!complaint.is_new(problem)) return;
   const Released released;
   RTC::Logger("listener").write(RTC::Logger::RTL_ERROR, "a listener raised: " + problem);
 }
@@ -171,7 +172,7 @@ class Heard : public Base {
  public:
   explicit Heard(const py::object& function) : function_(function) {}
   void operator()(Args... args) override {
-    heard(function_, [&] { return py::make_tuple(to_argument(args)...); });
+    heard(function_, complaint_, [&] { return py::make_tuple(to_argument(args)...); });
   }
 
  private:
@@ -182,6 +183,7 @@ class Heard : public Base {
   static py::object to_argument(RTC::ConnectorProfile& profile) { return to_python(profile, "IDL:omg.org/RTC/ConnectorProfile:1.0"); }
   static py::object to_argument(const coil::Properties& set) { return py::cast(Properties::copy_of(set)); }
   const Function function_;
+  Complaint complaint_;
 };
 
 template <class Type>

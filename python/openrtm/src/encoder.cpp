@@ -264,15 +264,29 @@ void write_sequence(Writer& to, const Type& type, PyObject* value) {
   if (PySequence_Fast_GET_SIZE(value) != count) throw BadValue{{}, "a list that keeps its length", "one that changes"};
 }
 
+// The exception that is set is that of a look at the member.
+[[noreturn]] void refuse_without(const Member& member, const Type& type, PyObject* value) {
+  const bool is_missing = PyErr_ExceptionMatches(PyExc_AttributeError) != 0;
+  PyObject *error = nullptr, *raised = nullptr, *trace = nullptr;
+  PyErr_Fetch(&error, &raised, &trace);
+  PyErr_NormalizeException(&error, &raised, &trace);
+  const Ref owned_error(error), owned_raised(raised), owned_trace(trace);
+  const char* const name = PyUnicode_AsUTF8(member.name);
+  const std::string given = described(value) + (is_missing ? ", which has no member " : ", whose member ") + (name ? name : "?");
+  if (is_missing) throw BadValue{{}, name_of(type), given};
+  const Ref text(PyObject_Str(raised));
+  const char* const utf8 = text ? PyUnicode_AsUTF8(text.get()) : nullptr;
+  PyErr_Clear();
+  throw BadValue{
+      {}, name_of(type), given + " raised " + reinterpret_cast<PyTypeObject*>(error)->tp_name + (utf8 ? std::string(": ") + utf8 : "")};
+}
+
 template <class Writer>
 void write_members(Writer& to, const Type& type, PyObject* value) {
   for (const Member& member : type.members) {
     const Ref part(PyObject_GetAttr(value, member.name));
+    if (!part) refuse_without(member, type, value);
     try {
-      if (!part) {
-        PyErr_Clear();
-        throw BadValue{{}, name_of(*member.type), "none: " + std::string(Py_TYPE(value)->tp_name) + " has no such member"};
-      }
       write(to, *member.type, part.get());
     } catch (BadValue& bad) {
       const char* name = PyUnicode_AsUTF8(member.name);

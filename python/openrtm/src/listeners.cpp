@@ -30,13 +30,29 @@ RTC::ConnectorListenerStatus::Enum status_of(const py::object& result) {
   return number > 0 && number <= 3 ? static_cast<RTC::ConnectorListenerStatus::Enum>(number) : RTC::ConnectorListenerStatus::NO_CHANGE;
 }
 
+// Calls with the lock; NO_CHANGE for what was raised before, else Raised.
+template <class Call>
+RTC::ConnectorListenerStatus::Enum said_once(Complaint& complaint, Call call) {
+  std::string problem;
+  try {
+    return call();
+  } catch (const Raised& raised) {
+    problem = raised.what();
+  } catch (py::error_already_set& error) {
+    error.restore();
+    problem = take_error();
+  }
+  if (complaint.is_new(problem)) throw Raised(problem);
+  return RTC::ConnectorListenerStatus::NO_CHANGE;
+}
+
 class DataListener final : public RTC::ConnectorDataListener {
  public:
   explicit DataListener(const py::object& function) : function_(function) {}
   using ConnectorDataListener::operator();
   ReturnCode operator()(RTC::ConnectorInfo& info, RTC::ByteData& data, const std::string&) override {
     const Locked locked;
-    try {
+    return said_once(complaint_, [&] {
       const auto& octets = std::as_const(data);
       const py::bytes shown(reinterpret_cast<const char*>(octets.getBuffer()), octets.getDataLength());
       const py::object result = call(function_, py::make_tuple(python_info(info), shown, data.isLittleEndian()));
@@ -45,14 +61,12 @@ class DataListener final : public RTC::ConnectorDataListener {
       const std::string changed = py::cast<std::string>(pair[1]);
       data.writeData(reinterpret_cast<const unsigned char*>(changed.data()), changed.size());
       return status_of(pair[0]);
-    } catch (py::error_already_set& error) {
-      error.restore();
-      throw Raised(take_error());
-    }
+    });
   }
 
  private:
   const Function function_;
+  Complaint complaint_;
 };
 
 class Listener final : public RTC::ConnectorListener {
@@ -61,16 +75,12 @@ class Listener final : public RTC::ConnectorListener {
   using ConnectorListener::operator();
   ReturnCode operator()(RTC::ConnectorInfo& info) override {
     const Locked locked;
-    try {
-      return status_of(call(function_, py::make_tuple(python_info(info))));
-    } catch (py::error_already_set& error) {
-      error.restore();
-      throw Raised(take_error());
-    }
+    return said_once(complaint_, [&] { return status_of(call(function_, py::make_tuple(python_info(info)))); });
   }
 
  private:
   const Function function_;
+  Complaint complaint_;
 };
 
 class Connection final : public RTC::ConnectionCallback {

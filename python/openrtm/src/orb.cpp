@@ -232,6 +232,16 @@ py::object cdr_unmarshal(const py::object& descriptor, const std::string& octets
 }  // namespace
 
 void add_orb(py::module_& module) {
+  // For what constructors and the like let through: after the end of the ORB, for instance.
+  py::register_exception_translator([](std::exception_ptr problem) {
+    try {
+      std::rethrow_exception(problem);
+    } catch (const CORBA::SystemException& system) {
+      set_python_exception(system);
+    } catch (const CORBA::UserException& user) {
+      PyErr_SetString(PyExc_RuntimeError, user._name());
+    }
+  });
   add_references(module);
   add_orb_functions(module);
   module.def("cdr_marshal", &cdr_marshal);
