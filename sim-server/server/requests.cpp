@@ -218,7 +218,7 @@ struct ServerLoop::Handler {
       return refused(shm::RequestStatus::not_found, "no deleted model " + base::in_quotes(name) + " since the last reset");
     LoadedModel loaded;
     loaded.model = *model;
-    loop.loaded_.push_back({{ticket, std::move(loaded), false, {}, nullptr}, Clock::now()});
+    loop.loaded_.push_back({{ticket, std::move(loaded), false, {}, nullptr, {}}, Clock::now()});
     loop.board_.wake();
     return {};
   }

@@ -280,7 +280,7 @@ void ServerLoop::finish_step_request() {
 
 void ServerLoop::note_death(const shm::BarrierEvent& event) {
   if (!step_ticket_ || !ends_at_death_ || event.looks_on) return;
-  if (!death_) death_.emplace(Death{.pid = event.pid});
+  if (!death_) death_.emplace(Death{.pid = event.pid, .in_tick = {}});
   if (death_->pid != event.pid || !event.was_in_tick) return;
   death_->in_tick.push_back(event.name);
   death_->period_ns = std::max(death_->period_ns, event.period_ns);

@@ -84,7 +84,9 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   plugin.parameters = parameters_of(node);
   plugin.source = context.complaints.place_of(node).text();
   const bool is_in_world = std::string_view(node.parent().name()) == "world";
-  if (is_of_world(kind_of(plugin)).value_or(is_in_world) != is_in_world) {
+  // Gazebo Classic has a plugin of models with the name of the other simulator's plugin of worlds.
+  const bool is_other = kind_of(plugin) == PluginKind::buoyancy && !is_in_world && plugin.name.find("::") == std::string::npos;
+  if (!is_other && is_of_world(kind_of(plugin)).value_or(is_in_world) != is_in_world) {
     context.complaints.warn(node,
                             describe_in_context(node) +
                                 (is_in_world ? " means a model, but stands in the world" : " means the world, but stands in a model") +
@@ -98,7 +100,7 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
                   " is not commanded: its joints keep the position or speed that it starts with, until a client of the iface joints "
                   "commands them");
     check_numbers(node, plugin, context.complaints);
-  } else if (kind_of(plugin) == PluginKind::unknown) {
+  } else if (is_other || kind_of(plugin) == PluginKind::unknown) {
     context.complaints.warn(node, "unknown plugin " + base::in_quotes(plugin.filename) + " (" + describe_in_context(node) + ") is ignored");
   } else if (kind_of(plugin) != PluginKind::implied) {
     check_numbers(node, plugin, context.complaints);

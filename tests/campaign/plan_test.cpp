@@ -124,7 +124,7 @@ TEST_F(Plans, say_line_and_column_of_what_is_wrong) {
            std::pair{"wrench: {force: [1, 0, 0]}", ":5:21: wrench needs model"},
            std::pair{"joint_force: {model: robot, force: 1}", ":5:26: joint_force needs joint"},
            std::pair{"joint_force: {model: robot, joint: elbow}", ":5:26: joint_force needs force or clear"},
-           std::pair{"joint_force: {model: robot, joint: elbow, force: much}", ":5:62: force must be a number, got \"much\""},
+           std::pair{"joint_force: {model: robot, joint: elbow, force: much}", ":5:62: force must be a finite number, got \"much\""},
        })
     EXPECT_EQ(error(start_ + "events:\n  - {at: 1, " + wrong + "}\n"), expected) << wrong;
   EXPECT_EQ(error(start_ + "never:\n  - {port: 'A0:out', member: data, min: 2, max: 1}\n"), ":5:49: max must not be less than min");

@@ -34,7 +34,7 @@ TEST(Door, says_what_is_open) {
   EXPECT_NE(describe({}, "0.0.0.0").find("are refused"), std::string::npos);
   EXPECT_NE(describe({}, "::").find("are refused"), std::string::npos);
   EXPECT_NE(describe({false, "k"}, "127.0.0.1").find("send the key"), std::string::npos);
-  EXPECT_NE(describe({true, ""}, "127.0.0.1").find("everybody"), std::string::npos);
+  EXPECT_NE(describe({true, ""}, "127.0.0.1").find("every client"), std::string::npos);
 }
 
 TEST(ClientTimeouts, ends_with_those_who_ask_for_nothing) {

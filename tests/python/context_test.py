@@ -55,6 +55,7 @@ class Own(OpenRTM_aist.ExecutionContextBase, RTC__POA.ExecutionContextService, O
         return RTC.RTC_OK
     def onStopping(self):
         self.goes = False
+        self.wait()
         return RTC.RTC_OK
     def onWaitingActivated(self, comp, count):
         print("waiting", flush=True)

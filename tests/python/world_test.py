@@ -191,9 +191,9 @@ def test_models_are_moved_spawned_and_deleted(course_world):
     course_world.advance(0.5)
     assert course_world.pose("crate7").x > x
     x = course_world.pose("crate7").x
-    course_world.push("crate7", (200, 0, 0), persistent=True)
+    course_world.push("crate7", (-20, 0, 0), persistent=True)
     course_world.advance(0.5)
-    assert course_world.pose("crate7").x > x + 0.1
+    assert course_world.pose("crate7").x < x - 0.1
     course_world.push("crate7", persistent=True)
     with pytest.raises(rtmsim.NotFound, match="no joint crate7::hinge"):
         course_world.push_joint("crate7", "hinge", 1)

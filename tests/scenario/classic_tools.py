@@ -163,9 +163,13 @@ class AsPython(Tool):
         self.assertEqual((shown.interfaces, shown.connector_profiles), ([], []))
         self.assertEqual(shown.owner.ior.key(), source.ior.key())
         self.assertEqual(shown.port_ref.get_port_profile().name, "SourceAll0.long")
-        options = {"dataport.interface_option." + name: "" for name in ("corba_cdr", "data_service", "direct", "shared_memory")}
+        # Where the module of ROS 2 is installed, ports offer its transports too.
+        transports = ["corba_cdr", "data_service", "direct", "shared_memory"]
+        if "ros2" in texts(shown.properties)["dataport.interface_type"].split(","):
+            transports += ["cyclone-dds", "fast-rtps", "ros2"]
+        options = {"dataport.interface_option." + name: "" for name in transports}
         both = {"dataport.data_type": "IDL:RTC/TimedLong:1.0", "data_type": "IDL:RTC/TimedLong:1.0", "dataport.dataflow_type": "push,pull",
-                "dataport.interface_type": "corba_cdr,data_service,direct,shared_memory", "dataport.marshaling_types": "cdr", **options}
+                "dataport.interface_type": ",".join(transports), "dataport.marshaling_types": "cdr", **options}
         kinds = "block,flush,new,nonblock,periodic"
         self.assertEqual(texts(shown.properties), {**both, "port.port_type": "DataOutPort", "dataport.subscription_type": kinds, "dataport.io_mode": kinds})
         inport = self.ports(self.find("SinkAll0"))["long"].get_port_profile()

@@ -303,7 +303,7 @@ def odds_and_ends():
             assert code == 1 and why in err and "--keep" not in err, (words, code, err)
         e = place.write("e.yaml", expectations("value: {port: 'Relay1:in', member: data, min: 0}"))
         code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
-        assert code == 2 and "Relay1:in: is no OutPort" in err, err
+        assert code == 2 and "Relay1:in: is not an OutPort" in err, err
         # What a command says need not be text, and the signals are as they are for a program started by a shell.
         e = place.write("e.yaml", expectations("command: 'head -c 300 /dev/urandom; exit 3'", "command: 'yes | head -n 1; grep -q \"^SigIgn:.*0000000000000000$\" /proc/self/status'"))
         code, out, err = place.run(system, world, "--duration", "1", "--expect", e)

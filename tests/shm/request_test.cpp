@@ -43,7 +43,7 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_TRUE(spawn.has_pose);
   EXPECT_FALSE(spawn.is_confined);
   EXPECT_TRUE(there_and_back(SpawnRequest{"m", true, "", false, identity_pose, true}).is_confined);
-  SpawnRequest with_joints{"model://arm", true};
+  SpawnRequest with_joints{.sdf = "model://arm", .is_path = true, .name = {}};
   with_joints.gains = "elbow: {p: 1}\n", with_joints.joints = "elbow=1\nwaist=2";
   const auto spawned = there_and_back(with_joints);
   EXPECT_EQ(spawned.sdf, "model://arm");
@@ -253,7 +253,7 @@ TEST(RequestBoard, a_request_in_two_calls_is_answered_when_the_server_gets_to_it
   ASSERT_TRUE(answer && *answer);
   EXPECT_EQ((*answer)->steps, 5U);
   EXPECT_EQ((*answer)->text, "done");
-  EXPECT_FALSE(requester->begin(SpawnRequest{"<sdf/>"})) << "a text goes by ask()";
+  EXPECT_FALSE(requester->begin(SpawnRequest{.sdf = "<sdf/>", .name = {}})) << "a text goes by ask()";
 }
 
 TEST(RequestBoard, a_request_that_was_begun_and_abandoned_is_not_answered_into_the_next_one) {

@@ -483,11 +483,10 @@ const flows = [
   }],
   ['saved, torn down and opened again', async ({ page, rig }) => {
     const at = () => page.evaluate(() => Object.fromEntries(Object.entries(window.studio.diagram.positions()).map(([path, [x, y]]) => [path, [x, y]])));
-    await page.evaluate(() => {
-      const { diagram } = window.studio;
-      diagram.place_all(Object.fromEntries(Object.entries(diagram.positions()).map(([path, [x, y]], i) => [path.slice(1), [x + 30 + i, y - 40]])));
-    });
-    const placed = await until('boxes are where they were put', async () => { const now = await at(); return Object.values(now).every(([, y]) => y < 0) && now; });
+    const before = await at();
+    await page.evaluate((moved) => window.studio.diagram.place_all(moved),
+                        Object.fromEntries(Object.entries(before).map(([path, [x, y]], i) => [path.slice(1), [x + 30 + i, y - 40]])));
+    const placed = await until('boxes are where they were put', async () => { const now = await at(); return Object.entries(before).every(([path, [, y]]) => now[path][1] === y - 40) && now; });
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save').click()]);
     const file = join(rig.work, 'saved.xml');
     writeFileSync(file, readFileSync(await download.path()));

@@ -87,7 +87,7 @@ TEST_F(ConnectionsTest, a_connection_is_ended_by_its_id) {
 }
 
 TEST_F(ConnectionsTest, a_connection_that_its_port_dropped_meanwhile_is_ended) {
-  in_view_.connectors.push_back({.id = "id7"});
+  in_view_.connectors.emplace_back().id = "id7";
   in_->answer = RTC::BAD_PARAMETER;
   EXPECT_TRUE(disconnect_connector(in_view_, "id7"));
   in_->connectors.length(1);

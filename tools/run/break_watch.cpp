@@ -76,7 +76,7 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       const auto colon = value.name.find(':');
       const auto found = session.port(value.name.substr(0, colon) + ".rtc" + value.name.substr(colon));
       if (!found) return found.error();
-      if (found->port.port_type() != "DataOutPort") return base::Error{"port " + value.name + ": is no OutPort"};
+      if (found->port.port_type() != "DataOutPort") return base::Error{"port " + value.name + ": is not an OutPort, so it has no values"};
       auto port = std::make_unique<Port>();
       port->type = editor::type_code_of(found->port.data_type());
       if (CORBA::is_nil(port->type)) return base::Error{"port " + value.name + ": its data type is not known"};

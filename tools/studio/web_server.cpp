@@ -103,7 +103,7 @@ base::Result<std::unique_ptr<WebServer>> WebServer::open(boost::asio::io_context
   auto token = Door::make_secret();
   if (!token) return token.error();
   Door door(std::move(*token), options.hosts, options.origins);
-  auto shared = std::make_shared<WebShared>(WebShared{loop, std::move(door), page, std::move(handlers)});
+  auto shared = std::make_shared<WebShared>(WebShared{loop, std::move(door), page, std::move(handlers), {}});
   auto listener = std::make_unique<Listener>(std::move(shared), std::move(acceptor));
   listener->accept();
   return std::unique_ptr<WebServer>(std::move(listener));

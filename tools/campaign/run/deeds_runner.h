@@ -15,9 +15,9 @@
 namespace campaign {
 
 struct Deeds {
-  std::vector<Event> events;
-  std::vector<Fault> faults;
-  std::vector<Condition> never, eventually;
+  std::vector<Event> events = {};
+  std::vector<Fault> faults = {};
+  std::vector<Condition> never = {}, eventually = {};
 };
 
 class DeedsRunner {
