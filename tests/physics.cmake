@@ -1,6 +1,6 @@
 rtmsim_test(physics_test physics/physics_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(rolling_test physics/rolling_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(joints_test physics/joints_test.cpp physics/joint_limits_test.cpp physics/joint_couplings_test.cpp LIBRARIES simphysics LABELS sim)
+rtmsim_test(joints_test physics/joints_test.cpp physics/joint_limits_test.cpp physics/joint_couplings_test.cpp physics/rotor_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(arm_energy_test physics/arm_energy_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(mesh_energy_test physics/mesh_energy_test.cpp LIBRARIES simphysics LABELS sim)
 rtmsim_test(crowd_test physics/crowd_test.cpp LIBRARIES simphysics LABELS sim)

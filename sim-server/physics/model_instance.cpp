@@ -34,6 +34,10 @@ base::Result<ShapeInstance> make_or_refuse(const CollisionDef& collision, ShapeS
   }
 }
 
+bool has_rotor(const JointDef& joint) {
+  return std::any_of(joint.axes.begin(), joint.axes.end(), [](const AxisDef& axis) { return axis.rotor_inertia > 0; });
+}
+
 constexpr double fastest = 5000;  // [m/s], [rad/s]: nothing that is simulated sanely gets there
 
 }  // namespace
@@ -160,6 +164,7 @@ ModelInstance::ModelInstance(ModelId id, std::shared_ptr<const Blueprint> bluepr
         mimics_.push_back({follower, leader});
     }
   }
+  has_rotors_ = std::any_of(joints.begin(), joints.end(), [](const JointDef& joint) { return has_rotor(joint); });
   for (const Assembly& assembly : blueprint_->assemblies) mass_ += assembly.is_anchored ? 0 : assembly.mass;
   make_shapes(shapes, lost);
   place_anchored();
@@ -334,7 +339,9 @@ void ModelInstance::set_row(JointInstance& joint, const JointRow& row) {
   if (row.keeps_awake) wake();
 }
 
-bool ModelInstance::is_for_tree() const { return has_rows_ || !mimics_.empty() || tree_.places.size() >= TreeSolver::least_bodies; }
+bool ModelInstance::is_for_tree() const {
+  return has_rows_ || has_rotors_ || !mimics_.empty() || tree_.places.size() >= TreeSolver::least_bodies;
+}
 
 void ModelInstance::apply_forces(dJointGroupID step_joints, const PhysicsDef& physics, const Air& air) {
   if (!has_forces_) return;
@@ -483,6 +490,11 @@ Energy ModelInstance::energy(const Eigen::Vector3d& gravity) const {
     const Eigen::Vector3d turn = ode::quaternion(dBodyGetQuaternion(body)).conjugate() * ode::vector(dBodyGetAngularVel(body));
     energy.motion += 0.5 * (mass.mass * ode::vector(dBodyGetLinearVel(body)).squaredNorm() + turn.dot(inertia.leftCols<3>() * turn));
     if (dBodyGetGravityMode(body) != 0) energy.height -= mass.mass * gravity.dot(ode::vector(dBodyGetPosition(body)));
+  }
+  for (auto joint = joints_.begin(); has_rotors_ && joint != joints_.end(); ++joint) {
+    if (!has_rotor(joint->def())) continue;
+    const double rate = joint->state(0).velocity;
+    energy.motion += 0.5 * joint->def().axes[0].rotor_inertia * rate * rate;
   }
   return energy;
 }

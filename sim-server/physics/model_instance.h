@@ -175,6 +175,7 @@ class ModelInstance {
   bool has_forces_ = false;
   bool has_followed_ = false;  // joints
   bool has_rows_ = false;      // controllers
+  bool has_rotors_ = false;    // joints with rotor inertias
   bool has_running_belt_ = false;
   std::vector<Mimic> mimics_;
   bool gravity_ = true, is_kinematic_ = false;

@@ -95,6 +95,7 @@ void JointRows::add_axis(JointInstance& joint, const Vector6& of_child, const Ve
   axis_parent_ = is_child_ ? of_parent : of_child;
   const Vector6 on_child = joint.sign() * of_child, on_parent = joint.sign() * of_parent;
   bool is_locked = false;
+  add_rotor(joint, on_child, on_parent);
   add_stop(joint, on_child, on_parent, is_locked);
   const double effort = axis_parameter(joint.id(), dParamFMax);
   if (!(effort > 0) || is_locked) return;
@@ -104,6 +105,15 @@ void JointRows::add_axis(JointInstance& joint, const Vector6& of_child, const Ve
   TreeRow& motor = rows_[static_cast<std::size_t>(motor_)];
   motor.bound = joint.motor_bound;
   if (!motor.is_free()) motor.impulse = motor.bound == Bound::low ? motor.low : motor.high;
+}
+
+// What keeps the rate that it has as the inertia of a rotor does.
+void JointRows::add_rotor(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent) {
+  const double inertia = joint.def().axes[0].rotor_inertia;
+  if (!(inertia > 0)) return;
+  const dJointID id = joint.id();
+  const double rate = dJointGetType(id) == dJointTypeSlider ? dJointGetSliderPositionRate(id) : dJointGetHingeAngleRate(id);
+  add(on_child, on_parent, rate, dt_ / inertia, -infinite, infinite);
 }
 
 void JointRows::add_stop(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent, bool& is_locked) {

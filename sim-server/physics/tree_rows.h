@@ -34,7 +34,7 @@ struct TreeRow {
 
 class JointRows {
  public:
-  static constexpr int most = 7;  // six of a weld; five, a motor and a stop
+  static constexpr int most = 8;  // five, a motor, a stop and a rotor
 
   struct Body {
     dBodyID body = nullptr;
@@ -56,6 +56,7 @@ class JointRows {
  private:
   void add(const Vector6& on_child, const Vector6& on_parent, double target, double give, double low, double high);
   void add_axis(JointInstance& joint, const Vector6& of_child, const Vector6& of_parent);
+  void add_rotor(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent);
   void add_stop(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent, bool& is_locked);
 
   std::array<TreeRow, most> rows_;

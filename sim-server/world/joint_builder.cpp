@@ -33,6 +33,7 @@ AxisDef build_axis(pugi::xml_node node, const Eigen::Vector3d& xyz, bool is_cont
   axis.effort = most("limit/effort");
   axis.velocity = most("limit/velocity");
   axis.initial_position = node.attribute(initial_mark).as_double();
+  axis.rotor_inertia = node.attribute(rotor_mark).as_double();
   axis.damping = number_at(node, "dynamics/damping", 0);
   axis.friction = number_at(node, "dynamics/friction", 0);
   axis.spring_reference = number_at(node, "dynamics/spring_reference", 0);

@@ -86,6 +86,7 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
     carry_mimics(written, robot->child("sdf"), complaints_);
     carry_initial_positions(written, robot->child("sdf").child("model"), complaints_);
     carry_mimic_plugins(robot->child("sdf").child("model"), complaints_);
+    carry_rotors(written, robot->child("sdf").child("model"), complaints_);
     return robot;
   }
   if (!sdf) return wrong_root(first_element(*parsed), file_name);

@@ -184,7 +184,8 @@ void repair(pugi::xml_node node, Complaints& complaints) {
     mark_initial_position(child, complaints);
     take_mimic(child, complaints);
     repair(child, complaints);
-    if (name == "model") carry_initial_positions(child, child, complaints), carry_mimic_plugins(child, complaints);
+    if (name == "model")
+      carry_initial_positions(child, child, complaints), carry_mimic_plugins(child, complaints), carry_rotors(child, child, complaints);
   }
 }
 

@@ -24,6 +24,9 @@ bool flatten_names(pugi::xml_node sdf, Complaints& complaints);
 // A <road> of a world as a static <model> in `parent`: strips along its points, round at the corners.
 pugi::xml_node model_of_road(pugi::xml_node road, pugi::xml_node parent);
 
+// An attribute of an axis: the inertia of its motor's rotor as the joint feels it.
+inline constexpr const char* rotor_mark = "_rotor";
+
 // Attributes that carry <inertial auto="true"> and its densities past the checks of version 1.9.
 inline constexpr const char* automatic_mark = "_auto";
 inline constexpr const char* density_mark = "_density";

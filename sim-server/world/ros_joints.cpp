@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -65,6 +66,44 @@ void carry_initial_positions(pugi::xml_node parent, pugi::xml_node model, Compla
         axis.append_attribute(initial_mark) = base::format_number(within).c_str();
       }
     }
+  }
+}
+
+namespace {
+
+// The first of these elements that is there, as text or as an attribute. `otherwise` without one, and with a finding for what cannot be.
+double rotor_number(pugi::xml_node node, std::initializer_list<const char*> names, double otherwise, std::string_view joint,
+                    Complaints& complaints) {
+  constexpr double most = 1e6;
+  for (const char* name : names) {
+    const pugi::xml_node element = node.child(name);
+    if (!element) continue;
+    const std::string text = element.attribute("value") ? element.attribute("value").value() : text_of(element);
+    const auto value = base::parse_number(text);
+    if (value && std::abs(*value) <= most && (*value >= 0 || otherwise != 0)) return *value;
+    complaints.warn(node, std::string("<") + name + "> of joint " + base::in_quotes(joint) + " must be a number " +
+                              (otherwise != 0 ? "up to 1e6" : "from 0 to 1e6") + ", got " + base::in_quotes(text) + "; " +
+                              base::format_number(otherwise) + " is taken");
+    return otherwise;
+  }
+  return otherwise;
+}
+
+void carry_rotor(pugi::xml_node written, pugi::xml_node axis, std::string_view joint, Complaints& complaints) {
+  const double inertia = rotor_number(written, {"drake:rotor_inertia"}, 0, joint, complaints);
+  const double ratio = rotor_number(written, {"drake:gear_ratio", "mechanicalReduction"}, 1, joint, complaints);
+  if (inertia > 0 && ratio != 0 && axis && !axis.attribute(rotor_mark))
+    axis.append_attribute(rotor_mark) = base::format_number(inertia * ratio * ratio).c_str();
+}
+
+}  // namespace
+
+void carry_rotors(pugi::xml_node parent, pugi::xml_node model, Complaints& complaints) {
+  for (const pugi::xml_node joint : model.children("joint")) carry_rotor(joint, joint.child("axis"), name_of_node(joint), complaints);
+  for (const pugi::xml_node transmission : parent.children("transmission")) {
+    const std::string_view name = name_of_node(transmission.child("joint"));
+    const pugi::xml_node axis = joint_of_model(model, name).child("axis");
+    for (const pugi::xml_node actuator : transmission.children("actuator")) carry_rotor(actuator, axis, name, complaints);
   }
 }
 

@@ -13,6 +13,11 @@ namespace sim {
 // counts as the nearest limit.
 void carry_initial_positions(pugi::xml_node parent, pugi::xml_node model, Complaints& complaints);
 
+// <drake:rotor_inertia> and <drake:gear_ratio>, as Drake reads them: elements of a joint of the model, or with the attribute `value` of the
+// actuators of <transmission> elements of `parent`, a URDF robot, which may say <mechanicalReduction> instead of the ratio. The joint feels
+// the inertia times the ratio squared.
+void carry_rotors(pugi::xml_node parent, pugi::xml_node model, Complaints& complaints);
+
 // <plugin><joint>LEADER</joint><mimicJoint>FOLLOWER</mimicJoint><multiplier/><offset/></plugin>. A <mimic> that a joint has already stays.
 void carry_mimic_plugins(pugi::xml_node model, Complaints& complaints);
 

@@ -219,6 +219,7 @@ struct AxisDef {
   double damping = 0;                          // N m s/rad or N s/m
   double initial_position = 0;                 // rad or m; the places of the links are those for 0
   double friction = 0;                         // N m or N
+  double rotor_inertia = 0;                    // kg m^2 or kg: of the motor, as the joint feels it through its gear
   double spring_reference = 0, spring_stiffness = 0;
   std::optional<double> limit_stiffness, limit_dissipation;  // soft stops
 };

@@ -145,7 +145,7 @@ std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<st
   const std::vector<int> leaders = leaders_of(model, joints);
   // With those that follow it.
   const auto moved_by = [&](std::size_t i) {
-    double moved = dynamics.inertia(start, i);
+    double moved = dynamics.inertia(start, i) + model.joints[joints[i]].axes[0].rotor_inertia;
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const double ratio = leaders[k] == static_cast<int>(i) ? model.joints[joints[k]].mimic->multiplier : 0;
       if (ratio != 0) moved += ratio * ratio * dynamics.inertia(start, k);
