@@ -51,7 +51,8 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
     view.visibility_mask = def_.visibility_mask;
     view.wants_color = has_color(wanted);
     view.wants_exact_depth = has_depth(output_);  // whoever looks at the moment: the colours are always the same
-    if (has_marks(wanted)) {
+    view.wants_objects = wanted == Output::color_and_marks && !lens_ && can_show_objects(*scene);
+    if (has_marks(wanted) && !view.wants_objects) {
       if (auto drawn = take_marks(renderer, scene, poses, view, i); !drawn) return drawn;
     }
     if (wanted == Output::marks) continue;
@@ -61,6 +62,7 @@ base::Result<void> Camera::take(Renderer& renderer, const std::shared_ptr<const 
       if (lens_) face_rgba_.resize(count * 4);
       renderer.read_rgba(lens_ ? face_rgba_ : rgba_);
       if (lens_) lens_->map_rgba(i, face_rgba_, rgba_);
+      if (view.wants_objects) take_objects(*scene);
     }
     if (has_depth(wanted) && i == 0) {
       if (lens_) face_depth_.resize(count);
@@ -81,6 +83,18 @@ base::Result<void> Camera::take_marks(Renderer& renderer, const std::shared_ptr<
   renderer.read_rgba({reinterpret_cast<std::uint8_t*>(drawn_marks.data()), drawn_marks.size() * 4});
   if (lens_) lens_->map_marks(index, face_marks_, marks_);
   return {};
+}
+
+void Camera::take_objects(const Scene& scene) {
+  std::vector<std::uint32_t> mark_of(256);
+  for (std::size_t i = scene.visuals.size(); i-- > 0;) {
+    if (scene.visuals[i].object != 0) mark_of[scene.visuals[i].object] = static_cast<std::uint32_t>(i + 1);
+  }
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    std::uint8_t& opacity = rgba_[4 * i + 3];
+    marks_[i] = mark_of[opacity];
+    opacity = 255;
+  }
 }
 
 void Camera::add_depth_noise() {

@@ -49,13 +49,16 @@ class Camera {
   void write_heat(const Scene& scene, double air, std::span<std::uint8_t> out) const;
   std::span<const std::uint8_t> rgba() const { return rgba_; }  // without noise
   std::span<const float> depth() const { return depth_; }
-  std::span<const std::uint32_t> marks() const { return marks_; }  // see render/marks.h
+  // See render/marks.h. With colours they may be those of the first visual of each object.
+  std::span<const std::uint32_t> marks() const { return marks_; }
   // x forward, y left, z up in the camera; NaN where there is none. Three floats a pixel.
   void write_points(std::span<float> out) const;
 
  private:
   base::Result<void> take_marks(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                 View view, std::size_t index);
+  // From the opacity of the colours, which is whole afterwards.
+  void take_objects(const Scene& scene);
   void add_depth_noise();
 
   CameraDef def_;

@@ -275,7 +275,7 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
   if (view.wants_marks) {
     gl_.ClearColor(0, 0, 0, 0);
   } else {
-    gl_.ClearColor(background.r, background.g, background.b, 1);
+    gl_.ClearColor(background.r, background.g, background.b, view.wants_objects ? 0 : 1);
   }
   gl_.Clear(view.wants_color ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_DEPTH_BUFFER_BIT);
 
@@ -287,7 +287,9 @@ base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scen
     if (auto done = surfaces_.draw(item); !done) return done;
   }
   if (!has_light) return {};
+  if (view.wants_objects) gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
   if (scene->look.sky) draw_sky(*scene, view, lights);
+  gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   if (auto done = draw_transparent(std::span(items_).subspan(count)); !done) return done;
   if (overlay != nullptr) {
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
@@ -342,6 +344,14 @@ base::Result<void> Renderer::draw(const std::shared_ptr<const Scene>& scene, std
 void Renderer::read_rgba(std::span<std::uint8_t> out) { impl_->read_rgba(out); }
 void Renderer::read_depth(std::span<float> out) { impl_->read_depth(out); }
 Renderer::Statistics Renderer::statistics() const { return impl_->statistics(); }
+
+bool can_show_objects(const Scene& scene) {
+  constexpr std::size_t most = 255;
+  return scene.objects.size() <= most && std::ranges::none_of(scene.drawables, [](const Drawable& drawable) {
+           const Material& material = drawable.material;
+           return material.is_transparent || (material.texture && material.texture->has_holes);
+         });
+}
 
 base::Result<Image> draw_smooth(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                 View view, const Overlay* overlay) {

@@ -27,6 +27,8 @@ struct View {
   std::uint32_t visibility_mask = 0xffffffff;
   bool wants_color = true;   // false: only read_depth() may follow; much cheaper
   bool wants_marks = false;  // instead of colours: what is seen where, see render/marks.h
+  // With colours, in place of the opacity: 1 + index of the object that is seen, 0: none. Only of scenes that can_show_objects().
+  bool wants_objects = false;
   bool wants_exact_depth =
       false;               // spheres, ellipsoids, cylinders and capsules are round; otherwise, and for parallel views, they have facets
   int shadow_size = 1024;  // pixels a side of the shadow map; 0: no shadows
@@ -70,6 +72,9 @@ class Renderer {
   explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+// Few objects, and nothing that is seen through: then one drawing gives the colours and what is seen where.
+bool can_show_objects(const Scene& scene);
 
 // A picture for people: drawn twice as large and averaged in linear light, soft shadows.
 base::Result<Image> draw_smooth(Renderer& renderer, const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,

@@ -114,7 +114,8 @@ void SurfacePass::tell_view(const SurfaceProgram& program) {
   gl_.Uniform1i(program.shadow_map, 2);
 }
 
-void SurfacePass::tell_material(const SurfaceProgram& program, const Material& material) {
+void SurfacePass::tell_material(const SurfaceProgram& program, const Drawable& drawable) {
+  const Material& material = drawable.material;
   if (told_material_ == &material) return;
   told_material_ = &material;
   if (material.texture && program.albedo_map >= 0) {
@@ -133,7 +134,9 @@ void SurfacePass::tell_material(const SurfaceProgram& program, const Material& m
     gl_.BindTexture(GL_TEXTURE_2D, store_.texture(material.emissive_map));
     gl_.Uniform1i(program.glow_map, 3);
   }
-  gl_.Uniform4fv(program.albedo, 1, material.albedo.data());
+  Eigen::Vector4f albedo = material.albedo;
+  if (picture_->view.wants_objects) albedo.w() = static_cast<float>(picture_->scene.visuals[drawable.visual].object) / 255;
+  gl_.Uniform4fv(program.albedo, 1, albedo.data());
   gl_.Uniform3fv(program.emissive, 1, material.emissive.data());
   gl_.Uniform4f(program.shine, material.specular.x(), material.specular.y(), material.specular.z(), material.shininess);
 }
@@ -162,7 +165,7 @@ base::Result<void> SurfacePass::draw(const Item& item) {
     if (current_->frame != frame_) tell_view(*current_);
     current_->frame = frame_;
   }
-  if (!picture_->view.wants_marks || drawable.material.texture) tell_material(*current_, drawable.material);
+  if (!picture_->view.wants_marks || drawable.material.texture) tell_material(*current_, drawable);
   if (picture_->view.wants_marks) tell_mark(*current_, drawable);
   if (const Lights& lights = picture_->lights; !lights.all.empty() && current_->lamp_position >= 0) {
     const Eigen::Vector4d centre = item.model * drawable.bounds().center().homogeneous();

@@ -40,7 +40,7 @@ class SurfacePass {
   void tell_suns(const SurfaceProgram& program);
   void tell_lamps(const SurfaceProgram& program, const std::vector<Lamp>& lamps);
   void tell_mark(const SurfaceProgram& program, const Drawable& drawable);
-  void tell_material(const SurfaceProgram& program, const Material& material);
+  void tell_material(const SurfaceProgram& program, const Drawable& drawable);
 
   const gl::Functions& gl_;
   GpuStore& store_;

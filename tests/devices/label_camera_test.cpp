@@ -168,6 +168,29 @@ TEST(BoundingBoxCamera, an_oriented_box_turns_with_the_object) {
   EXPECT_NEAR(boxes[0].extent[2], 0.4, 1e-6);
 }
 
+// Something that is seen through, even behind the camera, takes a drawing of its own for what is seen where.
+TEST(BoundingBoxCamera, one_drawing_and_two_give_the_same_boxes_and_the_same_image) {
+  const std::string world = cube("near", 2, 0.4, "", label(5)) + cube("far", 4, -0.4, "", label(6)) + cube("other", 3, -2, "", "") +
+                            cube("same", 5, 2, "", label(5));
+  const auto bytes = [](const auto& frame) {
+    const auto* data = reinterpret_cast<const std::uint8_t*>(frame->data().data());
+    return std::vector<std::uint8_t>(data, data + frame->data().size());
+  };
+  const auto seen_in = [&](const std::string& content) {
+    Images f(camera("boundingbox_camera") + content);
+    auto image = f.open(shm::IfaceType::camera, "robot::eye");
+    auto boxes = f.boxes();
+    return std::pair(std::move(boxes), bytes(image.hold()));
+  };
+  const auto [first, one] = seen_in(world);
+  const auto [second, two] = seen_in(world + cube("glass", -9, 0, "<transparency>0.5</transparency>", ""));
+  ASSERT_EQ(first.size(), 3U);
+  ASSERT_EQ(second.size(), first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(std::memcmp(&first[i], &second[i], sizeof first[i]), 0) << first[i].name;
+  EXPECT_EQ(one, two);
+  EXPECT_EQ(one, Images(camera("camera") + world).image("robot::eye"));
+}
+
 TEST(BoundingBoxCamera, boxes_are_those_of_the_image_of_the_same_time) {
   Images f(camera("boundingbox_camera") +
            "<model name='runner'><pose>3 -1 0 0 0 0</pose><link name='l'><visual name='v'><geometry><box>"
