@@ -85,7 +85,7 @@ PluginDef build_plugin(pugi::xml_node node, const std::string& scope, BuildConte
   plugin.source = context.complaints.place_of(node).text();
   const bool is_in_world = std::string_view(node.parent().name()) == "world";
   // Gazebo Classic has a plugin of models with the name of the other simulator's plugin of worlds.
-  const bool is_other = kind_of(plugin) == PluginKind::buoyancy && !is_in_world && plugin.name.find("::") == std::string::npos;
+  const bool is_other = kind_of(plugin) == PluginKind::buoyancy && !is_in_world && plugin.filename.starts_with("libBuoyancyPlugin");
   if (!is_other && is_of_world(kind_of(plugin)).value_or(is_in_world) != is_in_world) {
     context.complaints.warn(node,
                             describe_in_context(node) +
