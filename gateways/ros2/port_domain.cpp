@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -44,21 +45,22 @@ class PortDomain {
  public:
   static base::Result<std::shared_ptr<PortDomain>> of(const PortDomainSettings& settings) {
     static base::Turn<base::Rank::callbacks> opening;
-    static std::shared_ptr<PortDomain> only;
     const auto mine = opening.take();
-    if (only) return only;
+    if (only()) return only();
     auto made = std::make_shared<PortDomain>();
     if (auto done = made->open(settings); !done) return done.error();
-    only = std::move(made);
-    return only;
+    only() = std::move(made);
+    // Registered after the library has made its own objects, so it runs before these are destroyed.
+    (void)std::atexit([] {
+      only()->stop();
+      only().reset();
+    });
+    return only();
   }
 
   PortDomain() = default;
   ~PortDomain() {
-    const std::uint64_t one = 1;
-    while (stop_ >= 0 && ::write(stop_, &one, sizeof one) < 0 && errno == EINTR) {
-    }
-    if (thread_.joinable()) thread_.join();
+    stop();
     if (stop_ >= 0) ::close(stop_);
   }
   PortDomain(const PortDomain&) = delete;
@@ -92,6 +94,18 @@ class PortDomain {
   }
 
  private:
+  // Never destroyed: a topic that is still there at the end of the process may not find it gone.
+  static std::shared_ptr<PortDomain>& only() {
+    static auto& domain = *new std::shared_ptr<PortDomain>;
+    return domain;
+  }
+  void stop() {
+    const std::uint64_t one = 1;
+    while (stop_ >= 0 && ::write(stop_, &one, sizeof one) < 0 && errno == EINTR) {
+    }
+    if (thread_.joinable()) thread_.join();
+  }
+
   using Arrived = std::vector<std::pair<std::shared_ptr<Sink>, std::vector<std::uint8_t>>>;
 
   base::Result<void> open(const PortDomainSettings& settings) {

@@ -461,7 +461,8 @@ base::Result<void> Physics::set_model_twist(ModelId model, const Twist& twist) {
 
 base::Result<void> Physics::add_wrench(LinkId link, const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
   if (!is_sane(force, 1e7) || !is_sane(torque, 1e7)) {
-    return base::Error{fmt::format("model {}: force and torque must be finite and below 1e7", def(link.model).name)};
+    return base::Error{fmt::format("model {}: force and torque must be finite and below 1e7, got {:g} {:g} {:g} and {:g} {:g} {:g}",
+                                   def(link.model).name, force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z())};
   }
   ModelInstance& instance = impl_->at(link.model);
   const dBodyID body = instance.body_count() == 0 ? nullptr : instance.body(instance.blueprint().assembly_of_link[link.link]);
@@ -478,7 +479,8 @@ base::Result<void> Physics::check_effort(JointId joint, double effort) const {
   const JointInstance* instance = impl_->at(joint.model).joint(joint.joint);
   const std::string& name = def(joint.model).joints[joint.joint].name;
   if (!(std::abs(effort) < 1e7))
-    return base::Error{fmt::format("model {}: the effort of joint {} must be finite and below 1e7", def(joint.model).name, name)};
+    return base::Error{
+        fmt::format("model {}: the effort of joint {} must be finite and below 1e7, got {:g}", def(joint.model).name, name, effort)};
   if (instance == nullptr || !instance->takes_effort())
     return base::Error{fmt::format("model {}: joint {} neither turns nor slides", def(joint.model).name, name)};
   return {};

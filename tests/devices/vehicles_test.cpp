@@ -621,7 +621,7 @@ TEST(JointForce, of_a_client_is_added_to_what_the_motor_does_and_ends_when_it_sh
   f.run(1);
   EXPECT_NEAR(turning(), 1 + (1 + 2) / 0.5, 0.02);
   EXPECT_EQ(s.add_effort(joint("m::w"), 1, {}).error().message, "model m: joint w neither turns nor slides");
-  EXPECT_EQ(s.keep_effort(joint("m::a"), NAN).error().message, "model m: the effort of joint a must be finite and below 1e7");
+  EXPECT_EQ(s.keep_effort(joint("m::a"), NAN).error().message, "model m: the effort of joint a must be finite and below 1e7, got nan");
   ASSERT_TRUE(s.keep_effort(joint("m::slide"), 5));
   std::vector<std::string> notes;
   ASSERT_TRUE(s.reset(notes));

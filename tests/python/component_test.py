@@ -122,6 +122,7 @@ def test_an_exception_in_on_execute_ends_in_the_error_state_with_its_traceback_i
     subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "act", "Broken0"], timeout=60, capture_output=True)
     log = says(system, process, "has no attribute 'no_such_thing'")
     assert "Traceback" in log and "Broken.py" in log and "onExecute" in log
+    assert "threw: AttributeError: 'Broken' object has no attribute 'no_such_thing'\n" in log, "the line begins with what was raised"
     await_("error state", lambda: "rror" in system.rtse("ls", "-l"))
 
 

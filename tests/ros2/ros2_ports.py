@@ -381,6 +381,19 @@ def saved():
         assert rig.try_rtse("check", f"{rig.work}/system.xml").returncode != 0
 
 
+# A process that has had topics ends as one without: while they are there, and after they have gone.
+def ends():
+    for goes_first in (False, True):
+        with PortRig() as rig:
+            host = rig.relay()
+            rig.connect("Double_in", "/in")
+            rig.connect("Double_out", "/out")
+            if goes_first:
+                rig.rtse("dis", "TopicRelay0")
+            host.terminate()
+            assert host.wait(30) == 0, (goes_first, rig.log(host))
+
+
 # Without the module the refusal names it and its package.
 def missing():
     with PortRig() as rig:

@@ -217,7 +217,19 @@ def of_a_run():
     assert len(set(hashes)) == 1, hashes
     done = rig.try_rtse(*call, "--twice", "--record", rig.path("twice.mcap"))
     assert done.returncode == 0, done
+    # Also where only the recorder reads a sensor: the follower's laser is for a client of Player, who is not there.
+    done = rig.try_rtse("run", f"{rig.source}/worlds/systems/leader_follower.xml", "--world", f"{rig.source}/worlds/leader_follower.sdf", "--duration", "2",
+                        "--twice", "--record", rig.path("other.mcap"))
+    assert done.returncode == 0, done
     assert rig.rtse("recording", "compare", rig.path("a.mcap"), rig.path("b.mcap")).startswith("equal: ")
+    # A page does not take the place of its recording, whatever name that has.
+    os.link(rig.path("b.mcap"), rig.path("c.mcap"))
+    for words in (("page", "a.mcap", "-o", "a.mcap"), ("page", "a.mcap", "b.mcap", "-o", "c.mcap"), ("recording", "export", "a.mcap", "--html", "a.mcap")):
+        done = rig.try_rtse(*(rig.path(word) if word.endswith(".mcap") else word for word in words))
+        assert done.returncode == 1 and "is the recording; expected another file" in done.stderr, done
+    with open(rig.path("a.mcap"), "rb") as whole, open(rig.path("cut.mcap"), "wb") as cut:
+        cut.write(whole.read()[:-1000])
+    assert "what is damaged in the recording: " in rig.rtse("page", rig.path("cut.mcap"), "-o", rig.path("cut.html"))
     info = json.loads(rig.rtse("--json", "recording", "info", rig.path("a.mcap")))
     assert sorted(a["name"] for a in info["attachments"]) == ["system.xml", "world.sdf"], info["attachments"]
     velocity = next(c for c in info["channels"] if c["topic"] == "/LaserObstacleAvoid0/velocity")

@@ -247,6 +247,7 @@ class RunPage {
   Result<void> put_parameters() {
     auto reader = mcap::Reader::open(facts_->file);
     if (!reader) return reader.error();
+    if (const auto& damage = reader->damage()) left_out_.push_back("what is damaged in the recording: " + *damage);
     Json all = Json::object();
     for (const auto& component : facts_->components) {
       const auto path = component.value("path", "");

@@ -73,6 +73,11 @@ Json page_summary(const RunResult& result, const std::string& command) {
 }
 
 Result<std::string> write_run_page(const PageCall& call, const Json& summary) {
+  std::error_code none;
+  for (const std::string& recording : {call.recording, call.other}) {
+    if (!recording.empty() && std::filesystem::equivalent(call.file, recording, none))
+      return about(call.file, "is the recording; expected another file");
+  }
   const std::string file = call.file + "." + std::to_string(::getpid()) + ".json";
   const auto written = base::write_whole_file(file, text_of(summary));
   if (!written) return written.error();

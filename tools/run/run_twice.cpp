@@ -32,7 +32,8 @@ RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& rep
   first.keep = below(options.keep, "first");
   second.keep = below(options.keep, "second");
   second.picture.clear();
-  second.record.clear();
+  // A sensor makes its samples for whoever reads them, so both runs have the same readers.
+  if (!second.record.empty()) second.record = place.scratch("second.mcap");
   RunResult result = run_system(orb, first, reporter);
   if (!result.problem.empty()) return result;
   const RunResult again = run_system(orb, second, reporter);

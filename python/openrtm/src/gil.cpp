@@ -124,7 +124,9 @@ std::string take_error() {
   }
   PyErr_Clear();
   while (text.ends_with('\n')) text.pop_back();
-  return text;
+  // What was raised stands first: many show one line of a message.
+  const auto last = text.rfind('\n');
+  return last == std::string::npos ? text : text.substr(last + 1) + "\n" + text;
 }
 
 }  // namespace python

@@ -98,7 +98,7 @@ class Kept {
   PyObject* const object_;
 };
 
-// The Python exception that is set, as text with its traceback; it is cleared. Needs the lock.
+// The Python exception that is set, as text: what was raised, then the traceback; it is cleared. Needs the lock.
 std::string take_error();
 
 // A Python exception on its way through C++: its text. The runtime logs it and goes to the error state.

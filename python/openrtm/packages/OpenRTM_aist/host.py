@@ -19,15 +19,21 @@ def prepare():
         _core.set_text_coding(coding.lower())
 
 
+def _told():
+    """The exception that is being handled: what was raised, then its traceback."""
+    import traceback
+    text = traceback.format_exc().rstrip()
+    return text.rsplit("\n", 1)[-1] + "\n" + text
+
+
 def load(file, init_function):
     """Import a module and call its init function. Empty, or the line that says why it failed."""
-    import traceback
     try:
         module = _import(file)
     except SyntaxError as problem:
         return syntax_problem(file, problem)
     except BaseException as problem:
-        return old_name(problem) or "cannot be imported: " + traceback.format_exc().rstrip()
+        return old_name(problem) or "cannot be imported: " + _told()
     stem = os.path.splitext(os.path.basename(file))[0]
     names = [init_function] if init_function else [stem + "Init", stem[:1].upper() + stem[1:] + "Init", "MyModuleInit"]
     function = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
@@ -37,7 +43,7 @@ def load(file, init_function):
     try:
         function(Manager.instance())
     except BaseException as problem:
-        return old_name(problem) or "%s raised: %s" % (function.__name__, traceback.format_exc().rstrip())
+        return old_name(problem) or "%s raised: %s" % (function.__name__, _told())
     return ""
 
 
