@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/child_process.h"
-#include "run/run_system.h"
 #include "base/file_handle.h"
+#include "run/run_system.h"
 
 namespace editor {
 
