@@ -162,12 +162,13 @@ std::optional<int> parse_command_line(Command& program, const std::string& name,
   } catch (const BadFile& e) {
     std::cerr << name << ": " << e.message << '\n';
     return 2;
-  } catch (const CLI::ExtrasError&) {
-    std::cerr << name << ": " << unexpected_word(program.inner(), {argv + 1, argv + argc}) << "; see " << name << " --help\n";
-    return 2;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.inner().exit(e);
-    std::cerr << name << ": " << e.what() << "; see " << name << " --help\n";
+    // A required option may be there with a wrong name, which is what is to be said then.
+    const bool is_about_words = dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr ||
+                                (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr && !program.inner().remaining(true).empty());
+    std::cerr << name << ": " << (is_about_words ? unexpected_word(program.inner(), {argv + 1, argv + argc}) : e.what()) << "; see " << name
+              << " --help\n";
     return 2;
   }
 }

@@ -12,8 +12,8 @@ namespace base {
 
 inline constexpr std::size_t most_files_in_packet = 4;
 
-// One packet with at most so many descriptors, which the caller still owns. `flags` of sendmsg, which never raises SIGPIPE. False: it was
-// not sent whole; errno says why.
+// Sends one packet with up to most_files_in_packet descriptors, which the caller still owns. `flags`: of sendmsg, which never raises
+// SIGPIPE. False: it was not sent whole; errno says why.
 bool send_packet(int socket, std::span<const std::byte> bytes, std::span<const int> files, int flags = 0);
 
 struct ReceivedPacket {

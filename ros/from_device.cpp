@@ -45,15 +45,7 @@ FluidPressure air_speed_message(const shm::Iface& iface, const std::string& fram
 }
 
 NavSatFix ins_fix(const shm::Iface& iface, const std::string& frame) {
-  const auto& info = iface.info<shm::InsInfo>();
-  const auto& sample = iface.sample<shm::InsSample>();
-  const double flat = info.position_noise * info.position_noise;
-  return {.header = header_of(sample.stamp, frame),
-          .latitude = sample.latitude,
-          .longitude = sample.longitude,
-          .altitude = sample.altitude,
-          .position_covariance = diagonal(flat, flat, info.altitude_noise * info.altitude_noise),
-          .position_covariance_type = 2};
+  return fix_of(iface.info<shm::InsInfo>(), iface.sample<shm::InsSample>(), frame);
 }
 
 Imu ins_orientation(const shm::Iface& iface, const std::string& frame) {

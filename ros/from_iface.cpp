@@ -165,15 +165,7 @@ JointState joints_message(const shm::Iface& iface) {
 }
 
 NavSatFix fix_message(const shm::Iface& iface, const std::string& frame) {
-  const auto& info = iface.info<shm::GpsInfo>();
-  const auto& sample = iface.sample<shm::GpsSample>();
-  const double flat = info.position_noise * info.position_noise;
-  return {.header = header_of(sample.stamp, frame),
-          .latitude = sample.latitude,
-          .longitude = sample.longitude,
-          .altitude = sample.altitude,
-          .position_covariance = diagonal(flat, flat, info.altitude_noise * info.altitude_noise),
-          .position_covariance_type = 2};
+  return fix_of(iface.info<shm::GpsInfo>(), iface.sample<shm::GpsSample>(), frame);
 }
 
 WrenchStamped wrench_message(const shm::Iface& iface, const std::string& frame) {

@@ -35,6 +35,18 @@ shm::Pose product(const shm::Pose& first, const shm::Pose& second);
 shm::Pose inverse(const shm::Pose& pose);
 TransformStamped transform_of(const shm::Stamp& stamp, const std::string& parent, const std::string& child, const shm::Pose& pose);
 
+// Of the samples that have a place on the earth, with its noise [m].
+template <class Info, class Sample>
+NavSatFix fix_of(const Info& info, const Sample& sample, const std::string& frame) {
+  const double flat = info.position_noise * info.position_noise;
+  return {.header = header_of(sample.stamp, frame),
+          .latitude = sample.latitude,
+          .longitude = sample.longitude,
+          .altitude = sample.altitude,
+          .position_covariance = diagonal(flat, flat, info.altitude_noise * info.altitude_noise),
+          .position_covariance_type = 2};
+}
+
 // What is the same in each scan.
 LaserScan empty_scan(const shm::Iface& iface, const std::string& frame);
 bool is_zero(std::span<const float> numbers);

@@ -31,6 +31,9 @@ struct Program {
     list->add_option("--state", state)->check(one_of({"on", "off"}));
     list->add_option("FILE", file);
     app.add_subcommand("load", "load one")->without_help();
+    auto* save = app.add_subcommand("save", "save one");
+    save->without_help();
+    save->add_option("--output", file)->required();
   }
   Command app;
   std::string server, state, file;
@@ -54,6 +57,8 @@ TEST(CommandLine, names_the_argument_that_is_not_known_and_the_option_that_is_ne
   EXPECT_EQ(refusal({"list", "--sate=on"}), "tool: unknown option \"--sate\"; did you mean --state?; see tool --help\n");
   EXPECT_EQ(refusal({"list", "--jsn", "--frobnicate"}), "tool: unknown option \"--jsn\"; did you mean --json?; see tool --help\n");
   EXPECT_EQ(refusal({"load", "--state", "on"}), "tool: unknown option \"--state\"; see tool --help\n") << "an option of another command";
+  EXPECT_EQ(refusal({"save"}), "tool: --output is required; see tool --help\n");
+  EXPECT_EQ(refusal({"save", "--outptu", "f"}), "tool: unknown option \"--outptu\"; did you mean --output?; see tool --help\n");
   EXPECT_EQ(refusal({"load", "-q"}), "tool: unknown option \"-q\"; see tool --help\n");
   EXPECT_EQ(refusal({"load", "it"}), "tool: unexpected argument \"it\"; see tool --help\n");
 }

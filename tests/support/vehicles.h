@@ -1,4 +1,5 @@
-// Vehicles of tests: a quadcopter with the mass, rotors and gains of a public one, and a torpedo with a thruster. Values; any thread.
+// Vehicles of tests: a quadcopter with the mass, rotors and gains of a public one, and a torpedo with a thruster; what is around
+// them. Values; any thread.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -6,6 +7,10 @@
 #include <string>
 
 namespace sim::test {
+
+inline const std::string air = "<gravity>0 0 -9.81</gravity>", weightless = "<gravity>0 0 0</gravity>";
+inline const std::string flat_ground =
+    "<model name='ground'><static>true</static><link name='l'><collision name='c'><geometry><plane/></geometry></collision></link></model>";
 
 inline std::string rotor_link(int i, double x, double y, const std::string& name) {
   return fmt::format(

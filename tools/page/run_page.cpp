@@ -118,7 +118,10 @@ class RunPage {
     if (const auto done = put_parts(to_, true); !done) return done;
     if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
     for (auto& line : samples_->left_out()) left_out_.push_back(std::move(line));
-    if (const auto done = put_parameters(); !done) return done;
+    auto reader = mcap::Reader::open(facts_->file);
+    if (!reader) return reader.error();
+    if (const auto& damage = reader->damage()) left_out_.push_back("what is damaged in the recording: " + *damage);
+    if (const auto done = put_parameters(*reader); !done) return done;
     put_index();
     return {};
   }
@@ -244,15 +247,12 @@ class RunPage {
   }
 
   // {PATH:[[s, reply to "component"]]}, one for each time at which parameters changed.
-  Result<void> put_parameters() {
-    auto reader = mcap::Reader::open(facts_->file);
-    if (!reader) return reader.error();
-    if (const auto& damage = reader->damage()) left_out_.push_back("what is damaged in the recording: " + *damage);
+  Result<void> put_parameters(mcap::Reader& reader) {
     Json all = Json::object();
     for (const auto& component : facts_->components) {
       const auto path = component.value("path", "");
       Json& changes = all[path] = Json::array();
-      for (const auto time : times_of_changes(*reader, component.value("instance", ""))) {
+      for (const auto time : times_of_changes(reader, component.value("instance", ""))) {
         if (const auto looked = playhead_->look(time); !looked) return looked.error();
         auto details = studio::recorded_details(*facts_, path, *playhead_);
         if (!details) return details.error();

@@ -181,36 +181,26 @@ struct OrientationAndImu : Frames {
   }
 };
 
-struct AngularVelocityAndImu : Frames {
-  using Data = RTC::TimedAngularVelocity3D;
+// A vector of an Imu, and its covariance, which is -1 where the message does not have it.
+template <class Timed, auto part, auto covariance>
+struct VectorAndImu : Frames {
+  using Data = Timed;
   using Message = ros::Imu;
   Message to_ros(const Data& data) const {
     Message imu = part_of_imu(header(data.tm));
-    imu.angular_velocity = vector_of(data.data);
-    imu.angular_velocity_covariance[0] = 0;
+    imu.*part = vector_of(data.data);
+    (imu.*covariance)[0] = 0;
     return imu;
   }
   static bool from_ros(const Message& imu, Data& data) {
     set_time(data.tm, imu.header.stamp);
-    set_vector(data.data, imu.angular_velocity);
-    return imu.angular_velocity_covariance[0] != -1;
+    set_vector(data.data, imu.*part);
+    return (imu.*covariance)[0] != -1;
   }
 };
-
-struct AccelerationAndImu : Frames {
-  using Data = RTC::TimedAcceleration3D;
-  using Message = ros::Imu;
-  Message to_ros(const Data& data) const {
-    Message imu = part_of_imu(header(data.tm));
-    imu.linear_acceleration = vector_of(data.data);
-    imu.linear_acceleration_covariance[0] = 0;
-    return imu;
-  }
-  static bool from_ros(const Message& imu, Data& data) {
-    set_time(data.tm, imu.header.stamp);
-    set_vector(data.data, imu.linear_acceleration);
-    return imu.linear_acceleration_covariance[0] != -1;
-  }
-};
+using AngularVelocityAndImu =
+    VectorAndImu<RTC::TimedAngularVelocity3D, &ros::Imu::angular_velocity, &ros::Imu::angular_velocity_covariance>;
+using AccelerationAndImu =
+    VectorAndImu<RTC::TimedAcceleration3D, &ros::Imu::linear_acceleration, &ros::Imu::linear_acceleration_covariance>;
 
 }  // namespace ros2

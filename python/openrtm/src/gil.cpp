@@ -60,8 +60,8 @@ thread_local Own own;
 
 // Gives the lock back meanwhile; false when it is not true in time.
 template <class Condition>
-bool becomes(Condition condition, std::chrono::milliseconds patience) {
-  const auto end = std::chrono::steady_clock::now() + patience;
+bool becomes(Condition condition, std::chrono::milliseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
     PyThreadState* const state = PyEval_SaveThread();

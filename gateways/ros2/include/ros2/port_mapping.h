@@ -2,7 +2,7 @@
 //
 //   using Data = RTC::TimedString;                          // the data type of the port
 //   using Message = ros::Text;                              // the message
-//   Message to_ros(const Data& data);                       // or std::optional<Message>: nothing when the value is no such message
+//   Message to_ros(const Data& data);                       // or std::optional<Message>: empty when the message cannot express the value
 //   void from_ros(const Message& message, Data& data);      // or bool: false drops the sample
 //   void init(const coil::Properties& connection);          // optional: the properties of the connection, without "dataport."
 //

@@ -82,7 +82,7 @@ class CSPManager:
                 return (True, port, None) if port in self._csp_outports else (True, None, port)
 
     def notify(self, outport=None, inport=None):
-        """End the wait of select() with this port. False if nobody waits."""
+        """End the wait of select() with this port. False if no call of select() is waiting."""
         with self._csp_changed:
             if not self._csp_waits or self._csp_chosen is not None:
                 return False
@@ -229,7 +229,7 @@ class _Receiver(_ChannelPort):
     def __init__(self, name, type_name, manager):
         _ChannelPort.__init__(self, name, type_name, "DataInPort")
         self._items = collections.deque()
-        # While it asks senders nobody puts a value: it would be older than the one that a sender offers then, or newer, who knows.
+        # While it asks senders, put() waits: the order of its value and the one that a sender offers would not be known.
         self._is_asking = self._has_refused = False
         self._wanted = 0  # readers that wait, and promises of the manager
         self._selected = []
