@@ -20,7 +20,7 @@
 #include "base/interrupt.h"
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -246,4 +246,4 @@ std::string own_program(const std::string& name) {
   return name;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 
-namespace editor {
+namespace tools {
 
 inline constexpr const char* own_output = "/dev/stdout";
 
@@ -80,4 +80,4 @@ ProgramCall shell_call(const std::string& line, const std::string& record, const
 // One of our own programs: beside this one, else from the path.
 std::string own_program(const std::string& name);
 
-}  // namespace editor
+}  // namespace tools

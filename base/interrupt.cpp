@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::atomic<bool> interrupted{false};
@@ -51,4 +51,4 @@ OnInterrupt::~OnInterrupt() {
   ::close(end_);
 }
 
-}  // namespace editor
+}  // namespace tools

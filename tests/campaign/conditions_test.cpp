@@ -12,26 +12,26 @@
 namespace campaign {
 namespace {
 
-using editor::test::FakeSimulator;
+using tools::test::FakeSimulator;
 
 struct Scene {
   FakeSimulator simulator;
-  editor::Workplace place{""};
+  tools::Workplace place{""};
   std::string naming = "127.0.0.1:1";
-  editor::SavedSystem system;
-  editor::PortValues values;
-  editor::RunScene scene{simulator,
-                         place,
-                         naming,
-                         system,
-                         values,
-                         [](const std::string&) { return Result<void>(); },
-                         [](const std::string&) { return Result<void>(); },
-                         [](const std::string&) { return false; },
-                         [](bool) {},
-                         [](const std::string& instance, editor::Detail) {
-                           return Result<editor::ComponentView>(Error{"component " + instance + ": is not there"});
-                         }};
+  tools::SavedSystem system;
+  tools::PortValues values;
+  tools::RunScene scene{simulator,
+                        place,
+                        naming,
+                        system,
+                        values,
+                        [](const std::string&) { return Result<void>(); },
+                        [](const std::string&) { return Result<void>(); },
+                        [](const std::string&) { return false; },
+                        [](bool) {},
+                        [](const std::string& instance, tools::Detail) {
+                          return Result<tools::ComponentView>(Error{"component " + instance + ": is not there"});
+                        }};
 
   // After ten steps, so at the first look.
   Result<void> look(DeedsRunner& runner, double time_s) { return runner.act(scene, std::llround(time_s / simulator.step())); }

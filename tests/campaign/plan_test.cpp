@@ -76,7 +76,7 @@ TEST_F(Plans, measure_joints_and_grips) {
   const auto watched = watched_values(plan->measures);
   ASSERT_EQ(watched.size(), 4U);
   EXPECT_EQ(watched[0].joint_name(), "arm::elbow");
-  editor::Seen seen;
+  tools::Seen seen;
   seen.record.joints["arm::elbow"] = {{0, 0.5}, {0.1, 2}, {0.2, 1}};
   seen.grips = {{"arm::hand holds box", ""}, {"arm::hand holds can", "only left touches can"}};
   const auto numbers = take_measures(plan->measures, seen, {}, 0);

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace editor {
+namespace tools {
 namespace {
 
 TEST(ConsoleTest, an_error_is_a_line_of_rtse_and_makes_the_command_fail) {
@@ -40,4 +40,4 @@ TEST(ConsoleTest, json_is_printed_also_with_text_that_is_not_utf8) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

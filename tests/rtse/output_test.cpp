@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace editor {
+namespace tools {
 namespace {
 
 TEST(ForTerminal, commands_for_a_terminal_are_shown_and_not_obeyed) {
@@ -46,4 +46,4 @@ TEST(ForTerminal, lines_tabs_and_letters_of_all_alphabets_stay) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

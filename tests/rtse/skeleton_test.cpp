@@ -8,7 +8,7 @@
 
 #include "rtse/skeleton/idl_operations.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 NewComponent follower() {
@@ -237,4 +237,4 @@ TEST(Skeleton, a_specification_in_yaml_says_where_it_is_not_understood) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

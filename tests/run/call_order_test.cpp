@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace editor::test {
+namespace tools::test {
 namespace {
 
 using Turns = std::map<std::string, int>;
@@ -55,4 +55,4 @@ TEST(CallOrder, a_circle_is_told_and_has_an_order_all_the_same) {
 }
 
 }  // namespace
-}  // namespace editor::test
+}  // namespace tools::test

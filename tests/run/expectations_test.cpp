@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace editor {
+namespace tools {
 namespace {
 
 // Files of one test, gone with it.
@@ -201,4 +201,4 @@ TEST_F(ExpectationsTest, what_may_be_touched_must_be_there) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

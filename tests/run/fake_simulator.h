@@ -9,7 +9,7 @@
 
 #include "run/simulator.h"
 
-namespace editor::test {
+namespace tools::test {
 
 class FakeSimulator final : public Simulator {
  public:
@@ -113,4 +113,4 @@ class FakeSimulator final : public Simulator {
   std::int64_t wanted_ = 0;
 };
 
-}  // namespace editor::test
+}  // namespace tools::test

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace editor {
+namespace tools {
 namespace {
 
 // The text of a suite with one case, which has this attachment.
@@ -41,4 +41,4 @@ TEST_F(Junit, in_a_job_of_gitlab_an_attachment_is_relative_to_the_project) {
 TEST_F(Junit, without_an_attachment_there_is_none) { EXPECT_EQ(suite_with("", "").find("system-out"), std::string::npos); }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace editor {
+namespace tools {
 namespace {
 
 TEST(PoseRecord, goes_on_when_the_last_moving_model_was_deleted) {
@@ -37,4 +37,4 @@ TEST(PoseRecord, ends_with_a_reset_of_the_world) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/command.h"
 #include "base/command_line.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -152,4 +152,4 @@ TEST(RunOptions, what_the_user_gives_comes_before_what_was_recorded) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

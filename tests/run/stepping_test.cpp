@@ -4,7 +4,7 @@
 
 #include "run/fake_simulator.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using test::FakeSimulator;
@@ -64,4 +64,4 @@ TEST(Stepping, a_tick_that_does_not_end_is_given_up_and_its_participant_is_named
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

@@ -396,7 +396,7 @@ const flows = [
     const run_to = async (seconds, places, version) => {
       mock.say(poses(version, [[index, places, 0, 0.1]]), false);
       mock.say(time({ sim_time: seconds }), false);
-      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time.sim_time === t, seconds));
+      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time?.sim_time === t, seconds));
     };
     const changes = async (event) => {
       await page.evaluate(() => { window.was = window.studio.world.world; });
@@ -434,7 +434,7 @@ const flows = [
       mock.say(at(seconds), false);
       mock.say({ op: 'values', watch: fan, t: [seconds], value: { ranges: Array.from({ length: 60 }, () => (seconds - 200) / 2) } }, false);
       mock.say(time({ sim_time: seconds }), false);
-      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time.sim_time === t, seconds));
+      await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time?.sim_time === t, seconds));
       await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // what is drawn has followed, also the first jump
     }
     const now = await seen();

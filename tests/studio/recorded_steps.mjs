@@ -52,7 +52,7 @@ export const flows = [
     await until('from the beginning', async () => { const now = await moment(page); return now > 0.2 && now < 11; });
     await page.locator('#run').click();
     const stood = await moment(page);
-    await until('it stands', () => page.evaluate(() => !window.studio.playback.is_playing && window.studio.playback.moment === window.studio.store.time.sim_time));
+    await until('it stands', () => page.evaluate(() => !window.studio.playback.is_playing && window.studio.playback.moment === window.studio.store.time?.sim_time));
     check((await moment(page)) < stood + 2, 'it stands');
   }],
   ['steps go on and back, keys too', async ({ page }) => {

@@ -253,6 +253,7 @@ const flows = [
   ['scrubbing ends at the time of the hand, and shows times on the way', async ({ browser, html }) => {
     const page = await open_file(browser, html);
     await has_world(page);
+    await until('a first time and picture', () => page.evaluate(() => window.studio.store.time && performance.getEntriesByName('first-picture').length > 0));
     const { shown, drawn, seconds, first } = await page.evaluate(async () => {
       const { playback, store, world } = window.studio, times = new Set(), began = performance.now(), frames = world.frames;
       for (let i = 1; i <= 150; ++i) {

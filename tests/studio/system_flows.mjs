@@ -165,7 +165,7 @@ const flows = [
   }],
   ['the page shows where the robot is', async ({ page, rig }) => {
     await page.locator('#run').click();
-    await until('paused', () => page.evaluate(() => window.studio.store.time.paused));
+    await until('paused', () => page.evaluate(() => window.studio.store.time?.paused));
     const pose = JSON.parse(await rig.simctl('--json', 'pose', `${robot}::chassis`));
     await until('the same place', () => page.evaluate(([name, p, q]) => {
       const { position, quaternion } = window.studio.world.world.models.get(name).canonical;
@@ -178,12 +178,12 @@ const flows = [
     await page.locator('.world canvas').focus();
     await page.keyboard.press('.');
     await until('a step', async () => (await steps()) > before);
-    check(await page.evaluate(() => window.studio.store.time.paused), 'still paused');
+    check(await page.evaluate(() => window.studio.store.time?.paused), 'still paused');
     await page.locator('#speed').fill('3');
     await page.keyboard.press('Enter');
     await page.locator('.world canvas').focus();
     await page.keyboard.press('Space');
-    await until('runs', () => page.evaluate(() => !window.studio.store.time.paused && window.studio.store.time.rtf_wanted === 3));
+    await until('runs', () => page.evaluate(() => !window.studio.store.time?.paused && window.studio.store.time.rtf_wanted === 3));
     await page.locator('#speed').fill('1');
     await page.keyboard.press('Enter');
     await until('real time again', () => page.evaluate(() => window.studio.store.time.rtf_wanted === 1));
@@ -271,7 +271,7 @@ const flows = [
     await in_state(page, 'inactive', 3);
   }],
   ['the last minutes of a live run are scrolled back to', async ({ page, rig }) => {
-    const shown = () => page.evaluate((name) => [window.studio.store.time.sim_time, ...window.studio.world.world.models.get(name).canonical.position.toArray()], robot);
+    const shown = () => page.evaluate((name) => [window.studio.store.time?.sim_time, ...window.studio.world.world.models.get(name).canonical.position.toArray()], robot);
     const far = async ([, x, y]) => { const [, a, b] = await shown(); return Math.hypot(a - x, b - y); };
     const look = (time) => page.locator('.scrub').evaluate((slider, to) => {
       slider.value = String(to);
@@ -293,7 +293,7 @@ const flows = [
     await until('it is where it was', async () => (await far(then)) < 1.5);
     await in_state(page, 'active', 3);
     // What comes meanwhile is kept.
-    const before = await page.evaluate(() => window.studio.store.time.sim_time);
+    const before = await page.evaluate(() => window.studio.store.time?.sim_time);
     await can_look(before + 1);
     await look(before + 1);
     await until('it is somewhere else', async () => (await far(other)) < 0.5);
@@ -542,7 +542,7 @@ const flows = [
     await until('the page tells', async () => (await page.locator('.world .card').textContent()).includes('sim-server'));
     shared.world = await rig.server('worlds/obstacle_course.sdf', '-u');
     await until('the page shows it', async () => (await page.locator('.world .card').count()) === 0);
-    await until('its time', () => page.evaluate(() => window.studio.store.time.sim_time < 1 && window.studio.store.time.paused));
+    await until('its time', () => page.evaluate(() => window.studio.store.time?.sim_time < 1 && window.studio.store.time?.paused));
   }],
   ['the simulator comes back with a wall that is higher, in a world of the same name', async (shared) => {
     const { page, rig } = shared;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace editor {
+namespace tools {
 namespace {
 
 Address address(const std::string& text, const std::string& working = "") {
@@ -71,4 +71,4 @@ TEST(Address, names_are_escaped_and_split_again) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

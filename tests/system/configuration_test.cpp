@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace editor {
+namespace tools {
 namespace {
 
 ComponentView component() {
@@ -32,4 +32,4 @@ TEST(ConfigurationTest, a_parameter_without_declaration_takes_every_value) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

@@ -4,7 +4,7 @@
 
 #include "system/fake_components.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 class ConnectionsTest : public testing::Test {
@@ -96,4 +96,4 @@ TEST_F(ConnectionsTest, a_connection_that_its_port_dropped_meanwhile_is_ended) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "system/component_view.h"
 #include "system/orb.h"
 
-namespace editor {
+namespace tools {
 
 // An execution context that answers each transition with `answer`. Its state changes with the n-th look at it, n = `looks_until_done`.
 class FakeContext : public POA_RTC::ExecutionContext, public PortableServer::RefCountServantBase {
@@ -79,4 +79,4 @@ inline ComponentView component_view(const std::string& instance, RTC::LifeCycleS
   return view;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace editor {
+namespace tools {
 namespace {
 
 bool is_type(const char* type, const char* value) { return type_problem(type, value).empty(); }
@@ -64,4 +64,4 @@ TEST(ParameterCheckTest, choices_are_chosen_from) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

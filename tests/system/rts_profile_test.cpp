@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::string golden(const std::string& name) { return std::string(paths::source_dir) + "/tests/golden/" + name; }
@@ -95,4 +95,4 @@ TEST(RtsProfile, broken_files_are_refused_with_their_line) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

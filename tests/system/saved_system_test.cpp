@@ -6,7 +6,7 @@
 #include "support/orb_environment.h"  // a timeout of calls needs an ORB
 #include "system/fake_components.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using testing::ElementsAre;
@@ -185,4 +185,4 @@ TEST(SessionTest, a_name_server_is_known_by_its_address_without_slashes) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

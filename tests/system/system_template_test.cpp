@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace editor {
+namespace tools {
 namespace {
 
 SavedComponent template_component(const std::string& instance, const std::string& device = "") {
@@ -133,4 +133,4 @@ TEST(SystemTemplate, properties_of_components_are_repeated) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

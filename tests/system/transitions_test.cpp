@@ -4,7 +4,7 @@
 
 #include "system/fake_components.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 class TransitionsTest : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(TransitionsTest, a_component_that_ends_in_its_error_state_is_an_error_at_
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

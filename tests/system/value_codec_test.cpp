@@ -8,7 +8,7 @@
 #include "support/paths.h"
 #include "system/typed_value.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -149,4 +149,4 @@ TEST(Members, are_looked_up_in_the_type) {
 }
 
 }  // namespace
-}  // namespace editor
+}  // namespace tools

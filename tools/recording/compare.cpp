@@ -124,7 +124,7 @@ std::optional<std::string> difference(const DifferenceOptions& options, Side& fi
 }
 
 // Channels that only one of them has; those of hash logs are noted and left out.
-std::vector<std::string> lonely_channels(const CompareOptions& options, Side& first, Side& second, editor::Reporter& reporter) {
+std::vector<std::string> lonely_channels(const CompareOptions& options, Side& first, Side& second, tools::Reporter& reporter) {
   std::vector<std::string> differences;
   for (const auto& [one, other, file] : {std::tuple(&first, &second, &options.first), std::tuple(&second, &first, &options.second)}) {
     const auto chosen = one->chosen();
@@ -144,7 +144,7 @@ std::vector<std::string> lonely_channels(const CompareOptions& options, Side& fi
 
 }  // namespace
 
-base::Result<Comparison> compare(const CompareOptions& options, editor::Reporter& reporter) {
+base::Result<Comparison> compare(const CompareOptions& options, tools::Reporter& reporter) {
   std::vector<std::unique_ptr<Side>> sides;
   for (const std::string& file : {options.first, options.second}) {
     auto reader = open(file, reporter);

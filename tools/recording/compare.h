@@ -33,6 +33,6 @@ struct Comparison {
 };
 
 // Fails when a recording cannot be read. `reporter` is warned of damage and of channels that are left out.
-base::Result<Comparison> compare(const CompareOptions& options, editor::Reporter& reporter);
+base::Result<Comparison> compare(const CompareOptions& options, tools::Reporter& reporter);
 
 }  // namespace recorder

@@ -108,7 +108,7 @@ struct ComponentSource::State {
 // One component, with the services that are attached to it.
 class ComponentSource::Watched {
  public:
-  Watched(State& state, const editor::ComponentView& component) : state_(state), view_(component) {}
+  Watched(State& state, const tools::ComponentView& component) : state_(state), view_(component) {}
   Watched(const Watched&) = delete;
   Watched& operator=(const Watched&) = delete;
 
@@ -116,7 +116,7 @@ class ComponentSource::Watched {
   // Instead of opening some: with the channels of one that is gone.
   void go_on_from(const Watched& gone);
   void attach();
-  const editor::ComponentView& view() const { return view_; }
+  const tools::ComponentView& view() const { return view_; }
 
  private:
   void take(const OpenRTM::LogRecord& record);
@@ -130,7 +130,7 @@ class ComponentSource::Watched {
   void put_first();
 
   State& state_;
-  const editor::ComponentView view_;
+  const tools::ComponentView view_;
   channels::ChannelId states_ = 0, configuration_ = 0;
   Json values_ = Json::object();  // of parameters, as they are now: who reads a part of the recording knows all of them
   base::Guarded<std::optional<channels::ChannelId>, base::Rank::noted> events_;  // when there is the first one
@@ -212,7 +212,7 @@ void ComponentSource::on_event(std::function<void(const std::string&, const Comp
 
 std::size_t ComponentSource::size() const { return state_->watched.size(); }
 
-base::Result<void> ComponentSource::add(const editor::ComponentView& component) {
+base::Result<void> ComponentSource::add(const tools::ComponentView& component) {
   if (!state_->log) {
     // What depends on the machine is no difference between two runs.
     const auto log = state_->exchange.open({"/log", "cdr", channels::schema_of<ros::Log>(), {{"compare", "no"}}});
@@ -229,7 +229,7 @@ base::Result<void> ComponentSource::add(const editor::ComponentView& component) 
   return {};
 }
 
-void ComponentSource::attach_again(const editor::ComponentView& component) {
+void ComponentSource::attach_again(const tools::ComponentView& component) {
   const auto mine = state_->turn.take();
   const auto known = std::ranges::find_if(state_->watched, [&](const auto& one) { return one->view().instance == component.instance; });
   if (known == state_->watched.end() || (*known)->view().object->_is_equivalent(component.object)) return;
@@ -251,7 +251,7 @@ void ComponentSource::diagnose(channels::Time now, const PortSource& ports) {
     const auto* context = view.shown_context();
     RTC::LifeCycleState life = RTC::CREATED_STATE;
     const bool is_there =
-        context != nullptr && editor::remote("component", [&] { life = context->object->get_component_state(view.object); }).ok();
+        context != nullptr && tools::remote("component", [&] { life = context->object->get_component_state(view.object); }).ok();
     if (is_there) status.message = state_name(life);
     enum Level { ok, warn, error, stale };
     status.level = static_cast<ros::Byte>(!is_there ? stale : life == RTC::ERROR_STATE ? error : life == RTC::ACTIVE_STATE ? ok : warn);

@@ -41,9 +41,9 @@ class ComponentSource final {
   // Called for each event, on the ORB's threads; before add().
   void on_event(std::function<void(const std::string& component, const ComponentEvent&)> told);
   // Seen with contexts and configuration. Fails when there are too many channels.
-  base::Result<void> add(const editor::ComponentView& component);
+  base::Result<void> add(const tools::ComponentView& component);
   // The channels of a component that was started again go on with the new one. Nothing happens to others.
-  void attach_again(const editor::ComponentView& component);
+  void attach_again(const tools::ComponentView& component);
   // States and rates at this moment, on any one thread. Asks each component, for at most the call limit of the thread.
   void diagnose(channels::Time now, const PortSource& ports);
   std::size_t size() const;

@@ -33,20 +33,20 @@ class LoggerService::Servant final : public POA_OpenRTM::Logger {
   Take take_;
 };
 
-LoggerService::LoggerService(const editor::ComponentView& component, Take take)
+LoggerService::LoggerService(const tools::ComponentView& component, Take take)
     : component_(RTC::RTObject::_duplicate(component.object)), id_(base::make_uuid()), servant_(new Servant(std::move(take))) {}
 
-std::unique_ptr<LoggerService> LoggerService::attach(const editor::ComponentView& component, const char* type,
-                                                     const editor::Properties& properties, Take take) {
+std::unique_ptr<LoggerService> LoggerService::attach(const tools::ComponentView& component, const char* type,
+                                                     const tools::Properties& properties, Take take) {
   std::unique_ptr<LoggerService> service(new LoggerService(component, std::move(take)));
   try {
     const OpenRTM::Logger_var reference = service->servant_->_this();
     SDOPackage::ServiceProfile profile;
     profile.id = service->id_.c_str();
     profile.interface_type = type;
-    profile.properties = editor::to_nv_list(properties);
+    profile.properties = tools::to_nv_list(properties);
     profile.service = SDOPackage::SDOService::_duplicate(reference);
-    const SDOPackage::Configuration_var configuration = editor::configuration_of(service->component_);
+    const SDOPackage::Configuration_var configuration = tools::configuration_of(service->component_);
     configuration->add_service_profile(profile);
   } catch (const CORBA::Exception&) {
     return nullptr;
@@ -54,14 +54,14 @@ std::unique_ptr<LoggerService> LoggerService::attach(const editor::ComponentView
   return service;
 }
 
-std::unique_ptr<LoggerService> LoggerService::of_log(const editor::ComponentView& component, Take take) {
+std::unique_ptr<LoggerService> LoggerService::of_log(const tools::ComponentView& component, Take take) {
   return attach(component, logger_type,
                 {{"logger.log_level", "INFO"}, {"logger.filter", component.instance}, {"logger.clock", "simulated"}}, std::move(take));
 }
 
 LoggerService::~LoggerService() {
   try {
-    const SDOPackage::Configuration_var configuration = editor::configuration_of(component_);
+    const SDOPackage::Configuration_var configuration = tools::configuration_of(component_);
     configuration->remove_service_profile(id_.c_str());
   } catch (const CORBA::Exception&) {
     // It has gone, or never knew it.

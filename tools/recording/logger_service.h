@@ -17,16 +17,16 @@ class LoggerService final {
 
   // Lines of its log from level info on, with simulated times where there is a simulation. Nothing for components that do not know such
   // services, and for those that do not answer.
-  static std::unique_ptr<LoggerService> of_log(const editor::ComponentView& component, Take take);
-  static std::unique_ptr<LoggerService> attach(const editor::ComponentView& component, const char* type,
-                                               const editor::Properties& properties, Take take);
+  static std::unique_ptr<LoggerService> of_log(const tools::ComponentView& component, Take take);
+  static std::unique_ptr<LoggerService> attach(const tools::ComponentView& component, const char* type, const tools::Properties& properties,
+                                               Take take);
   ~LoggerService();  // asks the component to forget it
   LoggerService(const LoggerService&) = delete;
   LoggerService& operator=(const LoggerService&) = delete;
 
  private:
   class Servant;
-  LoggerService(const editor::ComponentView& component, Take take);
+  LoggerService(const tools::ComponentView& component, Take take);
   const RTC::RTObject_var component_;
   const std::string id_;
   PortableServer::Servant_var<Servant> servant_;

@@ -13,12 +13,12 @@ namespace recorder {
 namespace {
 
 // The InPorts of a connection, "COMPONENT:PORT" with commas between: as ports are called in their profiles.
-std::string inports_of(const editor::PortView& port, const editor::ConnectorView& connector) {
+std::string inports_of(const tools::PortView& port, const tools::ConnectorView& connector) {
   std::vector<std::string> names;
   for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
     std::string name;
     // One that is gone is not among them.
-    (void)editor::remote("port", [&] {
+    (void)tools::remote("port", [&] {
       if (CORBA::is_nil(connector.ports[i]) || connector.ports[i]->_is_equivalent(port.object)) return;
       RTC::PortProfile_var profile = connector.ports[i]->get_port_profile();
       name = profile->name.in();
@@ -29,20 +29,20 @@ std::string inports_of(const editor::PortView& port, const editor::ConnectorView
   return base::join(names, ",");
 }
 
-std::string topic_of(const editor::ComponentView& component, const editor::PortView& port) {
+std::string topic_of(const tools::ComponentView& component, const tools::PortView& port) {
   return "/" + component.instance + "/" + port.name;
 }
 
 }  // namespace
 
-channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port) {
+channels::Channel channel_of(const tools::ComponentView& component, const tools::PortView& port) {
   channels::Channel channel;
   channel.topic = topic_of(component, port);
   channel.encoding = "cdr";
   const std::string type = port.data_type();
   channel.schema.name = channels::scoped_name(type);
   // Types that we do not know are kept as octets, under their names.
-  if (const auto code = editor::type_code_of(type); !CORBA::is_nil(code)) {
+  if (const auto code = tools::type_code_of(type); !CORBA::is_nil(code)) {
     channel.schema.encoding = "omgidl";
     channel.schema.text = channels::idl_text(code);
   }
@@ -64,7 +64,7 @@ channels::Channel channel_of(const editor::ComponentView& component, const edito
   return channel;
 }
 
-base::Result<void> PortSource::add(const editor::ComponentView& component, const editor::PortView& port,
+base::Result<void> PortSource::add(const tools::ComponentView& component, const tools::PortView& port,
                                    const std::map<std::string, std::string>& extra) {
   auto channel = channel_of(component, port);
   channel.metadata.insert(extra.begin(), extra.end());
@@ -77,15 +77,15 @@ base::Result<void> PortSource::add(const editor::ComponentView& component, const
   return {};
 }
 
-base::Result<void> PortSource::connect_again(const editor::ComponentView& component, const editor::PortView& port) {
+base::Result<void> PortSource::connect_again(const tools::ComponentView& component, const tools::PortView& port) {
   const auto known = std::ranges::find_if(tapped_, [&](const Tapped& one) { return one.counter->topic == topic_of(component, port); });
   if (known == tapped_.end() || known->port->_is_equivalent(port.object)) return {};
   return connect(*known, port);
 }
 
-base::Result<void> PortSource::connect(Tapped& tapped, const editor::PortView& port) {
+base::Result<void> PortSource::connect(Tapped& tapped, const tools::PortView& port) {
   tapped.tap.reset();
-  auto tap = editor::Tap::connect(
+  auto tap = tools::Tap::connect(
       orb_, port, {},
       [this, id = tapped.channel, counter = tapped.counter.get()](std::span<const unsigned char> payload, bool is_little_endian) {
         counter->samples.fetch_add(1, std::memory_order_relaxed);

@@ -18,7 +18,7 @@
 namespace recorder {
 
 // The channel of a port: topic "/COMPONENT/PORT", the exact octets of the wire behind the four that say their order.
-channels::Channel channel_of(const editor::ComponentView& component, const editor::PortView& port);
+channels::Channel channel_of(const tools::ComponentView& component, const tools::PortView& port);
 
 class PortSource final {
  public:
@@ -27,10 +27,10 @@ class PortSource final {
       : orb_(CORBA::ORB::_duplicate(orb)), exchange_(exchange), clock_(clock) {}
 
   // `extra` is added to the metadata of the channel.
-  base::Result<void> add(const editor::ComponentView& component, const editor::PortView& port,
+  base::Result<void> add(const tools::ComponentView& component, const tools::PortView& port,
                          const std::map<std::string, std::string>& extra = {});
   // The channel of a port whose component was started again goes on with the new one. Nothing happens to others.
-  base::Result<void> connect_again(const editor::ComponentView& component, const editor::PortView& port);
+  base::Result<void> connect_again(const tools::ComponentView& component, const tools::PortView& port);
   std::size_t size() const { return tapped_.size(); }
   // How many samples came so far, by topic. Any thread.
   std::map<std::string, std::uint64_t> counts() const;
@@ -44,9 +44,9 @@ class PortSource final {
     channels::ChannelId channel;
     RTC::PortService_var port;
     std::unique_ptr<Counter> counter;  // before the tap, which uses it
-    std::unique_ptr<editor::Tap> tap;
+    std::unique_ptr<tools::Tap> tap;
   };
-  base::Result<void> connect(Tapped& tapped, const editor::PortView& port);
+  base::Result<void> connect(Tapped& tapped, const tools::PortView& port);
 
   CORBA::ORB_var orb_;
   channels::Exchange& exchange_;

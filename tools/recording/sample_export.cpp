@@ -101,7 +101,7 @@ class Table {
 
 }  // namespace
 
-base::Result<Exported> export_tables(const ExportOptions& options, editor::Reporter& reporter) {
+base::Result<Exported> export_tables(const ExportOptions& options, tools::Reporter& reporter) {
   auto reader = open(options.selection.file, reporter);
   if (!reader) return reader.error();
   std::error_code error;
@@ -143,7 +143,7 @@ base::Result<Exported> export_tables(const ExportOptions& options, editor::Repor
   return exported;
 }
 
-base::Result<Exported> export_pictures(const ExportOptions& options, editor::Reporter& reporter) {
+base::Result<Exported> export_pictures(const ExportOptions& options, tools::Reporter& reporter) {
   auto reader = open(options.selection.file, reporter);
   if (!reader) return reader.error();
   Exported exported;

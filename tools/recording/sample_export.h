@@ -21,8 +21,8 @@ struct Exported {
 };
 
 // FOLDER/CHANNEL.csv for each channel. Fails when the recording cannot be read or the folder cannot be made.
-base::Result<Exported> export_tables(const ExportOptions& options, editor::Reporter& reporter);
+base::Result<Exported> export_tables(const ExportOptions& options, tools::Reporter& reporter);
 // FOLDER/CHANNEL/000001.png, ... of each channel that has pictures.
-base::Result<Exported> export_pictures(const ExportOptions& options, editor::Reporter& reporter);
+base::Result<Exported> export_pictures(const ExportOptions& options, tools::Reporter& reporter);
 
 }  // namespace recorder

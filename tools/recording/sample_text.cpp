@@ -90,11 +90,11 @@ base::Result<Json> SampleValues::of(const mcap::Message& message) {
   if (channel.encoding != "cdr" || encoding != "omgidl") {
     return wrong("samples of encoding " + base::in_quotes(channel.encoding) + " and schema " + base::in_quotes(name) + " cannot be shown");
   }
-  const auto type = editor::type_code_of(repository_id(name));
+  const auto type = tools::type_code_of(repository_id(name));
   if (CORBA::is_nil(type)) return wrong("the data type " + base::in_quotes(name) + " is not known");
   if (message.data.size() < 4) return wrong("a sample has no bytes for its byte order");
   const auto* octets = reinterpret_cast<const unsigned char*>(message.data.data());
-  auto value = editor::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, most_values);
+  auto value = tools::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, most_values);
   if (!value) return wrong(value.error().message);
   return std::move(*value);
 }

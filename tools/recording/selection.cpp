@@ -40,7 +40,7 @@ base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& 
   return query;
 }
 
-base::Result<mcap::Reader> open(const std::string& file, editor::Reporter& reporter) {
+base::Result<mcap::Reader> open(const std::string& file, tools::Reporter& reporter) {
   auto reader = open_recording(file);
   if (reader && reader->damage()) reporter.warn(*reader->damage());
   return reader;

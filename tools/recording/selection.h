@@ -26,7 +26,7 @@ inline double seconds(mcap::Time time) { return static_cast<double>(time.count()
 base::Result<mcap::Query> query_of(const mcap::Reader& reader, const Selection& selection);
 
 // Fails when the file cannot be read. Damage that can be read around is a warning.
-base::Result<mcap::Reader> open(const std::string& file, editor::Reporter& reporter);
+base::Result<mcap::Reader> open(const std::string& file, tools::Reporter& reporter);
 
 // The components of other makers in the run, whose samples have stamps of their own clocks (`tm`), which differ in each run.
 std::vector<std::string> others_of(mcap::Reader& reader);

@@ -9,7 +9,7 @@
 #include "rtse/console.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 // What the user has asked for; it is done when the whole command line has been read.
 struct Chosen {
@@ -22,4 +22,4 @@ inline void require(bool is_right, const std::string& command, const std::string
   if (!is_right) base::reject_command_line(command, expectation);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 
 void Console::print(const nlohmann::ordered_json& value) const {
   std::cout << value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';  // texts of peers may be invalid UTF-8
@@ -28,4 +28,4 @@ void Console::fail(const std::vector<base::Error>& errors) {
 
 void Console::warn(const std::string& text) { std::cerr << "rtse: " + base::printable(text, "\n\t") + "\n"; }
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "system/reporter.h"
 
-namespace editor {
+namespace tools {
 
 class Console final : public Reporter {
  public:
@@ -36,4 +36,4 @@ class Console final : public Reporter {
   bool is_rejected_ = false;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -4,9 +4,9 @@
 #include "rtse/verbs_elsewhere.h"
 
 int main(int argc, char** argv) {
-  editor::become_program_of_verb(argc, argv);
-  return editor::run_program({editor::add_list, editor::add_watch, editor::add_state, editor::add_conf, editor::add_context,
-                              editor::add_connect, editor::add_data, editor::add_system, editor::add_check, editor::add_join,
-                              editor::add_manager, editor::add_run, editor::add_diff, editor::add_new, editor::add_verbs_elsewhere},
-                             argc, argv);
+  tools::become_program_of_verb(argc, argv);
+  return tools::run_program({tools::add_list, tools::add_watch, tools::add_state, tools::add_conf, tools::add_context, tools::add_connect,
+                             tools::add_data, tools::add_system, tools::add_check, tools::add_join, tools::add_manager, tools::add_run,
+                             tools::add_diff, tools::add_new, tools::add_verbs_elsewhere},
+                            argc, argv);
 }

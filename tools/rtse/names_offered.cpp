@@ -9,7 +9,7 @@
 #include "system/orb.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr std::chrono::milliseconds offer_limit{500};
@@ -161,4 +161,4 @@ std::optional<std::vector<base::Offer>> names_offered(const std::string& value, 
   }
 }
 
-}  // namespace editor
+}  // namespace tools

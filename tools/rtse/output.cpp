@@ -5,11 +5,11 @@
 
 #include "base/descriptors.h"
 
-namespace editor {
+namespace tools {
 
 bool flush_output() {
   const bool is_written = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   return is_written || base::output_is_closed();
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -3,7 +3,7 @@
 
 #include "base/terminal.h"
 
-namespace editor {
+namespace tools {
 
 using base::for_terminal;
 using base::TerminalGuard;
@@ -11,4 +11,4 @@ using base::TerminalGuard;
 // Writes what is buffered; false when it could not be written and somebody would have wanted it.
 bool flush_output();
 
-}  // namespace editor
+}  // namespace tools

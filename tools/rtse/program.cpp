@@ -11,7 +11,7 @@
 #include "rtse/output.h"
 #include "system/orb.h"
 
-namespace editor {
+namespace tools {
 
 namespace {
 
@@ -74,4 +74,4 @@ int run_program(const std::vector<AddCommand>& commands, int argc, char** argv) 
   return 1;
 }
 
-}  // namespace editor
+}  // namespace tools

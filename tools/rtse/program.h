@@ -8,7 +8,7 @@ namespace base {
 class Command;
 }
 
-namespace editor {
+namespace tools {
 
 struct Chosen;
 
@@ -17,4 +17,4 @@ using AddCommand = void (*)(base::Command& app, Chosen& chosen);
 // The exit code: 0 done, 1 failed, 2 wrong command line.
 int run_program(const std::vector<AddCommand>& commands, int argc, char** argv);
 
-}  // namespace editor
+}  // namespace tools

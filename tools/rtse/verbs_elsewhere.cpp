@@ -13,7 +13,7 @@
 
 #include "rtse/command.h"
 
-namespace editor {
+namespace tools {
 
 namespace {
 
@@ -85,4 +85,4 @@ void add_verbs_elsewhere(base::Command& app, Chosen&) {
   for (const Verb& verb : verbs) app.add_subcommand(std::string(verb.name), std::string(verb.description))->prefix_command();
 }
 
-}  // namespace editor
+}  // namespace tools

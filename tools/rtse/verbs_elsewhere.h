@@ -5,7 +5,7 @@ namespace base {
 class Command;
 }
 
-namespace editor {
+namespace tools {
 
 struct Chosen;
 
@@ -16,4 +16,4 @@ void become_program_of_verb(int argc, char** argv);
 // For --help and completion.
 void add_verbs_elsewhere(base::Command& app, Chosen& chosen);
 
-}  // namespace editor
+}  // namespace tools

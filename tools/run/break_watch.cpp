@@ -39,22 +39,22 @@ struct Latest {
 struct Port {
   CORBA::TypeCode_ptr type = CORBA::TypeCode::_nil();  // of a table that lives as long as we
   base::Guarded<Latest, base::Rank::samples> latest;
-  std::unique_ptr<editor::Tap> tap;  // last: it uses the others
+  std::unique_ptr<tools::Tap> tap;  // last: it uses the others
 };
 
 }  // namespace
 
 struct BreakWatch::State {
-  State(const Expression& chosen, const editor::Session& its_session, shm::Participant its_participant)
+  State(const Expression& chosen, const tools::Session& its_session, shm::Participant its_participant)
       : condition(chosen), session(its_session), participant(std::move(its_participant)) {}
 
   const Expression condition;
-  const editor::Session session;
+  const tools::Session session;
   shm::Participant participant;
   std::uint32_t simulator = 0;
   std::map<std::string, std::unique_ptr<Port>> ports;  // by COMPONENT:PORT
   std::map<std::string, shm::Iface> models;
-  editor::ShmSimulator contacts_of;  // of models; attached if the condition needs it
+  tools::ShmSimulator contacts_of;  // of models; attached if the condition needs it
   base::Guarded<std::optional<std::chrono::nanoseconds>, base::Rank::noted> hit;
   std::atomic<bool> is_ending{false};  // relaxed: says nothing but itself
   std::thread thread;
@@ -78,17 +78,17 @@ base::Result<void> BreakWatch::State::prepare(CORBA::ORB_ptr orb) {
       if (!found) return found.error();
       if (found->port.port_type() != "DataOutPort") return base::Error{"port " + value.name + ": is not an OutPort, so it has no values"};
       auto port = std::make_unique<Port>();
-      port->type = editor::type_code_of(found->port.data_type());
+      port->type = tools::type_code_of(found->port.data_type());
       if (CORBA::is_nil(port->type)) return base::Error{"port " + value.name + ": its data type is not known"};
       auto tap =
-          editor::Tap::connect(orb, found->port, {}, [&latest = port->latest](std::span<const unsigned char> payload, bool is_little) {
+          tools::Tap::connect(orb, found->port, {}, [&latest = port->latest](std::span<const unsigned char> payload, bool is_little) {
             *latest.lock() = {std::string(reinterpret_cast<const char*>(payload.data()), payload.size()), is_little, true};
           });
       if (!tap) return tap.error();
       port->tap = std::move(*tap);
       ports.emplace(value.name, std::move(port));
     } else if (value.kind == ValueKind::touches && contacts_of.id().empty()) {
-      if (const auto attached = contacts_of.attach(simulator, editor::ShmSimulator::process_of(simulator).value_or(0)); !attached)
+      if (const auto attached = contacts_of.attach(simulator, tools::ShmSimulator::process_of(simulator).value_or(0)); !attached)
         return attached;
     } else if (value.kind == ValueKind::state) {
       if (const auto found = session.component(value.name + ".rtc", {.contexts = true}); !found) return found.error();
@@ -102,7 +102,7 @@ std::optional<double> BreakWatch::State::sample_member(const Expression::Value& 
   const Latest latest = port.latest.snapshot();
   if (!latest.is_there) return std::nullopt;
   const auto json =
-      editor::decode(port.type, {reinterpret_cast<const unsigned char*>(latest.payload.data()), latest.payload.size()}, latest.is_little);
+      tools::decode(port.type, {reinterpret_cast<const unsigned char*>(latest.payload.data()), latest.payload.size()}, latest.is_little);
   if (!json) return std::nullopt;
   for (const auto& [member, one] : members_of(*json)) {
     if (member != value.member) continue;
@@ -126,19 +126,19 @@ std::optional<double> BreakWatch::State::look_up(const Expression::Value& value,
     }
     case ValueKind::touches: {
       const auto contacts = contacts_of.contacts(value.name);
-      return contacts ? std::optional(editor::is_touching(*contacts, value.member) ? 1.0 : 0.0) : std::nullopt;
+      return contacts ? std::optional(tools::is_touching(*contacts, value.member) ? 1.0 : 0.0) : std::nullopt;
     }
     case ValueKind::pose:
       break;
   }
   shm::Iface& model = models.at(value.name);
   if (!model.read()) return std::nullopt;
-  return editor::member_of(model.sample<shm::TruthSample>().pose, value.member);
+  return tools::member_of(model.sample<shm::TruthSample>().pose, value.member);
 }
 
 void BreakWatch::State::run() {
   const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-  const editor::CallLimit limited(watch_limit);
+  const tools::CallLimit limited(watch_limit);
   while (!is_ending.load(std::memory_order_relaxed)) {
     shm::Tick tick;
     const auto what = participant.wait(tick, 100ms);
@@ -161,13 +161,13 @@ BreakWatch::~BreakWatch() {
   if (state_->thread.joinable()) state_->thread.join();
 }
 
-base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, const editor::RunningSystem& system,
+base::Result<std::unique_ptr<BreakWatch>> BreakWatch::start(CORBA::ORB_ptr orb, const tools::RunningSystem& system,
                                                             const Expression& condition) {
   const auto period = tick_of(system.simulator(), system.step());
   if (!period) return period.error();
   auto participant = shm::Participant::join(number_of(system.simulator()), {.name = "break", .phase = watch_phase, .period = *period});
   if (!participant) return participant.error();
-  const editor::Session session(orb, system.naming(), std::chrono::milliseconds(watch_limit));
+  const tools::Session session(orb, system.naming(), std::chrono::milliseconds(watch_limit));
   auto state = std::make_unique<State>(condition, session, std::move(*participant));
   state->simulator = number_of(system.simulator());
   if (const auto done = state->prepare(orb); !done) return done.error();

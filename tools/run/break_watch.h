@@ -17,7 +17,7 @@ namespace recorder {
 class BreakWatch {
  public:
   // Fails when a port or model that the condition needs is not there.
-  static base::Result<std::unique_ptr<BreakWatch>> start(CORBA::ORB_ptr orb, const editor::RunningSystem& system,
+  static base::Result<std::unique_ptr<BreakWatch>> start(CORBA::ORB_ptr orb, const tools::RunningSystem& system,
                                                          const Expression& condition);
   ~BreakWatch();
 

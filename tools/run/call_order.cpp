@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace editor {
+namespace tools {
 namespace {
 
 // Who comes before whom, without circles.
@@ -85,4 +85,4 @@ CallOrder call_order(const SavedSystem& system, const std::function<CalledCompon
   return result;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -14,7 +14,7 @@
 
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 
 struct CallOrder {
   std::map<std::string, int> turns;  // by instance; 0 where nothing stands
@@ -32,4 +32,4 @@ struct CalledComponent {
 
 CallOrder call_order(const SavedSystem& system, const std::function<CalledComponent(const std::string& instance)>& about);
 
-}  // namespace editor
+}  // namespace tools

@@ -13,7 +13,7 @@
 #include "system/component_view.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 // The component that a line is about: "port My Arm:out was ..." is about My Arm, "component Arm had ..." about Arm.
@@ -116,4 +116,4 @@ std::vector<std::string> callers_of_one_phase(const SavedSystem& system, const P
   return found;
 }
 
-}  // namespace editor
+}  // namespace tools

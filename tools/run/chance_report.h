@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace editor {
+namespace tools {
 
 struct ComponentView;
 struct RunOptions;
@@ -45,4 +45,4 @@ std::set<std::string> providers_of(const ComponentView& component);
 std::vector<std::string> callers_of_one_phase(const SavedSystem& system, const PlacesInTime& places,
                                               const std::set<std::string>& providers);
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -129,4 +129,4 @@ bool is_touching(const std::vector<ModelContact>& contacts, const std::string& o
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -16,7 +16,7 @@
 #include "run/simulator.h"
 #include "run/yaml_shape.h"
 
-namespace editor {
+namespace tools {
 
 inline constexpr const char* usually_touched = "ground_plane";  // what a model may touch when nothing else is said
 
@@ -31,4 +31,4 @@ double member_of(const shm::Pose& pose, const std::string& member);
 // Whether one of a model's contacts is with `other`, a model or "any".
 bool is_touching(const std::vector<ModelContact>& contacts, const std::string& other);
 
-}  // namespace editor
+}  // namespace tools

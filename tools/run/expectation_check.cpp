@@ -6,7 +6,7 @@
 #include "run/verdict_time.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -82,4 +82,4 @@ Result<void> check_values(const Session& session, const std::vector<Expectation>
   return {};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 // Components, of states and of ports.
 base::Result<void> check_components(const std::vector<Expectation>& expectations, const SavedSystem& system);
@@ -24,4 +24,4 @@ base::Result<void> check_value(const Session& session, const Expectation& expect
 // All of them.
 base::Result<void> check_values(const Session& session, const std::vector<Expectation>& expectations);
 
-}  // namespace editor
+}  // namespace tools

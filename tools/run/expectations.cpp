@@ -16,7 +16,7 @@
 #include "run/verdict_time.h"
 #include "run/yaml_shape.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -329,4 +329,4 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const S
   return verdicts;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -26,7 +26,7 @@
 #include "run/model_parts.h"
 #include "run/pose_record.h"
 
-namespace editor {
+namespace tools {
 
 struct Expectation {
   enum class Kind { path_length, reach, stay, no_contact, value, state, joint, holds, command };
@@ -98,4 +98,4 @@ recorder::Expression::Lookup values_at(const RecordedPose& pose);
 
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const Seen& seen);
 
-}  // namespace editor
+}  // namespace tools

@@ -2,7 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr int deepest = 32;  // an alias may stand in what it names
@@ -27,4 +27,4 @@ std::string flow_text(const YAML::Node& node) {
   return flow.c_str();
 }
 
-}  // namespace editor
+}  // namespace tools

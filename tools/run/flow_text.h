@@ -7,9 +7,9 @@ namespace YAML {
 class Node;
 }
 
-namespace editor {
+namespace tools {
 
 // In flow style ("{at: 1, command: true}"), however it was written; a text of several lines is quoted.
 std::string flow_text(const YAML::Node& node);
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "system/remote.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 
 namespace {
 
@@ -154,4 +154,4 @@ Result<void> ForeignLinks::end() {
   return is_whole ? Result<void>() : Error{"the samples between third-party components could not be written"};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -25,7 +25,7 @@
 #include "system/session.h"
 #include "system/tap.h"
 
-namespace editor {
+namespace tools {
 
 class ForeignLinks {
  public:
@@ -63,4 +63,4 @@ class ForeignLinks {
   std::vector<std::unique_ptr<Tap>> taps_;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -14,7 +14,7 @@
 #include "run/same_math.h"
 #include "system/transitions.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr const char* phase_key = "exec_cxt.sim_time.phase";
@@ -327,4 +327,4 @@ std::vector<std::string> ForeignProcesses::set_links(SavedSystem& system) const 
   return notes;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -19,7 +19,7 @@
 #include "run/run_system.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 
 class ForeignProcesses {
  public:
@@ -89,4 +89,4 @@ class ForeignProcesses {
   std::vector<Running> running_;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "run/run_hashes.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -117,4 +117,4 @@ Json difference_json(const base::HashComparison& comparison) {
   return json;
 }
 
-}  // namespace editor
+}  // namespace tools

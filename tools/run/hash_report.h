@@ -6,10 +6,10 @@
 
 #include "base/hash_log.h"
 
-namespace editor {
+namespace tools {
 
 // Empty when the runs are the same; else one line: when, where, and both values.
 std::string difference_text(const base::HashComparison& comparison);
 nlohmann::ordered_json difference_json(const base::HashComparison& comparison);
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "run/run_files.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 void set_text(pugi::xml_node node, const char* name, const std::string& text) { node.append_attribute(name) = printable(text).c_str(); }
@@ -65,4 +65,4 @@ base::Result<void> write_junit_suite(const std::string& file, const std::string&
   return {};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace editor {
+namespace tools {
 
 struct JunitCase {
   enum class Outcome { passed, failed, broken } outcome = Outcome::passed;  // failed: an expectation; broken: it did not run to its end
@@ -21,4 +21,4 @@ struct JunitCase {
 // cannot be written is an Error.
 base::Result<void> write_junit_suite(const std::string& file, const std::string& name, const std::vector<JunitCase>& cases);
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 
 namespace {
 
@@ -67,4 +67,4 @@ Error LostMembers::tell(std::optional<ForeignProcesses::Ended> ended, std::vecto
                (time_s > 0 ? ", at " + base::format_number(time_s) + " s" : "") + ": " + ended->said};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "run/run_hosts.h"
 #include "run/simulator.h"
 
-namespace editor {
+namespace tools {
 
 class LostMembers {
  public:
@@ -35,4 +35,4 @@ class LostMembers {
   std::optional<Error> told_;  // is told again: what the contexts have said is read once
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -72,4 +72,4 @@ Result<void> find_joint(const std::vector<ModelParts>& parts, const std::string&
   return Error{"model " + base::in_quotes(model) + " has no joint " + base::in_quotes(joint) + "; joints: " + listed(found->joints)};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace editor {
+namespace tools {
 
 struct ModelContact {
   std::string link, other;  // "MODEL::LINK::COLLISION"
@@ -37,4 +37,4 @@ base::Result<Gripper> find_gripper(const std::vector<ModelParts>& parts, const s
 // Of the model; the error says which joints it has.
 base::Result<void> find_joint(const std::vector<ModelParts>& parts, const std::string& model, const std::string& joint);
 
-}  // namespace editor
+}  // namespace tools

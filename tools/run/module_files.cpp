@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <system_error>
 
-namespace editor {
+namespace tools {
 
 ModuleKind module_kind(const std::string& type, const std::vector<std::string>& folders) {
   std::error_code error;
@@ -29,4 +29,4 @@ std::map<std::string, std::string> same_python() {
   return variables;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace editor {
+namespace tools {
 
 enum class ModuleKind { none, library, python };
 
@@ -20,4 +20,4 @@ std::string module_names(const std::string& type);
 // that do not depend on the processor. A value that the user has given stays.
 std::map<std::string, std::string> same_python();
 
-}  // namespace editor
+}  // namespace tools

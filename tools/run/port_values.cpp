@@ -8,7 +8,7 @@
 #include "run/expectation_check.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -158,4 +158,4 @@ void PortValues::take(CORBA::TypeCode_ptr type, const Expectation& expectation, 
   }
 }
 
-}  // namespace editor
+}  // namespace tools

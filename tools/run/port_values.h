@@ -14,7 +14,7 @@
 #include "system/session.h"
 #include "system/tap.h"
 
-namespace editor {
+namespace tools {
 
 class PortValues {
  public:
@@ -48,4 +48,4 @@ class PortValues {
   std::vector<Listening> listening_;
 };
 
-}  // namespace editor
+}  // namespace tools

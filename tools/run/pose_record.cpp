@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace editor {
+namespace tools {
 
 bool PoseRecord::take(double time) {
   is_over_ = is_over_ || time < last || time > end_;
@@ -31,4 +31,4 @@ double path_length(const std::vector<RecordedPose>& poses) {
   return length;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace editor {
+namespace tools {
 
 struct RecordedPose {
   double time, x, y, z;                   // [s, m]
@@ -46,4 +46,4 @@ class PoseRecord {
 // [m]
 double path_length(const std::vector<RecordedPose>& poses);
 
-}  // namespace editor
+}  // namespace tools

@@ -128,22 +128,22 @@ base::Result<void> LifePlayer::make(const RecordedChange& change) {
   const auto* context = component_.shown_context();
   if (context == nullptr) return base::Error{"component " + component_.instance + ": has no execution context"};
   // Within a tick the answer of a transition comes too late: it is made in the next one, which waits for us.
-  return editor::remote("component " + component_.instance + ": " + text_of(change.kind), [&] {
+  return tools::remote("component " + component_.instance + ": " + text_of(change.kind), [&] {
     if (change.kind == Kind::activate) context->object->activate_component(component_.object);
     if (change.kind == Kind::deactivate) context->object->deactivate_component(component_.object);
     if (change.kind == Kind::reset) context->object->reset_component(component_.object);
     if (change.kind != Kind::configure || change.values.empty()) return;
-    const SDOPackage::Configuration_var configuration = editor::configuration_of(component_.object);
+    const SDOPackage::Configuration_var configuration = tools::configuration_of(component_.object);
     const SDOPackage::ConfigurationSet_var set = configuration->get_configuration_set(change.set.c_str());
-    auto all = editor::to_properties(set->configuration_data);
+    auto all = tools::to_properties(set->configuration_data);
     for (const auto& [name, value] : change.values) all[name] = value;
-    set->configuration_data = editor::to_nv_list(all);
+    set->configuration_data = tools::to_nv_list(all);
     configuration->set_configuration_set_values(set);
     configuration->activate_configuration_set(change.set.c_str());
   });
 }
 
-base::Result<void> LifePlayer::begin(const editor::ComponentView& component) {
+base::Result<void> LifePlayer::begin(const tools::ComponentView& component) {
   component_ = component;
   if (life_.configuration && !life_.configuration->values.empty()) {
     if (const auto made = make(*life_.configuration); !made) return made;

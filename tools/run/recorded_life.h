@@ -43,7 +43,7 @@ class LifePlayer {
   explicit LifePlayer(RecordedLife life) : life_(std::move(life)) {}
 
   // The component as it was at first, before time moves. An error names what it refuses.
-  base::Result<void> begin(const editor::ComponentView& component);
+  base::Result<void> begin(const tools::ComponentView& component);
   // The time of the change that is to be made next.
   std::optional<std::chrono::nanoseconds> next() const;
   // All changes up to this time.
@@ -54,7 +54,7 @@ class LifePlayer {
   base::Result<void> make(const RecordedChange& change);
 
   RecordedLife life_;
-  editor::ComponentView component_;
+  tools::ComponentView component_;
   std::size_t next_ = 0, done_ = 0;
 };
 

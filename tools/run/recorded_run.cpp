@@ -32,7 +32,7 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Need
   for (const auto& one : *metadata) {
     if (one.name == "run") run.notes_ = one.texts;
   }
-  auto folder = base::ScratchFolder::make(editor::scratch_prefix);
+  auto folder = base::ScratchFolder::make(tools::scratch_prefix);
   if (!folder) return folder.error();
   run.folder_.emplace(std::move(*folder));
   for (const auto& [name, place] : {std::pair("system.xml", &run.system_), std::pair("world.sdf", &run.world_)}) {
@@ -69,11 +69,11 @@ std::string RecordedRun::lost() const {
   return note("script") == "yes" ? "what the plan of a campaign did in the run (faults, events) is not done again" : "";
 }
 
-base::Result<editor::RunOptions> RecordedRun::options() const {
+base::Result<tools::RunOptions> RecordedRun::options() const {
   auto notes = notes_;
   if (note("duration").empty())
-    notes["duration"] = base::format_number(std::max(end_s_, editor::run_option("duration").low));  // of `rtse record`
-  auto options = editor::recorded_run_options(notes);
+    notes["duration"] = base::format_number(std::max(end_s_, tools::run_option("duration").low));  // of `rtse record`
+  auto options = tools::recorded_run_options(notes);
   if (!options) return options.error();
   options->system = system_;
   options->world = world_;

@@ -29,7 +29,7 @@ class RecordedRun {
   double end() const { return end_s_; }  // the time of the last sample [s]
   // Those of the run. Processes of others are started by their commands and their run file, which must still be there.
   // An Error names an option that this version does not know.
-  base::Result<editor::RunOptions> options() const;
+  base::Result<tools::RunOptions> options() const;
   // What was done in the run that options() cannot do again; empty: nothing.
   std::string lost() const;
 

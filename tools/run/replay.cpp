@@ -28,7 +28,7 @@ constexpr auto call_limit = 5s;
 constexpr std::uint32_t last_phase = 15;
 
 struct Input {
-  std::vector<std::unique_ptr<editor::Tap>> targets;
+  std::vector<std::unique_ptr<tools::Tap>> targets;
   std::string topic;
   bool comes_before = true;  // the component's tick of the same time
 };
@@ -37,7 +37,7 @@ struct Input {
 struct Output {
   ReplayedOutput result;
   std::uint16_t channel = 0;  // of the recording; 0: it has none
-  std::unique_ptr<editor::Tap> tap;
+  std::unique_ptr<tools::Tap> tap;
   struct Expected {
     std::chrono::nanoseconds time;
     std::uint64_t tick;
@@ -53,7 +53,7 @@ std::uint32_t phase_of(const mcap::Channel& channel) {
 
 class Player {
  public:
-  Player(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options, mcap::Reader recording)
+  Player(CORBA::ORB_ptr orb, tools::RunningSystem& system, const ReplayOptions& options, mcap::Reader recording)
       : orb_(orb),
         system_(system),
         options_(options),
@@ -86,7 +86,7 @@ class Player {
   std::optional<std::string> differ(const Output& output, const std::string& recorded, const std::string& sent);
 
   CORBA::ORB_ptr orb_;
-  editor::RunningSystem& system_;
+  tools::RunningSystem& system_;
   const ReplayOptions& options_;
   mcap::Reader recording_;
   SampleValues values_;
@@ -113,7 +113,7 @@ class Player {
 // ---- wiring ----
 
 // "; it has a, b"
-std::string in_ports(const editor::ComponentView& component) {
+std::string in_ports(const tools::ComponentView& component) {
   std::vector<std::string> names;
   for (const auto& port : component.ports) {
     if (port.port_type() == "DataInPort") names.push_back(port.name);
@@ -122,7 +122,7 @@ std::string in_ports(const editor::ComponentView& component) {
 }
 
 base::Result<void> Player::connect() {
-  editor::Session session(orb_, system_.naming(), std::chrono::milliseconds(call_limit));
+  tools::Session session(orb_, system_.naming(), std::chrono::milliseconds(call_limit));
   auto component = session.component(options_.component + ".rtc", {.contexts = true, .connectors = true});
   if (!component) return component.error();
   for (auto* life : {&between_ticks_, &within_ticks_}) {
@@ -137,7 +137,7 @@ base::Result<void> Player::connect() {
       return base::Error{"link of " + link.topic + ": component " + options_.component + " has no InPort " + base::in_quotes(link.port) +
                          in_ports(*component)};
     if (channel == topics.end()) return base::Error{"link of " + link.topic + " with " + link.port + ": is not there"};
-    auto tap = editor::Tap::connect(orb_, *port, link.properties, {});
+    auto tap = tools::Tap::connect(orb_, *port, link.properties, {});
     if (!tap) return tap.error();
     Input& input = by_channel_[channel->second];
     input.topic = link.topic;
@@ -153,12 +153,11 @@ base::Result<void> Player::connect() {
       output->channel = channel->second;
       if (options_.compares) wanted.channels.push_back(channel->second);
     }
-    auto tap =
-        editor::Tap::connect(orb_, port, {}, [this, place = outputs_.size()](std::span<const unsigned char> payload, bool is_little) {
-          std::string octets = is_little ? std::string("\0\1\0\0", 4) : std::string(4, '\0');
-          octets.append(reinterpret_cast<const char*>(payload.data()), payload.size());
-          arrived_.lock()->emplace_back(place, std::move(octets));
-        });
+    auto tap = tools::Tap::connect(orb_, port, {}, [this, place = outputs_.size()](std::span<const unsigned char> payload, bool is_little) {
+      std::string octets = is_little ? std::string("\0\1\0\0", 4) : std::string(4, '\0');
+      octets.append(reinterpret_cast<const char*>(payload.data()), payload.size());
+      arrived_.lock()->emplace_back(place, std::move(octets));
+    });
     if (!tap) return tap.error();
     output->tap = std::move(*tap);
     outputs_.push_back(std::move(output));
@@ -374,7 +373,7 @@ base::Result<ReplayResult> Player::run() {
   if (const auto done = await_active(); !done) return done.error();
   thread_ = std::thread([this] {
     const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-    const editor::CallLimit limited(call_limit);
+    const tools::CallLimit limited(call_limit);
     if (const auto served = serve(); !served && !served.error().message.empty()) *failure_.lock() = served.error();
     before_.reset();
     after_.reset();
@@ -395,7 +394,7 @@ base::Result<ReplayResult> Player::run() {
 
 }  // namespace
 
-base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options) {
+base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, tools::RunningSystem& system, const ReplayOptions& options) {
   auto recording = open_recording(options.file);
   if (!recording) return recording.error();
   return Player(orb, system, options, std::move(*recording)).run();

@@ -24,7 +24,7 @@ namespace recorder {
 struct ReplayLink {
   std::string topic;
   std::string port;  // of the component
-  editor::Properties properties;
+  tools::Properties properties;
 };
 
 struct ReplayOptions {
@@ -56,6 +56,6 @@ struct ReplayResult {
 };
 
 // `system` holds the component alone, wired to nothing, before its first step.
-base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, editor::RunningSystem& system, const ReplayOptions& options);
+base::Result<ReplayResult> replay(CORBA::ORB_ptr orb, tools::RunningSystem& system, const ReplayOptions& options);
 
 }  // namespace recorder

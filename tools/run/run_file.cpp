@@ -14,7 +14,7 @@
 #include "base/yaml_keys.h"
 #include "run/yaml_shape.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -123,4 +123,4 @@ Result<std::vector<ForeignProcess>> read_run_file(const std::string& file) {
   return parse_run_file(text.str(), file);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -21,7 +21,7 @@
 #include "base/result.h"
 #include "run/time_members.h"
 
-namespace editor {
+namespace tools {
 
 struct ForeignComponent {
   std::string instance;
@@ -41,4 +41,4 @@ struct ForeignProcess {
 base::Result<std::vector<ForeignProcess>> parse_run_file(const std::string& text, const std::string& file);
 base::Result<std::vector<ForeignProcess>> read_run_file(const std::string& file);
 
-}  // namespace editor
+}  // namespace tools

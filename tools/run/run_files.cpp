@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 base::ScratchFolder made_scratch() {
@@ -143,4 +143,4 @@ std::string folder_problem(const std::filesystem::filesystem_error& error) {
   return "folder " + base::in_quotes(path.string()) + ": " + error.code().message();
 }
 
-}  // namespace editor
+}  // namespace tools

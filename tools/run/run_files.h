@@ -10,7 +10,7 @@
 #include "base/scratch_folder.h"
 #include "base/sudden_end.h"
 
-namespace editor {
+namespace tools {
 
 inline constexpr const char* scratch_prefix = "rtse-run-";  // of temporary folders of runs
 
@@ -55,4 +55,4 @@ std::string last_lines(const std::string& file);
 // What is no UTF-8, or no character that XML 1.0 allows, becomes a question mark.
 std::string printable(std::string_view text);
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 
 #include "base/hash_log.h"
 
-namespace editor {
+namespace tools {
 
 std::string hash_text(std::uint64_t hash) {
   std::array<char, 17> text{};
@@ -35,4 +35,4 @@ base::Result<std::uint64_t> RunHashes::merge() const {
   }
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "run/run_files.h"
 
-namespace editor {
+namespace tools {
 
 class RunHashes {
  public:
@@ -34,4 +34,4 @@ class RunHashes {
 // As it is printed.
 std::string hash_text(std::uint64_t hash);
 
-}  // namespace editor
+}  // namespace tools

@@ -16,7 +16,7 @@
 #include "run/time_members.h"
 #include "run/warm_program.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr std::chrono::seconds kill_limit{5};
@@ -269,4 +269,4 @@ std::set<std::string> instances_of(const RunHosts::Members& members) {
   return instances;
 }
 
-}  // namespace editor
+}  // namespace tools

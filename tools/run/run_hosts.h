@@ -14,7 +14,7 @@
 #include "run/simulator.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 
 class RunHosts {
  public:
@@ -92,4 +92,4 @@ class RunHosts {
 std::string names_of(const RunHosts::Members& members);
 std::set<std::string> instances_of(const RunHosts::Members& members);
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "run/expectation_check.h"
 #include "run/run_script.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using namespace std::chrono_literals;
@@ -36,16 +36,16 @@ Result<void> RunJudge::check_models(bool may_spawn) const {
   if (may_spawn || expectations_.empty()) return {};
   const auto models = simulator_.models();
   if (!models) return models.error();
-  const auto known = editor::check_models(expectations_, *models);
+  const auto known = tools::check_models(expectations_, *models);
   if (!known) return in_file(known.error());
   const auto parts = simulator_.parts();
   if (!parts) return parts.error();
-  const auto has_parts = editor::check_parts(expectations_, *parts);
+  const auto has_parts = tools::check_parts(expectations_, *parts);
   return has_parts ? has_parts : in_file(has_parts.error());
 }
 
 Result<void> RunJudge::check_values(const Session& session) const {
-  const auto known = editor::check_values(session, expectations_);
+  const auto known = tools::check_values(session, expectations_);
   return known ? known : in_file(known.error());
 }
 
@@ -188,10 +188,10 @@ Result<void> RunJudge::judge(RunResult& result) {
   if (record_.last < options_.duration_s - record_period - simulator_.step())
     return Error{"the record of the run ends at " + base::format_number(record_.last) + " s: the world was reset"};
   seen_.record = std::move(record_);
-  const auto verdicts = editor::judge(expectations_, seen_);
+  const auto verdicts = tools::judge(expectations_, seen_);
   result.verdicts.insert(result.verdicts.end(), verdicts.begin(), verdicts.end());
   for (const auto& [model, poses] : seen_.record.poses) result.path_m = std::max(result.path_m, path_length(poses));
   return {};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -17,7 +17,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 class RunJudge {
  public:
@@ -69,4 +69,4 @@ class RunJudge {
   std::set<std::string> providers_;  // full names of ports
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -12,7 +12,7 @@
 #include "run/stopped_process.h"
 #include "system/remote.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -110,4 +110,4 @@ Error RunNaming::silence() const {
   return {"name server " + address_ + " (omniNames, pid " + std::to_string(process_->pid()) + "): does not answer (hung, or stopped?)"};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -12,7 +12,7 @@
 #include "run/run_files.h"
 #include "run/run_simulator.h"
 
-namespace editor {
+namespace tools {
 
 class RunNaming {
  public:
@@ -52,4 +52,4 @@ class RunNaming {
   std::optional<std::chrono::steady_clock::time_point> silent_since_, stopped_since_;
 };
 
-}  // namespace editor
+}  // namespace tools

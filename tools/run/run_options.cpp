@@ -13,7 +13,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/profile/system_template.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -253,4 +253,4 @@ Result<std::vector<ComponentProperty>> check_against(const RunOptions& options, 
   return properties;
 }
 
-}  // namespace editor
+}  // namespace tools

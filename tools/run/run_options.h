@@ -17,7 +17,7 @@ namespace base {
 class Command;
 }
 
-namespace editor {
+namespace tools {
 
 struct SavedSystem;
 
@@ -216,4 +216,4 @@ base::Result<ComponentProperty> parse_property(const std::string& text);
 // Rates, folders and properties. The properties.
 base::Result<std::vector<ComponentProperty>> check_against(const RunOptions& options, const SavedSystem& system);
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -120,4 +120,4 @@ Result<std::string> PageBesideRun::finish(const Json& summary) {
   return answer_of(process_, call_.file);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/file_handle.h"
 #include "run/run_system.h"
 
-namespace editor {
+namespace tools {
 
 struct PageCall {
   std::string recording;  // MCAP
@@ -46,4 +46,4 @@ class PageBesideRun {
   base::FileHandle line_;
 };
 
-}  // namespace editor
+}  // namespace tools

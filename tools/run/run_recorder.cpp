@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 
 using recorder::RecorderMessage;
 
@@ -103,4 +103,4 @@ base::Result<void> RunRecorder::finish() {
   return base::Error{"recorder: " + how + (lines.empty() ? "" : ": " + lines.back())};
 }
 
-}  // namespace editor
+}  // namespace tools

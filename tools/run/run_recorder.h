@@ -13,7 +13,7 @@
 #include "recording/recorder_line.h"
 #include "run/run_files.h"
 
-namespace editor {
+namespace tools {
 
 struct RecorderCall {
   std::string server;                                      // of the naming service
@@ -57,4 +57,4 @@ class RunRecorder {
   bool has_begun_ = false, has_stopped_ = false;
 };
 
-}  // namespace editor
+}  // namespace tools

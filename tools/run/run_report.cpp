@@ -7,7 +7,7 @@
 #include "run/junit.h"
 #include "run/run_system.h"
 
-namespace editor {
+namespace tools {
 
 std::string RunResult::first_problem() const {
   if (!problem.empty()) return problem;
@@ -89,4 +89,4 @@ Result<void> write_junit(const std::string& file, const RunOptions& options, con
   return write_junit_suite(file, std::filesystem::path(options.system).stem().string(), cases);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -17,7 +17,7 @@
 #include "run/run_system.h"
 #include "run/simulator.h"
 
-namespace editor {
+namespace tools {
 
 // What a script may use of the run while it stands between two steps.
 struct RunScene {
@@ -53,4 +53,4 @@ class RunScript {
   virtual void end(RunScene* scene, const Seen& seen, RunResult& result) = 0;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "run/same_math.h"
 #include "run/warm_program.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using namespace std::chrono_literals;
@@ -96,4 +96,4 @@ std::vector<std::string> RunSimulator::notes() const {
 // Of the simulator with this server ID, whoever's it is.
 std::optional<pid_t> RunSimulator::owner(std::uint32_t id) const { return is_in_memory(id) ? ShmSimulator::process_of(id) : std::nullopt; }
 
-}  // namespace editor
+}  // namespace tools

@@ -14,7 +14,7 @@
 #include "run/run_system.h"
 #include "run/shm_simulator.h"
 
-namespace editor {
+namespace tools {
 
 class RunSimulator {
  public:
@@ -52,4 +52,4 @@ class RunSimulator {
   ShmSimulator control_;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -32,7 +32,7 @@
 #include "system/reporter.h"
 #include "system/saved_system.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -90,7 +90,7 @@ class Run final : public RunningSystem {
     return all;
   }
   Result<void> make_steps(std::int64_t steps) override {
-    return editor::make_steps(simulator_, steps, stepping([](double) {}));
+    return tools::make_steps(simulator_, steps, stepping([](double) {}));
   }
 
  private:
@@ -410,7 +410,7 @@ class Run final : public RunningSystem {
     for (std::int64_t done = 0; left > 0;) {
       const auto stop = hooks_.script ? hooks_.script->next_stop(done).value_or(done + left) : done + left;
       const auto steps = std::min(left, stop - done);
-      if (const auto stepped = editor::make_steps(simulator_, steps, stepping(passed)); !stepped) {
+      if (const auto stepped = tools::make_steps(simulator_, steps, stepping(passed)); !stepped) {
         const auto now = simulator_.now();
         result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
         return fail(who_is_stopped() + stepped.error().message + hosts_.who_is_waited_for(system_) +
@@ -491,4 +491,4 @@ RunResult run_system(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& re
   }
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -17,7 +17,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 class Reporter;
 class RunScript;
@@ -90,4 +90,4 @@ RunResult run_result_of(const nlohmann::ordered_json& json);
 // The verdicts as JUnit XML: a test case for each run and for each of its expectations; a run with a problem is an error.
 Result<void> write_junit(const std::string& file, const RunOptions& options, const std::vector<RunResult>& results);
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include "run/hash_report.h"
 #include "run/run_files.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr const char* verdict_name = "the run is repeatable";
@@ -45,4 +45,4 @@ RunResult run_twice(CORBA::ORB_ptr orb, const RunOptions& options, Reporter& rep
   return result;
 }
 
-}  // namespace editor
+}  // namespace tools

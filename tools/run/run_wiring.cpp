@@ -8,7 +8,7 @@
 #include "system/remote.h"
 #include "system/reporter.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using namespace std::chrono_literals;
@@ -130,4 +130,4 @@ Result<ComponentView> RunWiring::component(const std::string& instance, Detail d
   return view.problem.empty() ? Result<ComponentView>(std::move(view)) : Error{"component " + instance + " " + view.problem};
 }
 
-}  // namespace editor
+}  // namespace tools

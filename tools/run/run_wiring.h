@@ -16,7 +16,7 @@
 #include "system/saved_system.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 class Reporter;
 
@@ -63,4 +63,4 @@ class RunWiring {
   std::optional<NamingTree> names_;  // while the naming service is stopped by a script
 };
 
-}  // namespace editor
+}  // namespace tools

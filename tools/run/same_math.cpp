@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace editor {
+namespace tools {
 
 std::pair<std::string, std::string> same_math() {
   constexpr auto variable = "GLIBC_TUNABLES";
@@ -18,4 +18,4 @@ std::pair<std::string, std::string> same_math() {
   return {variable, value};
 }
 
-}  // namespace editor
+}  // namespace tools

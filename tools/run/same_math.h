@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-namespace editor {
+namespace tools {
 
 // For the environment of a process: the variable of glibc that says so, with whatever else it says already.
 std::pair<std::string, std::string> same_math();
 
-}  // namespace editor
+}  // namespace tools

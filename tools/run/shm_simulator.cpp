@@ -10,7 +10,7 @@
 #include "shm/control.h"
 #include "shm/lockstep.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -233,4 +233,4 @@ Result<void> ShmSimulator::read_events(PoseRecord& record) {
   }
 }
 
-}  // namespace editor
+}  // namespace tools

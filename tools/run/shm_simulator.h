@@ -10,7 +10,7 @@
 #include "shm/pose_log.h"
 #include "shm/request_board.h"
 
-namespace editor {
+namespace tools {
 
 class ShmSimulator final : public Simulator {
  public:
@@ -53,4 +53,4 @@ class ShmSimulator final : public Simulator {
   std::set<std::string> joints_of_log_;  // that the simulator has been asked for
 };
 
-}  // namespace editor
+}  // namespace tools

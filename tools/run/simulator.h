@@ -18,7 +18,7 @@
 #include "run/pose_record.h"
 #include "shm/requests.h"
 
-namespace editor {
+namespace tools {
 
 struct SimulatorState {
   pid_t pid = 0;
@@ -112,4 +112,4 @@ class Simulator {
 // Names of the participants that have not ended their tick.
 std::vector<std::string> late_participants(Simulator& simulator);
 
-}  // namespace editor
+}  // namespace tools

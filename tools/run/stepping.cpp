@@ -9,7 +9,7 @@
 #include "base/interrupt.h"
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -66,4 +66,4 @@ base::Result<void> make_steps(Simulator& simulator, std::int64_t steps, const St
   }
 }
 
-}  // namespace editor
+}  // namespace tools

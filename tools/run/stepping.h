@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "run/simulator.h"
 
-namespace editor {
+namespace tools {
 
 struct Stepping {
   bool is_paced = false;       // at the real-time factor, else as fast as possible
@@ -25,4 +25,4 @@ struct Stepping {
 // step ended within the timeout; the message names the participants that are late.
 base::Result<void> make_steps(Simulator& simulator, std::int64_t steps, const Stepping& stepping);
 
-}  // namespace editor
+}  // namespace tools

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 const std::filesystem::path all("/proc");
@@ -45,4 +45,4 @@ std::optional<pid_t> stopped_process(pid_t pid) {
   return std::nullopt;
 }
 
-}  // namespace editor
+}  // namespace tools

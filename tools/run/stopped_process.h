@@ -5,10 +5,10 @@
 
 #include <optional>
 
-namespace editor {
+namespace tools {
 
 bool is_stopped(pid_t pid);
 // The process itself, or one of the process group that it leads; nothing when none is stopped.
 std::optional<pid_t> stopped_process(pid_t pid);
 
-}  // namespace editor
+}  // namespace tools

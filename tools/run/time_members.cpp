@@ -12,7 +12,7 @@
 #include "system/configuration.h"
 #include "system/transitions.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 const std::string proxy_type = "SimTimeProxy";
@@ -222,4 +222,4 @@ Result<void> leave_time(const Session& session, const std::string& path) {
   return is_active ? activate_in(session, path, false) : Result<void>();
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "base/child_process.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 inline constexpr int highest_phase = 15, highest_turn = 9999;
 inline constexpr const char* turn_key = "exec_cxt.sim_time.turn";
@@ -68,4 +68,4 @@ Result<void> rest_in_time(const Session& session, const std::string& component, 
 // Undoes it: active here becomes active in its own first context. The proxy ends.
 Result<void> leave_time(const Session& session, const std::string& component);
 
-}  // namespace editor
+}  // namespace tools

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Kind = Expectation::Kind;
@@ -72,4 +72,4 @@ std::string failed_object(const Expectation& expectation) {
   return name.ends_with(".rtc") ? name.substr(0, name.size() - 4) : name;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,11 +6,11 @@
 
 #include "run/expectations.h"
 
-namespace editor {
+namespace tools {
 
 // [simulated s] Nothing: at the end of the run, or the time is not known.
 std::optional<double> failure_time(const Expectation& expectation, const Seen& seen);
 // The name of the model or of the component that it is about; empty for a command.
 std::string failed_object(const Expectation& expectation);
 
-}  // namespace editor
+}  // namespace tools

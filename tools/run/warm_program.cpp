@@ -19,7 +19,7 @@
 #include "base/packet.h"
 #include "run/same_math.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -110,4 +110,4 @@ Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& 
   return warm != nullptr ? warm->make(call) : ChildProcess::start(call);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -13,7 +13,7 @@
 #include "base/child_process.h"
 #include "system/reporter.h"
 
-namespace editor {
+namespace tools {
 
 class WarmProgram {
  public:
@@ -56,4 +56,4 @@ class WarmPrograms {
 // By the warm programs, if there are some.
 base::Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& call);
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::string names_of(const Shape& shape) {
@@ -173,4 +173,4 @@ Region to_region(const YAML::Node& node) {
   return {x1, y1, x2, y2};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -15,7 +15,7 @@ namespace YAML {
 class Node;
 }
 
-namespace editor {
+namespace tools {
 
 // What is wrong in a file, and where. Lines and columns from 1; 0: the file as a whole.
 struct YamlFailure {
@@ -76,4 +76,4 @@ struct Region {
 // The corners may be in any order; without a node: all 0.
 Region to_region(const YAML::Node& node);
 
-}  // namespace editor
+}  // namespace tools

@@ -77,17 +77,17 @@ void ChannelBook::connect(Port& port) {
   port.is_connecting = true;
   const auto work = [this, &loop = loop_, lives = lives_, settings = settings_, exchange = exchange_, now = now_, path = port.path,
                      channel = port.channel] {
-    std::shared_ptr<editor::Tap> tap;
-    const editor::CallLimit limited(settings.call_limit);
-    const auto found = editor::Session(settings.orb, settings.name_server, settings.call_limit).port(path);
+    std::shared_ptr<tools::Tap> tap;
+    const tools::CallLimit limited(settings.call_limit);
+    const auto found = tools::Session(settings.orb, settings.name_server, settings.call_limit).port(path);
     if (found) {
-      auto made = editor::Tap::connect(settings.orb, found->port, {{"dataport.subscription_type", "new"}},
-                                       [exchange, now, channel](std::span<const unsigned char> payload, bool is_little_endian) {
-                                         const auto time = now->snapshot();
-                                         exchange->put(channel, time.count() > 0 ? time : base::SystemClock().now(),
-                                                       channels::cdr_head(is_little_endian),
-                                                       {reinterpret_cast<const char*>(payload.data()), payload.size()});
-                                       });
+      auto made = tools::Tap::connect(settings.orb, found->port, {{"dataport.subscription_type", "new"}},
+                                      [exchange, now, channel](std::span<const unsigned char> payload, bool is_little_endian) {
+                                        const auto time = now->snapshot();
+                                        exchange->put(channel, time.count() > 0 ? time : base::SystemClock().now(),
+                                                      channels::cdr_head(is_little_endian),
+                                                      {reinterpret_cast<const char*>(payload.data()), payload.size()});
+                                      });
       if (made) tap = std::move(*made);
     }
     boost::asio::post(loop, [this, lives, path, tap = std::move(tap)]() mutable {
@@ -105,7 +105,7 @@ void ChannelBook::connect(Port& port) {
 void ChannelBook::drop_tap(Port& port) {
   if (!port.tap) return;
   (void)workers_.give([tap = std::move(port.tap), limit = settings_.call_limit]() mutable {
-    const editor::CallLimit limited(limit);
+    const tools::CallLimit limited(limit);
     tap.reset();
   });
   port.tap.reset();
@@ -121,7 +121,7 @@ void ChannelBook::take_system(const Json& system) {
       channel.topic = "/" + component.value("instance", "") + "/" + port.value("name", "");
       channel.encoding = "cdr";
       channel.schema.name = channels::scoped_name(type);
-      if (const auto code = editor::type_code_of(type); !CORBA::is_nil(code)) {
+      if (const auto code = tools::type_code_of(type); !CORBA::is_nil(code)) {
         channel.schema.encoding = "omgidl";
         channel.schema.text = channels::idl_text(code);
       }

@@ -44,7 +44,7 @@ class ChannelBook {
   struct Port {
     std::string path;
     channels::ChannelId channel = 0;
-    std::shared_ptr<editor::Tap> tap;
+    std::shared_ptr<tools::Tap> tap;
     bool is_wanted = false;
     bool is_connecting = false;
   };

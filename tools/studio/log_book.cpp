@@ -63,8 +63,8 @@ void LogBook::attach(const std::string& path) {
     });
   };
   component.is_attaching = workers_.give([this, &loop = loop_, lives = lives_, settings = settings_, path, take] {
-    const editor::CallLimit limited(settings.call_limit);
-    const auto found = editor::Session(settings.orb, settings.name_server, settings.call_limit).component(path, {});
+    const tools::CallLimit limited(settings.call_limit);
+    const auto found = tools::Session(settings.orb, settings.name_server, settings.call_limit).component(path, {});
     auto service =
         std::make_shared<Service>(found && !CORBA::is_nil(found->object) ? recorder::LoggerService::of_log(*found, take) : nullptr);
     boost::asio::post(loop, [this, lives, path, service] {
@@ -81,7 +81,7 @@ void LogBook::attach(const std::string& path) {
 void LogBook::detach(Component& component) {
   if (!component.service) return;
   (void)workers_.give([service = std::make_shared<Service>(std::move(component.service)), limit = settings_.call_limit] {
-    const editor::CallLimit limited(limit);
+    const tools::CallLimit limited(limit);
     service->reset();
   });
 }

@@ -33,7 +33,7 @@ void add_member(Json& list, const std::string& path, const char* type) {
 
 // Of a sequence its first element.
 void add_members(Json& list, CORBA::TypeCode_ptr code, const std::string& path, int depth) {
-  const auto type = editor::resolved(code);
+  const auto type = tools::resolved(code);
   switch (type->kind()) {
     case CORBA::tk_struct:
       for (CORBA::ULong i = 0; depth < deepest && i < type->member_count(); ++i) {
@@ -72,16 +72,16 @@ void add_members(Json& list, const Json& value, const std::string& path) {
 
 // With a value of that type in which everything is zero: what one changes to write to such a port.
 Result<Json> members_of_port(const ActContext& context, const std::string& path) {
-  const editor::Session session(context.orb, context.name_server, context.call_limit);
+  const tools::Session session(context.orb, context.name_server, context.call_limit);
   const auto port = session.port(path);
   if (!port) return port.error();
-  const auto type = editor::type_code_of(port->port.data_type());
+  const auto type = tools::type_code_of(port->port.data_type());
   if (CORBA::is_nil(type)) return Error{"port " + path + ": its type " + port->port.data_type() + " is not known"};
   Json list = Json::array();
   add_members(list, type, "", 0);
-  const auto octets = editor::encode(type, Json::object());
+  const auto octets = tools::encode(type, Json::object());
   if (!octets) return octets.error();
-  const auto zero = editor::decode(type, *octets);
+  const auto zero = tools::decode(type, *octets);
   if (!zero) return zero.error();
   return Json{{"members", std::move(list)}, {"zero", *zero}};
 }
@@ -111,15 +111,15 @@ Result<Plan> members(const ActContext& context, const Json& args) {
 
 // What contexts of this runtime have really done, by component; others tell their rate.
 Result<Json> context_statistics(const ActContext& context) {
-  const editor::Session session(context.orb, context.name_server, context.call_limit);
+  const tools::Session session(context.orb, context.name_server, context.call_limit);
   const auto tree = session.tree();
   if (!tree) return tree.error();
   Json list = Json::array();
-  for (const auto& component : editor::read_components(*tree, {.contexts = true}, context.call_limit)) {
+  for (const auto& component : tools::read_components(*tree, {.contexts = true}, context.call_limit)) {
     const auto* shown = component.problem.empty() ? component.shown_context() : nullptr;
     if (shown == nullptr) continue;
     const auto number = [&](const char* key) {
-      return base::parse_number(editor::property(shown->properties, std::string("statistics.") + key)).value_or(0);
+      return base::parse_number(tools::property(shown->properties, std::string("statistics.") + key)).value_or(0);
     };
     Json one{{"path", component.path}, {"rate", shown->rate}, {"running", shown->is_running}};
     if (shown->properties.contains("statistics.cycles")) {

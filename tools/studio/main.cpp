@@ -63,7 +63,7 @@ void add_options(base::Command& app, Settings& settings) {
       ->capture_default_str();
 }
 
-class ErrorStream final : public editor::Reporter {
+class ErrorStream final : public tools::Reporter {
  public:
   void warn(const std::string& text) override { std::cerr << base::for_terminal("rtm-studio: " + text + "\n"); }
 };
@@ -113,12 +113,12 @@ int show_recording(boost::asio::io_context& loop, const Settings& settings, cons
 int show_run(boost::asio::io_context& loop, Settings settings, const studio::PageFiles& page) {
   if (!settings.start.system.empty() && settings.start.world.empty())
     return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
-  const editor::Orb orb;
+  const tools::Orb orb;
   ErrorStream errors;
-  std::optional<editor::ChildProcess> host;
+  std::optional<tools::ChildProcess> host;
   if (settings.opens && settings.start.system.empty()) {
     if (settings.start.world.empty() && !shm::Requester::open(settings.studio.server_id)) settings.start.world = studio::usual_world();
-    if (!editor::NamingTree::read(orb.get(), settings.studio.name_server, settings.studio.call_limit)) {
+    if (!tools::NamingTree::read(orb.get(), settings.studio.name_server, settings.studio.call_limit)) {
       auto started = studio::start_host(settings.studio.name_server);
       if (!started) return fail(started.error());
       host.emplace(std::move(*started));
@@ -152,7 +152,7 @@ int studio_of(int argc, char** argv) {
       "token; without it nothing is shown or done."};
   base::add_standard_options(app, "rtm-studio", RTMSIM_VERSION);
   Settings settings;
-  settings.studio.name_server = editor::default_server();
+  settings.studio.name_server = tools::default_server();
   add_options(app, settings);
   if (const auto end = base::parse_command_line(app, "rtm-studio", argc, argv)) return *end;
   settings.studio.call_limit = std::chrono::milliseconds(static_cast<int>(settings.call_limit_s * 1000));
@@ -160,7 +160,7 @@ int studio_of(int argc, char** argv) {
   try {
     return run(settings);
   } catch (const CORBA::Exception& e) {
-    return fail({editor::describe(e)});
+    return fail({tools::describe(e)});
   }
 }
 

@@ -24,11 +24,11 @@ using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds program_limit{30};
 constexpr std::size_t most_places = 10000;
-using editor::highest_phase;
-using editor::highest_turn;
+using tools::highest_phase;
+using tools::highest_turn;
 
 std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
-  std::vector<std::string> all{editor::own_program("rtse"), "--ns", context.name_server};
+  std::vector<std::string> all{tools::own_program("rtse"), "--ns", context.name_server};
   if (json) all.emplace_back("--json");
   all.insert(all.end(), words.begin(), words.end());
   return all;
@@ -43,7 +43,7 @@ std::string rtse_line(const ActContext& context, const std::vector<std::string>&
 
 // What it wrote, or the last line that it wrote, without its own name before it.
 Result<std::string> rtse(const ActContext& context, const std::vector<std::string>& words, bool json = false) {
-  auto said = editor::output_of({rtse_words(context, words, json), {}, ""}, program_limit);
+  auto said = tools::output_of({rtse_words(context, words, json), {}, ""}, program_limit);
   if (said) return said;
   auto message = said.error().message;
   if (const auto own = message.find("rtse: "); own != std::string::npos) message.erase(0, own + 6);
@@ -248,7 +248,7 @@ std::string below_name_server(std::string_view path) {
   return std::string(path.substr(std::min(path.find('/'), path.size() - 1) + 1));
 }
 
-using Places = std::map<std::string, editor::SavedPlace>;  // by the path below the naming service
+using Places = std::map<std::string, tools::SavedPlace>;  // by the path below the naming service
 
 // {"/localhost:2809/PC.host_cxt/Laser0.rtc":[x,y,width,height], ...}
 Result<Places> places_of(const Json& args) {
@@ -269,12 +269,12 @@ Result<Places> places_of(const Json& args) {
 // As rtse says it, with the boxes where the page has them.
 Result<std::string> save_with(const std::string& xml, const Places& places) {
   if (places.empty()) return xml;
-  auto system = editor::parse_xml(xml, "the saved system");
+  auto system = tools::parse_xml(xml, "the saved system");
   if (!system) return system.error();
   for (auto& component : system->components) {
     if (const auto place = places.find(below_name_server(component.path_uri)); place != places.end()) component.place = place->second;
   }
-  return editor::to_xml(*system);
+  return tools::to_xml(*system);
 }
 
 Result<Plan> save_profile(const ActContext& context, const Json& args) {
@@ -301,7 +301,7 @@ Result<Plan> save_profile(const ActContext& context, const Json& args) {
 // {"PC.host_cxt/Laser0.rtc":[x,y], ...} of those that somebody has placed.
 Json positions_in(const std::string& file) {
   Json positions = Json::object();
-  const auto system = editor::read_system(file);
+  const auto system = tools::read_system(file);
   if (!system) return positions;
   for (const auto& component : system->components) {
     if (component.place.is_placed()) positions[below_name_server(component.path_uri)] = {component.place.x, component.place.y};
@@ -340,7 +340,7 @@ Result<Plan> check_profile(const ActContext& context, const Json& args) {
   return Plan{rtse_line(context, {"check", "system.xml"}), [context, xml = *xml]() -> Result<Json> {
                 const auto file = ScratchFile::with(xml);
                 if (!file) return file.error();
-                auto check = editor::ChildProcess::start({rtse_words(context, {"check", file->name()}, false), {}, ""});
+                auto check = tools::ChildProcess::start({rtse_words(context, {"check", file->name()}, false), {}, ""});
                 if (!check) return check.error();
                 if (!check->wait(program_limit)) return Error{"rtse check: has not ended after 30 s"};
                 Json lines = Json::array();

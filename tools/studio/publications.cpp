@@ -26,18 +26,18 @@ constexpr std::size_t most_of_viewer = 256;  // channels
 Result<std::vector<unsigned char>> encoded(CORBA::TypeCode_ptr type, const std::string& encoding, const std::string& payload) {
   if (encoding == "json") {
     if (!is_flat_enough(payload)) return Error{"its brackets are more than 24 deep"};
-    const auto value = editor::parse_value(type, payload, base::SystemClock().now().count());
+    const auto value = tools::parse_value(type, payload, base::SystemClock().now().count());
     if (!value) return value.error();
-    return editor::encode(type, *value);
+    return tools::encode(type, *value);
   }
   // Four bytes in front say how it is encoded: 0, then 0 big endian or 1 little endian.
   constexpr std::size_t head = 4;
   if (payload.size() < head || payload[0] != 0 || static_cast<unsigned char>(payload[1]) > 1)
     return Error{"expected CDR with its four bytes of encapsulation"};
   const std::span octets(reinterpret_cast<const unsigned char*>(payload.data()) + head, payload.size() - head);
-  const auto value = editor::decode(type, octets, payload[1] == 1, payload.size());
+  const auto value = tools::decode(type, octets, payload[1] == 1, payload.size());
   if (!value) return value.error();
-  return editor::encode(type, *value);
+  return tools::encode(type, *value);
 }
 
 }  // namespace
@@ -96,17 +96,17 @@ Result<void> Publications::publish(std::uint64_t viewer, std::uint32_t channel, 
 }
 
 // On a worker.
-Publications::Sent Publications::send_all(const SignalSettings& settings, const Target& target, std::shared_ptr<editor::Tap> tap,
+Publications::Sent Publications::send_all(const SignalSettings& settings, const Target& target, std::shared_ptr<tools::Tap> tap,
                                           const std::deque<std::string>& samples) {
   const auto failed = [&](const std::string& why) { return Sent{nullptr, "port " + target.path + ": " + why}; };
-  const auto type = editor::type_code_of(target.type);
+  const auto type = tools::type_code_of(target.type);
   if (CORBA::is_nil(type)) return failed("carries " + target.type + ", which rtm-studio does not know");
-  const editor::CallLimit limited(settings.call_limit);
+  const tools::CallLimit limited(settings.call_limit);
   if (!tap) {
-    editor::Session session(settings.orb, settings.name_server, settings.call_limit);
+    tools::Session session(settings.orb, settings.name_server, settings.call_limit);
     const auto port = session.port(target.path);
     if (!port) return failed(port.error().message);
-    auto connected = editor::Tap::connect(settings.orb, port->port, {}, {});
+    auto connected = tools::Tap::connect(settings.orb, port->port, {}, {});
     if (!connected) return failed(connected.error().message);
     tap = std::move(*connected);
   }
@@ -132,7 +132,7 @@ void Publications::send(const Key& key, Line& line) {
     } catch (const std::exception& e) {
       sent.problem = "port " + target.path + ": " + e.what();
     } catch (const CORBA::Exception& e) {
-      sent.problem = "port " + target.path + ": " + editor::describe(e);
+      sent.problem = "port " + target.path + ": " + tools::describe(e);
     }
     boost::asio::post(loop, [this, key, lives, sent = std::move(sent)]() mutable {
       if (*lives) have_sent(key, std::move(sent));
@@ -156,10 +156,10 @@ void Publications::have_sent(const Key& key, Sent sent) {
 }
 
 // Ended by a worker: the component may hang.
-void Publications::drop(std::shared_ptr<editor::Tap> tap) {
+void Publications::drop(std::shared_ptr<tools::Tap> tap) {
   if (!tap) return;
   (void)workers_.give([tap = std::move(tap), limit = settings_.call_limit]() mutable {
-    const editor::CallLimit limited(limit);
+    const tools::CallLimit limited(limit);
     tap.reset();
   });
 }

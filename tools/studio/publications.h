@@ -35,20 +35,20 @@ class Publications {
   struct Line {
     Target target;
     std::deque<std::string> waiting;
-    std::shared_ptr<editor::Tap> tap;
+    std::shared_ptr<tools::Tap> tap;
     bool is_sending = false;
     std::string problem;
   };
   struct Sent {
-    std::shared_ptr<editor::Tap> tap;  // nullptr: connect again for the next sample
+    std::shared_ptr<tools::Tap> tap;  // nullptr: connect again for the next sample
     std::string problem;
   };
   using Key = std::pair<std::uint64_t, std::uint32_t>;
-  static Sent send_all(const SignalSettings& settings, const Target& target, std::shared_ptr<editor::Tap> tap,
+  static Sent send_all(const SignalSettings& settings, const Target& target, std::shared_ptr<tools::Tap> tap,
                        const std::deque<std::string>& samples);
   void send(const Key& key, Line& line);
   void have_sent(const Key& key, Sent sent);
-  void drop(std::shared_ptr<editor::Tap> tap);
+  void drop(std::shared_ptr<tools::Tap> tap);
 
   boost::asio::io_context& loop_;
   const SignalSettings settings_;

@@ -18,7 +18,7 @@ const Json& component_at(const RecordingFacts& facts, const std::string& path) {
   return found == facts.components.end() ? nothing : *found;
 }
 
-std::string value_in(const editor::SavedComponent& component, const char* set_id, const std::string& name) {
+std::string value_in(const tools::SavedComponent& component, const char* set_id, const std::string& name) {
   for (const auto& set : component.configuration_sets) {
     if (set.id != set_id) continue;
     for (const auto& [key, value] : set.values) {

@@ -92,7 +92,7 @@ Result<std::shared_ptr<const RecordedScene>> RecordedScene::make(const std::stri
   const auto recorded = run->options();
   if (!recorded) return recorded.error();
   options.resource_paths = recorded->resource_paths;
-  editor::SilentReporter reporter;  // the error says enough
+  tools::SilentReporter reporter;  // the error says enough
   Result<std::unique_ptr<StartedRun>> started = Error{"no server id is free"};
   for (std::uint32_t i = 0; i < tries && !started; ++i) {
     const auto id = free_server_id(i);

@@ -29,7 +29,7 @@ std::string text_in(const mcap::Texts& texts, const std::string& key) {
 
 std::string after_dot(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
-std::string type_of(const editor::SavedComponent& component) {  // RTC:vendor:category:type:version
+std::string type_of(const tools::SavedComponent& component) {  // RTC:vendor:category:type:version
   const auto parts = base::split_list(component.id, ':');
   return parts.size() > 3 ? parts[3] : component.instance;
 }
@@ -37,7 +37,7 @@ std::string type_of(const editor::SavedComponent& component) {  // RTC:vendor:ca
 // Gathers the components of the profile, and those that only channels tell of.
 class Components {
  public:
-  explicit Components(const editor::SavedSystem& system) : system_(system) {
+  explicit Components(const tools::SavedSystem& system) : system_(system) {
     for (const auto& saved : system.components) {
       const auto parts = base::split_list(saved.id, ':');
       const auto part = [&](std::size_t i) { return i < parts.size() ? parts[i] : std::string(); };
@@ -96,7 +96,7 @@ class Components {
   }
 
  private:
-  static Json context(const editor::SavedContext& saved, std::size_t index) {
+  static Json context(const tools::SavedContext& saved, std::size_t index) {
     return {{"index", index},  {"owned", true},        {"kind", saved.kind}, {"rate", base::parse_number(saved.rate).value_or(0)},
             {"running", true}, {"state", saved.state}, {"type", ""}};
   }
@@ -129,7 +129,7 @@ class Components {
     found->second["ports"].push_back({{"name", name}, {"kind", kind}, {"data_type", type}, {"interfaces", Json::array()}});
   }
 
-  const editor::SavedSystem& system_;
+  const tools::SavedSystem& system_;
   std::vector<std::string> names_;  // in their order
   std::map<std::string, Json> by_name_;
 };
@@ -173,13 +173,12 @@ class Facts {
     return {};
   }
 
-  Result<editor::SavedSystem> read_profile() {
+  Result<tools::SavedSystem> read_profile() {
     const auto there = reader_.attachments();
-    if (std::none_of(there.begin(), there.end(), [](const auto& entry) { return entry.name == "system.xml"; }))
-      return editor::SavedSystem();
+    if (std::none_of(there.begin(), there.end(), [](const auto& entry) { return entry.name == "system.xml"; })) return tools::SavedSystem();
     const auto attachment = reader_.attachment("system.xml");
     if (!attachment) return attachment.error();
-    return editor::parse_xml(attachment->data, facts_.file + ": system.xml");
+    return tools::parse_xml(attachment->data, facts_.file + ": system.xml");
   }
 
   void take_channel(std::uint16_t id, const mcap::Channel& channel, Components& components) {

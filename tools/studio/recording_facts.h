@@ -17,16 +17,16 @@ struct RecordingFacts {
   std::string file;  // as it was named
   // Of log times; `zero` is taken off all times that a viewer is told: of a recording by the wall clock its begin, else nothing.
   std::chrono::nanoseconds from{0}, to{0}, zero{0};
-  std::string world;                                      // its name; empty: there was none
-  std::string damage;                                     // what of the file could not be read; empty: nothing
-  Json components = Json::array();                        // as in the event "system"
-  Json connections = Json::array();                       //
-  Json signals = Json::array();                           // as in the event "signals"
-  Json ifaces = Json::array();                            // as in the event "world"
-  Json states = Json::object();                           // by path of the component: [[time [s], state], ...]
-  Json lines = Json::array();                             // of logs: [time [s], level, component, text]
-  std::uint64_t lines_left_out = 0;                       // behind those
-  std::map<std::string, editor::SavedComponent> saved{};  // by path: what the profile says of them
+  std::string world;                                     // its name; empty: there was none
+  std::string damage;                                    // what of the file could not be read; empty: nothing
+  Json components = Json::array();                       // as in the event "system"
+  Json connections = Json::array();                      //
+  Json signals = Json::array();                          // as in the event "signals"
+  Json ifaces = Json::array();                           // as in the event "world"
+  Json states = Json::object();                          // by path of the component: [[time [s], state], ...]
+  Json lines = Json::array();                            // of logs: [time [s], level, component, text]
+  std::uint64_t lines_left_out = 0;                      // behind those
+  std::map<std::string, tools::SavedComponent> saved{};  // by path: what the profile says of them
 
   static base::Result<RecordingFacts> read(const std::string& file);
   double seconds(std::chrono::nanoseconds time) const { return std::chrono::duration<double>(time - zero).count(); }

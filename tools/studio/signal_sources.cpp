@@ -83,16 +83,16 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
  public:
   // On a worker.
   void connect(const SignalSettings& settings, const std::string& path) {
-    editor::Session session(settings.orb, settings.name_server, settings.call_limit);
+    tools::Session session(settings.orb, settings.name_server, settings.call_limit);
     auto port = session.port(path);
     if (!port) return fail(port.error().message);
-    const auto type = editor::type_code_of(port->port.data_type());
+    const auto type = tools::type_code_of(port->port.data_type());
     if (CORBA::is_nil(type)) return fail("port " + path + ": its type " + port->port.data_type() + " is not known");
-    const editor::CallLimit limited(settings.call_limit);
-    auto tap = editor::Tap::connect(settings.orb, port->port, {{"dataport.subscription_type", "new"}},
-                                    [self = shared_from_this()](std::span<const unsigned char> payload, bool is_little_endian) {
-                                      self->put(payload, is_little_endian);
-                                    });
+    const tools::CallLimit limited(settings.call_limit);
+    auto tap = tools::Tap::connect(settings.orb, port->port, {{"dataport.subscription_type", "new"}},
+                                   [self = shared_from_this()](std::span<const unsigned char> payload, bool is_little_endian) {
+                                     self->put(payload, is_little_endian);
+                                   });
     if (!tap) return fail(tap.error().message);
     auto data = data_.lock();
     data->tap = std::move(*tap);
@@ -108,7 +108,7 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
     Clock::time_point arrived = Clock::now();
   };
   struct Data {
-    std::unique_ptr<editor::Tap> tap;
+    std::unique_ptr<tools::Tap> tap;
     RTC::PortService_var peer;
     CORBA::TypeCode_var type;
     std::deque<Octets> waiting;
@@ -161,7 +161,7 @@ class PortSource final : public SignalSource {
     auto tap = tap_;
     tap_.reset();
     (void)workers_.give([tap = std::move(tap), limit = settings_.call_limit] {
-      const editor::CallLimit limited(limit);
+      const tools::CallLimit limited(limit);
       auto ended = std::move(tap->data().lock()->tap);
       ended.reset();
     });
@@ -179,7 +179,7 @@ class PortSource final : public SignalSource {
     if (octets.empty()) look_after();
     std::vector<SignalSample> samples;
     for (const auto& one : octets) {
-      auto value = editor::decode(type, one.payload, one.is_little_endian);
+      auto value = tools::decode(type, one.payload, one.is_little_endian);
       if (!value) continue;
       const auto stamp = time_of(*value);
       samples.push_back({stamp.value_or(now()), std::move(*value), stamp ? latency_of(*stamp, one.arrived) : std::nullopt});
@@ -210,8 +210,8 @@ class PortSource final : public SignalSource {
     }
     if (!CORBA::is_nil(peer)) {
       bool is_gone = false;
-      const editor::CallLimit limited(settings.call_limit);
-      const auto asked = editor::remote("port " + path, [&] { is_gone = peer->_non_existent(); });
+      const tools::CallLimit limited(settings.call_limit);
+      const auto asked = tools::remote("port " + path, [&] { is_gone = peer->_non_existent(); });
       if (asked && !is_gone) {
         tap.data().lock()->is_connecting = false;
         return;

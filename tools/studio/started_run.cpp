@@ -22,7 +22,7 @@ using base::Result;
 using namespace std::chrono_literals;
 
 // Stands before the first step of a run for as long as the studio wants it.
-class Standing final : public editor::RunScript {
+class Standing final : public tools::RunScript {
  public:
   struct State {
     std::string naming;
@@ -32,8 +32,8 @@ class Standing final : public editor::RunScript {
     std::optional<Error> problem;  // it has ended, and why
   };
 
-  const std::vector<editor::Expectation>& watched() const override { return nothing_; }
-  Result<void> begin(editor::RunScene& scene) override {
+  const std::vector<tools::Expectation>& watched() const override { return nothing_; }
+  Result<void> begin(tools::RunScene& scene) override {
     auto state = state_.lock();
     state->naming = scene.naming;
     state->server_id = static_cast<std::uint32_t>(base::parse_integer(scene.simulator.id()).value_or(0));
@@ -43,9 +43,9 @@ class Standing final : public editor::RunScript {
     return Error{"the studio has ended"};
   }
   std::optional<std::int64_t> next_stop(std::int64_t) const override { return std::nullopt; }
-  Result<void> act(editor::RunScene&, std::int64_t) override { return {}; }
+  Result<void> act(tools::RunScene&, std::int64_t) override { return {}; }
   bool excuses(const std::string&) const override { return true; }
-  void end(editor::RunScene*, const editor::Seen&, editor::RunResult&) override {}
+  void end(tools::RunScene*, const tools::Seen&, tools::RunResult&) override {}
 
   void has_ended(const std::string& problem) {
     state_.lock()->problem = Error{problem};
@@ -64,14 +64,14 @@ class Standing final : public editor::RunScript {
   State state() const { return state_.snapshot(); }
 
  private:
-  const std::vector<editor::Expectation> nothing_;
+  const std::vector<tools::Expectation> nothing_;
   base::Guarded<State, base::Rank::manager> state_;
   std::condition_variable changed_;
 };
 
 class SystemRun final : public StartedRun {
  public:
-  SystemRun(CORBA::ORB_ptr orb, const StartOptions& start, editor::Reporter& reporter)
+  SystemRun(CORBA::ORB_ptr orb, const StartOptions& start, tools::Reporter& reporter)
       : thread_([this, orb, start, &reporter] { run(orb, start, reporter); }) {}
   ~SystemRun() override {
     standing_.let_go();
@@ -82,17 +82,17 @@ class SystemRun final : public StartedRun {
   std::uint32_t server_id() const override { return standing_.state().server_id; }
 
  private:
-  void run(CORBA::ORB_ptr orb, const StartOptions& start, editor::Reporter& reporter) {
+  void run(CORBA::ORB_ptr orb, const StartOptions& start, tools::Reporter& reporter) {
     const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-    editor::RunOptions options;
+    tools::RunOptions options;
     options.system = start.system;
     options.world = start.world;
     options.in_real_time = true;
     std::string problem;
     try {
-      problem = editor::run_system(orb, options, reporter, {.script = &standing_}).problem;
+      problem = tools::run_system(orb, options, reporter, {.script = &standing_}).problem;
     } catch (const CORBA::Exception& e) {
-      problem = editor::describe(e);
+      problem = tools::describe(e);
     } catch (const std::exception& e) {
       problem = e.what();
     }
@@ -105,7 +105,7 @@ class SystemRun final : public StartedRun {
 
 class WorldRun final : public StartedRun {
  public:
-  WorldRun(editor::ChildProcess process, std::uint32_t server_id) : process_(std::move(process)), server_id_(server_id) {}
+  WorldRun(tools::ChildProcess process, std::uint32_t server_id) : process_(std::move(process)), server_id_(server_id) {}
   std::string name_server() const override { return {}; }
   std::uint32_t server_id() const override { return server_id_; }
 
@@ -126,22 +126,22 @@ class WorldRun final : public StartedRun {
   }
 
  private:
-  editor::ChildProcess process_;
+  tools::ChildProcess process_;
   const std::uint32_t server_id_;
 };
 
 }  // namespace
 
-Result<editor::ChildProcess> start_host(const std::string& name_server) {
+Result<tools::ChildProcess> start_host(const std::string& name_server) {
   // Its modules are looked for where it runs; the manager's own log is for its folder.
-  return editor::ChildProcess::start({{editor::own_program("rtcd"), "--with-naming", "-o", "corba.nameservers:" + name_server, "-o",
-                                       "manager.modules.load_path:" + own_modules(), "-o", "naming.update.interval:1"},
-                                      {},
-                                      "/dev/null"});
+  return tools::ChildProcess::start({{tools::own_program("rtcd"), "--with-naming", "-o", "corba.nameservers:" + name_server, "-o",
+                                      "manager.modules.load_path:" + own_modules(), "-o", "naming.update.interval:1"},
+                                     {},
+                                     "/dev/null"});
 }
 
 Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
-                                                      editor::Reporter& reporter) {
+                                                      tools::Reporter& reporter) {
   if (!options.system.empty()) {
     auto run = std::make_unique<SystemRun>(orb, options, reporter);
     if (const auto there = run->wait(); !there) return there.error();
@@ -149,10 +149,9 @@ Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const 
   }
   if (shm::Requester::open(server_id))
     return Error{"simulator " + std::to_string(server_id) + ": runs already; leave --world out to attach to it, or choose another -s"};
-  editor::ProgramCall call{
-      {editor::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""};
+  tools::ProgramCall call{{tools::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""};
   for (const auto& path : options.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
-  auto process = editor::ChildProcess::start(call);
+  auto process = tools::ChildProcess::start(call);
   if (!process) return process.error();
   auto run = std::make_unique<WorldRun>(std::move(*process), server_id);
   if (const auto there = run->wait(); !there) return there.error();

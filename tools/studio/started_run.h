@@ -22,14 +22,14 @@ struct StartOptions {
 };
 
 // An empty component host with a name server at `name_server`. Ends both with this object.
-base::Result<editor::ChildProcess> start_host(const std::string& name_server);
+base::Result<tools::ChildProcess> start_host(const std::string& name_server);
 
 class StartedRun {
  public:
   // Returns when everything is there, or says why it will not be. Without a system, the simulator gets this id. `reporter` must live as
   // long as the run.
   static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
-                                                         editor::Reporter& reporter);
+                                                         tools::Reporter& reporter);
   virtual ~StartedRun() = default;
   virtual std::string name_server() const = 0;  // empty: none of ours
   virtual std::uint32_t server_id() const = 0;

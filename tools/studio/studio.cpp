@@ -217,7 +217,7 @@ Result<void> Studio::carry_out(Guest& guest, const std::string& subject, Plan pl
     try {
       result = plan.run();
     } catch (const CORBA::Exception& e) {
-      result = Error{std::string("a component: ") + editor::describe(e)};
+      result = Error{std::string("a component: ") + tools::describe(e)};
     } catch (const std::exception& e) {
       result = Error{e.what()};
     }

@@ -157,7 +157,7 @@ void Studio::look_at_parameters() {
         try {
           now = read_parameters(context, system, names);
         } catch (const CORBA::Exception& e) {
-          base::log(base::Level::warn, "studio", "parameters: {}", editor::describe(e));
+          base::log(base::Level::warn, "studio", "parameters: {}", tools::describe(e));
         } catch (const std::exception& e) {
           base::log(base::Level::warn, "studio", "parameters: {}", e.what());
         }

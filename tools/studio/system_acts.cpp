@@ -17,9 +17,9 @@ namespace {
 
 using base::Error;
 using base::Result;
-using editor::ComponentView;
-using editor::Session;
-using editor::Transition;
+using tools::ComponentView;
+using tools::Session;
+using tools::Transition;
 using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds exit_limit{10};
@@ -62,7 +62,7 @@ Result<Plan> change(const ActContext& context, const Json& args) {
               [context, path = *path, index]() -> Result<Json> {
                 const auto view = session_of(context).component(path, {.contexts = true});
                 if (!view) return view.error();
-                return done(editor::change_state(*view, transition, index));
+                return done(tools::change_state(*view, transition, index));
               },
               Touches::system};
 }
@@ -71,10 +71,10 @@ Result<Json> exit_component(const ActContext& context, const std::string& path) 
   const auto view = session_of(context).component(path, {});
   if (!view) return view.error();
   RTC::ReturnCode_t code = RTC::RTC_OK;
-  const editor::CallLimit limited(exit_limit);
-  const auto called = editor::remote("exit of " + view->path + ":", [&] { code = view->object->exit(); });
+  const tools::CallLimit limited(exit_limit);
+  const auto called = tools::remote("exit of " + view->path + ":", [&] { code = view->object->exit(); });
   if (!called) return called.error();
-  return done(editor::check("exit of " + view->path, code));
+  return done(tools::check("exit of " + view->path, code));
 }
 
 Result<Plan> exit(const ActContext& context, const Json& args) {
@@ -88,7 +88,7 @@ Result<Plan> exit(const ActContext& context, const Json& args) {
 
 struct Ends {
   std::vector<Session::Port> found;
-  std::vector<const editor::PortView*> ports;
+  std::vector<const tools::PortView*> ports;
 };
 
 Result<Ends> find_ends(const ActContext& context, const std::vector<std::string>& paths) {
@@ -115,7 +115,7 @@ Result<Plan> connect(const ActContext& context, const Json& args) {
   };
   if (!name.empty()) add_option("-n", name);
   if (!id.empty()) add_option("-i", id);
-  editor::Properties properties;
+  tools::Properties properties;
   for (const auto& [key, value] : *values) {
     properties[key] = value;
     add_option("-p", key + "=" + value);
@@ -125,7 +125,7 @@ Result<Plan> connect(const ActContext& context, const Json& args) {
               [context, paths = *paths, name, id, properties]() -> Result<Json> {
                 const auto ends = find_ends(context, paths);
                 if (!ends) return ends.error();
-                const auto connected = editor::connect_ports(ends->ports, id, name, properties);
+                const auto connected = tools::connect_ports(ends->ports, id, name, properties);
                 if (!connected) return connected.error();
                 return Json{{"id", id}};
               },
@@ -133,7 +133,7 @@ Result<Plan> connect(const ActContext& context, const Json& args) {
 }
 
 // What `connect` needs to make it again.
-Json undo_of(const ActContext& context, const editor::ConnectorView& connector) {
+Json undo_of(const ActContext& context, const tools::ConnectorView& connector) {
   Json properties = Json::object();
   for (const auto& [key, value] : connector.properties) {
     const bool is_of_this_run = value.starts_with("IOR:") || value.starts_with("corbaloc:") ||
@@ -144,9 +144,9 @@ Json undo_of(const ActContext& context, const editor::ConnectorView& connector) 
   Json ports = Json::array();
   const auto tree = session_of(context).tree();
   if (tree) {
-    const auto components = editor::read_components(*tree, {}, context.call_limit);
+    const auto components = tools::read_components(*tree, {}, context.call_limit);
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
-      const auto owner = editor::owner_of(connector.ports[i], components);
+      const auto owner = tools::owner_of(connector.ports[i], components);
       if (owner.port) ports.push_back(owner.component->path + ":" + owner.port->name);
     }
   }
@@ -160,7 +160,7 @@ Result<Json> disconnect_port(const ActContext& context, const std::string& path,
   const auto found = std::find_if(connectors.begin(), connectors.end(), [&](const auto& connector) { return connector.id == id; });
   if (found == connectors.end()) return Error{"port " + path + ": has no connection " + base::in_quotes(id)};
   Json undo = undo_of(context, *found);
-  const auto gone = editor::disconnect_connector(port->port, id);
+  const auto gone = tools::disconnect_connector(port->port, id);
   if (!gone) return gone.error();
   return undo;
 }
@@ -174,11 +174,11 @@ Result<Plan> disconnect(const ActContext& context, const Json& args) {
 }
 
 // What both ports offer of a property; "any" offers everything that the other has.
-std::vector<std::string> common(const std::vector<const editor::PortView*>& ports, const std::string& key) {
+std::vector<std::string> common(const std::vector<const tools::PortView*>& ports, const std::string& key) {
   std::vector<std::string> result;
   bool is_first = true;
   for (const auto* port : ports) {
-    auto offered = base::split_list(editor::property(port->properties, key));
+    auto offered = base::split_list(tools::property(port->properties, key));
     const bool is_any = offered.empty() || std::any_of(offered.begin(), offered.end(),
                                                        [](const std::string& one) { return base::equal_ignoring_case(one, "any"); });
     if (is_any) continue;
@@ -223,7 +223,7 @@ void add_buffer(Json& list, const std::string& end) {
   }
 }
 
-Json data_options(const std::vector<const editor::PortView*>& ports) {
+Json data_options(const std::vector<const tools::PortView*>& ports) {
   Json list = Json::array();
   for (const Option& option :
        {Option{"dataport.interface_type", common(ports, "dataport.interface_type"), "corba_cdr", "how samples travel"},
@@ -251,7 +251,7 @@ Json service_options() {
       {"port.connection.strictness", {"best_effort", "strict"}, "best_effort", "whether interfaces without a partner are an error"})});
 }
 
-std::string misfit(const std::vector<const editor::PortView*>& ports) {
+std::string misfit(const std::vector<const tools::PortView*>& ports) {
   const auto& a = *ports.front();
   for (const auto* port : ports) {
     if (port->is_data_port() != a.is_data_port()) return "a data port and a service port cannot be connected";
@@ -259,7 +259,7 @@ std::string misfit(const std::vector<const editor::PortView*>& ports) {
   if (!a.is_data_port()) return "";
   const auto& b = *ports.back();
   if (a.port_type() == b.port_type()) return "both are " + a.port_type() + ", expected an OutPort and an InPort";
-  if (editor::carry_different_types(a, b)) return "they carry different types, " + a.data_type() + " and " + b.data_type();
+  if (tools::carry_different_types(a, b)) return "they carry different types, " + a.data_type() + " and " + b.data_type();
   return "";
 }
 
@@ -282,7 +282,7 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 // `is_forced`: also what the component's own types and constraints forbid.
 Result<void> merge(const ComponentView& component, const std::string& set_id, const Values& values, bool is_forced, Values& all) {
   for (const auto& [name, value] : values) {
-    const auto problem = is_forced ? std::string() : editor::value_problem(component, name, value);
+    const auto problem = is_forced ? std::string() : tools::value_problem(component, name, value);
     if (!problem.empty())
       return Error{"component " + component.path + ": parameter " + name + " cannot be " + base::in_quotes(value) + ", expected " +
                    problem};
@@ -307,11 +307,11 @@ Result<Json> configure(const ActContext& context, const Wish& wish) {
   if (!set || set->is_hidden()) return Error{"component " + view->path + ": has no configuration set " + base::in_quotes(set_id)};
   auto all = set->values;
   if (const auto merged = merge(*view, set_id, values, is_forced, all); !merged) return merged.error();
-  const editor::CallLimit limited(context.call_limit);
-  if (const auto kept = editor::set_values(*view, set_id, all); !kept) return kept.error();
+  const tools::CallLimit limited(context.call_limit);
+  if (const auto kept = tools::set_values(*view, set_id, all); !kept) return kept.error();
   // Values reach the component when its active set is activated once more.
   const auto active = is_used || view->active_set.empty() ? set_id : view->active_set;
-  return done(editor::use_set(*view, active));
+  return done(tools::use_set(*view, active));
 }
 
 Result<Plan> set_configuration(const ActContext& context, const Json& args) {
@@ -340,8 +340,8 @@ Result<Plan> use_set(const ActContext& context, const Json& args) {
               [context, path = *path, set = *set]() -> Result<Json> {
                 const auto view = session_of(context).component(path, {.configuration = true});
                 if (!view) return view.error();
-                const editor::CallLimit limited(context.call_limit);
-                return done(editor::use_set(*view, set));
+                const tools::CallLimit limited(context.call_limit);
+                return done(tools::use_set(*view, set));
               },
               Touches::system};
 }
@@ -357,11 +357,11 @@ Result<Json> call_context(const ActContext& context, const std::string& path, st
   if (index >= view->contexts.size())
     return Error{"component " + view->path + ": has no execution context number " + std::to_string(index)};
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
-  const editor::CallLimit limited(context.call_limit);
+  const tools::CallLimit limited(context.call_limit);
   const auto line = what + " of " + view->path;
-  const auto called = editor::remote(line + ":", [&] { code = call(view->contexts[index].object); });
+  const auto called = tools::remote(line + ":", [&] { code = call(view->contexts[index].object); });
   if (!called) return called.error();
-  return done(editor::check(line, code));
+  return done(tools::check(line, code));
 }
 
 // `words`: of rtse ec, after the path.

@@ -10,10 +10,10 @@
 namespace studio {
 namespace {
 
-using editor::ComponentView;
-using editor::ConfigurationSetView;
-using editor::ContextView;
-using editor::PortView;
+using tools::ComponentView;
+using tools::ConfigurationSetView;
+using tools::ContextView;
+using tools::PortView;
 
 std::string port_path(const ComponentView& component, const PortView& port) { return component.path + ":" + port.name; }
 
@@ -22,7 +22,7 @@ const char* kind_of(const PortView& port) {
   return port.port_type() == "DataOutPort" ? "out" : "service";
 }
 
-Json properties_json(const editor::Properties& properties) {
+Json properties_json(const tools::Properties& properties) {
   Json json = Json::object();
   for (const auto& [key, value] : properties) json[key] = value;
   return json;
@@ -38,11 +38,11 @@ Json port_json(const PortView& port) {
 Json context_json(const ContextView& context, std::size_t index) {
   return {{"index", index},
           {"owned", context.is_owned},
-          {"kind", editor::kind_text(context.kind)},
+          {"kind", tools::kind_text(context.kind)},
           {"rate", context.rate},
           {"running", context.is_running},
-          {"state", editor::state_text(context.state)},
-          {"type", editor::property(context.properties, "type")}};
+          {"state", tools::state_text(context.state)},
+          {"type", tools::property(context.properties, "type")}};
 }
 
 Json component_json(const ComponentView& component) {
@@ -57,11 +57,11 @@ Json component_json(const ComponentView& component) {
           {"version", component.version},
           {"description", component.description},
           {"problem", component.problem},
-          {"state", component.problem.empty() ? editor::state_text(component.state()) : "Unknown"},
+          {"state", component.problem.empty() ? tools::state_text(component.state()) : "Unknown"},
           {"composite", component.category.starts_with("composite.")},
           {"members", component.members},
           {"active_set", component.active_set},
-          {"in_simulated_time", editor::simulated_context(component) != nullptr},
+          {"in_simulated_time", tools::simulated_context(component) != nullptr},
           {"contexts", contexts},
           {"ports", ports}};
 }
@@ -96,7 +96,7 @@ class PortIndex {
   std::unordered_multimap<CORBA::ULong, Known> ports_;
 };
 
-Json connection_json(const editor::ConnectorView& connector, const PortIndex& index) {
+Json connection_json(const tools::ConnectorView& connector, const PortIndex& index) {
   Json ports = Json::array(), absent = Json::array();
   for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
     const auto path = index.path_of(connector.ports[i]);
@@ -157,10 +157,10 @@ Json connections_json(const std::vector<ComponentView>& components) {
   return list;
 }
 
-Json managers_json(const editor::NamingTree& tree) {
+Json managers_json(const tools::NamingTree& tree) {
   Json list = Json::array();
   for (const auto* entry : tree.objects()) {
-    if (entry->kind == editor::EntryKind::manager) list.push_back({{"path", entry->path()}, {"problem", entry->problem}});
+    if (entry->kind == tools::EntryKind::manager) list.push_back({{"path", entry->path()}, {"problem", entry->problem}});
   }
   return list;
 }

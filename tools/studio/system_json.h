@@ -9,11 +9,11 @@
 namespace studio {
 
 // Everything that a diagram shows.
-Json components_json(const std::vector<editor::ComponentView>& components);
+Json components_json(const std::vector<tools::ComponentView>& components);
 // Each once, however many ports tell of it. Ends outside of `components` are said in words.
-Json connections_json(const std::vector<editor::ComponentView>& components);
-Json managers_json(const editor::NamingTree& tree);
+Json connections_json(const std::vector<tools::ComponentView>& components);
+Json managers_json(const tools::NamingTree& tree);
 // One component with its properties and configuration.
-Json details_json(const editor::ComponentView& component);
+Json details_json(const tools::ComponentView& component);
 
 }  // namespace studio

@@ -74,9 +74,9 @@ void SystemWatch::run() {
 }
 
 Json SystemWatch::look() const {
-  const auto tree = editor::NamingTree::read(orb_, server_, limit_);
+  const auto tree = tools::NamingTree::read(orb_, server_, limit_);
   if (!tree) return nothing(tree.error().message);
-  const auto components = editor::read_components(*tree, {.contexts = true, .connectors = true, .members = true}, limit_);
+  const auto components = tools::read_components(*tree, {.contexts = true, .connectors = true, .members = true}, limit_);
   auto system = nothing("");
   system["components"] = components_json(components);
   system["connections"] = connections_json(components);

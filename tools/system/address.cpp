@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::vector<std::string> split_path(std::string_view text) {
@@ -121,4 +121,4 @@ std::string working_path() {
   return path ? path : "";
 }
 
-}  // namespace editor
+}  // namespace tools

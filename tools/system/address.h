@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace editor {
+namespace tools {
 
 struct Address {
   bool is_absolute = false;
@@ -33,4 +33,4 @@ std::pair<std::string, std::string> split_kind(const std::string& segment);
 // Where paths without a leading '/' begin: RTCSH_CWD, which the tools of the field set.
 std::string working_path();
 
-}  // namespace editor
+}  // namespace tools

@@ -4,7 +4,7 @@
 
 #include "rtm/idl/OpenRTMStub.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 ConnectorView to_view(const RTC::ConnectorProfile& profile) {
@@ -124,7 +124,7 @@ void read_profile(ComponentView& component) {
 const ContextView* ComponentView::shown_context() const {
   if (contexts.empty()) return nullptr;
   for (const auto& context : contexts) {
-    if (!context.is_owned && context.is_running && editor::property(context.properties, "type") == "SimTimeContext") return &context;
+    if (!context.is_owned && context.is_running && tools::property(context.properties, "type") == "SimTimeContext") return &context;
   }
   const auto running = std::find_if(contexts.begin(), contexts.end(), [](const ContextView& context) { return context.is_running; });
   return running == contexts.end() ? &contexts.front() : &*running;
@@ -219,4 +219,4 @@ PortOwner owner_of(RTC::PortService_ptr port, const std::vector<ComponentView>& 
   return {};
 }
 
-}  // namespace editor
+}  // namespace tools

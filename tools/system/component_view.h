@@ -10,7 +10,7 @@
 #include "system/naming_tree.h"
 #include "system/parameter_check.h"
 
-namespace editor {
+namespace tools {
 
 struct ConnectorView {
   std::string id;
@@ -117,4 +117,4 @@ class PortIndex {
 // Whose a port is that none of them has, in words; it is asked whether it lives.
 std::string absent_port(RTC::PortService_ptr port);
 
-}  // namespace editor
+}  // namespace tools

@@ -2,7 +2,7 @@
 
 #include "system/parameter_check.h"
 
-namespace editor {
+namespace tools {
 
 const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id) {
   for (const auto& set : component.configuration_sets) {
@@ -60,4 +60,4 @@ Result<void> use_set(const ComponentView& component, const std::string& id) {
   return called;
 }
 
-}  // namespace editor
+}  // namespace tools

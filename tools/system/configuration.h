@@ -7,7 +7,7 @@
 
 #include "system/component_view.h"
 
-namespace editor {
+namespace tools {
 
 // Null: the component has no such set.
 const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id);
@@ -20,4 +20,4 @@ Result<void> set_values(const ComponentView& component, const std::string& id,
                         const std::vector<std::pair<std::string, std::string>>& values);
 Result<void> use_set(const ComponentView& component, const std::string& id);
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "corba/ports/connection_values.h"
 
-namespace editor {
+namespace tools {
 
 bool is_own_transport(std::string_view interface_type) {
   constexpr std::array<std::string_view, 4> ours{"corba_cdr", "data_service", "direct", "shared_memory"};
@@ -152,4 +152,4 @@ Result<void> disconnect_connector(const PortView& port, const std::string& id) {
   return check(what, code);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -7,7 +7,7 @@
 
 #include "system/component_view.h"
 
-namespace editor {
+namespace tools {
 
 // Of the runtime itself, all of which connect two ports; other interface types are of modules.
 bool is_own_transport(std::string_view interface_type);
@@ -20,4 +20,4 @@ bool carry_different_types(const PortView& a, const PortView& b);
 // One that the port has dropped by itself since it was looked at counts as ended.
 Result<void> disconnect_connector(const PortView& port, const std::string& id);
 
-}  // namespace editor
+}  // namespace tools

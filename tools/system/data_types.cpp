@@ -8,7 +8,7 @@
 #include "rtm/idl/InterfaceDataTypesStub.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 const std::map<std::string, CORBA::TypeCode_ptr>& types() {
@@ -169,4 +169,4 @@ std::vector<std::string> known_data_types() {
   return ids;
 }
 
-}  // namespace editor
+}  // namespace tools

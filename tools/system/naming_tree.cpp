@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "corba/orb/naming.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr CORBA::ULong listed_at_once = 256;
@@ -254,4 +254,4 @@ Result<void> unbind(CORBA::ORB_ptr orb, const Entry& entry) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

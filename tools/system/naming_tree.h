@@ -12,7 +12,7 @@
 #include "system/address.h"
 #include "system/remote.h"
 
-namespace editor {
+namespace tools {
 
 enum class EntryKind { context, component, manager, other };
 enum class Health { alive, hung, zombie };  // zombie: bound, but the object or its process is gone
@@ -60,4 +60,4 @@ class NamingTree {
 // Removes a binding; the object need not answer.
 Result<void> unbind(CORBA::ORB_ptr orb, const Entry& entry);
 
-}  // namespace editor
+}  // namespace tools

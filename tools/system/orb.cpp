@@ -11,7 +11,7 @@
 #include "corba/orb/guarded_transport.h"
 #include "corba/orb/tls.h"
 
-namespace editor {
+namespace tools {
 
 std::string default_server() {
   // rtshell's variable; several servers are separated by ';'.
@@ -80,4 +80,4 @@ Orb::~Orb() {
   }
 }
 
-}  // namespace editor
+}  // namespace tools

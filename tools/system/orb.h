@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace editor {
+namespace tools {
 
 // The first of $RTCTREE_NAMESERVERS, else localhost:2809.
 std::string default_server();
@@ -24,4 +24,4 @@ class Orb {
   CORBA::ORB_var orb_;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -12,7 +12,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::string without_blanks(std::string text) {
@@ -185,4 +185,4 @@ std::string constraint_problem(const std::string& constraint_text, const std::st
   return "";
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace editor {
+namespace tools {
 
 // Sets like __type__, __widget__ and __constraints__ hold what editors know of parameters, not values: they are shown and kept, and never
 // set, compared or changed.
@@ -21,4 +21,4 @@ bool is_parameter_type(const std::string& type);
 // choices; one that is not understood allows everything.
 std::string constraint_problem(const std::string& constraint, const std::string& value);
 
-}  // namespace editor
+}  // namespace tools

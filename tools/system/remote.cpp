@@ -10,7 +10,7 @@
 #include "corba/orb/return_code.h"
 #include "corba/orb/tls.h"
 
-namespace editor {
+namespace tools {
 
 Properties to_properties(const SDOPackage::NVList& list) {
   Properties properties;
@@ -143,4 +143,4 @@ std::string kind_text(RTC::ExecutionKind kind) {
   }
 }
 
-}  // namespace editor
+}  // namespace tools

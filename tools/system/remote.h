@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "rtm/idl/RTCStub.h"
 
-namespace editor {
+namespace tools {
 
 using base::Error;
 using base::Result;
@@ -54,4 +54,4 @@ SDOPackage::Configuration_var configuration_of(RTC::RTObject_ptr component);
 std::string state_text(RTC::LifeCycleState state);
 std::string kind_text(RTC::ExecutionKind kind);
 
-}  // namespace editor
+}  // namespace tools

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace editor {
+namespace tools {
 
 // Implementations accept calls from any thread.
 class Reporter {
@@ -23,4 +23,4 @@ class SilentReporter final : public Reporter {
   void warn(const std::string&) override {}
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "system/connections.h"
 #include "system/tap.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 std::string now_text() {
@@ -394,4 +394,4 @@ Changes teardown(const Session& session, const SavedSystem& system, bool dry_run
   return teardown(session, *matched, system, dry_run);
 }
 
-}  // namespace editor
+}  // namespace tools

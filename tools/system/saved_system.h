@@ -9,7 +9,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 // The result of an operation on a system. One failure does not stop the others.
 struct Changes {
@@ -54,4 +54,4 @@ struct Snapshot {
 // Fails when the name server does not answer.
 Result<Snapshot> save(const Session& session, const SaveOptions& options);
 
-}  // namespace editor
+}  // namespace tools

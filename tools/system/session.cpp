@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 
 Session::Session(CORBA::ORB_ptr orb, std::string server, std::chrono::milliseconds call_timeout,
                  std::chrono::milliseconds transition_timeout)
@@ -165,4 +165,4 @@ Result<Session::Port> Session::port(const std::string& path, bool with_connector
   return Port{std::move(*view), copy};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -7,7 +7,7 @@
 #include "system/component_view.h"
 #include "system/transitions.h"
 
-namespace editor {
+namespace tools {
 
 class Session {
  public:
@@ -43,4 +43,4 @@ class Session {
   std::chrono::milliseconds transition_timeout_;
 };
 
-}  // namespace editor
+}  // namespace tools

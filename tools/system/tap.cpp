@@ -7,7 +7,7 @@
 #include "rtm/idl/DataPort_OpenRTMSkel.h"
 #include "rtm/idl/RTCSkel.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr const char* connector_name = "rtse";
@@ -218,4 +218,4 @@ Result<void> Tap::put(std::span<const unsigned char> payload) {
   return {};
 }
 
-}  // namespace editor
+}  // namespace tools

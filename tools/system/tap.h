@@ -8,7 +8,7 @@
 
 #include "system/component_view.h"
 
-namespace editor {
+namespace tools {
 
 // Whether it is a tap's, of this program or another one: no part of a system.
 bool is_tap(const ConnectorView& connector);
@@ -35,4 +35,4 @@ class Tap {
   std::unique_ptr<Port, void (*)(Port*)> port_;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-namespace editor {
+namespace tools {
 namespace {
 
 // A context answers RTC_ERROR when the component's callback has not returned within a time of its own; it may still come.
@@ -80,4 +80,4 @@ Result<void> change_state(const ComponentView& component, Transition transition,
   return check(what, code, "it is " + state_text(now) + " now, its log says why");
 }
 
-}  // namespace editor
+}  // namespace tools

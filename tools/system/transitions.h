@@ -5,7 +5,7 @@
 
 #include "system/component_view.h"
 
-namespace editor {
+namespace tools {
 
 enum class Transition { activate, deactivate, reset };
 
@@ -17,4 +17,4 @@ constexpr std::chrono::milliseconds default_transition_timeout{10'000};
 Result<void> change_state(const ComponentView& component, Transition transition, int context,
                           std::chrono::milliseconds timeout = default_transition_timeout);
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 #include "system/value_codec.h"
 #include "system/value_failure.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -184,4 +184,4 @@ Result<Json> parse_value(CORBA::TypeCode_ptr declared, const std::string& text, 
   return value;
 }
 
-}  // namespace editor
+}  // namespace tools

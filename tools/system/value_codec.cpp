@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "system/value_failure.h"
 
-namespace editor {
+namespace tools {
 
 CORBA::TypeCode_var resolved(CORBA::TypeCode_ptr type) {
   CORBA::TypeCode_var current = CORBA::TypeCode::_duplicate(type);
@@ -424,4 +424,4 @@ std::string member_problem(const std::string& repository_id, const std::vector<s
   }
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "rtm/idl/RTCStub.h"
 
-namespace editor {
+namespace tools {
 
 // "IDL:RTC/TimedLong:1.0" -> its type code; nil when idl/ has no such data type.
 CORBA::TypeCode_ptr type_code_of(const std::string& repository_id);
@@ -29,4 +29,4 @@ std::string member_problem(const std::string& repository_id, const std::vector<s
 // The type behind typedefs, which say nothing on the wire.
 CORBA::TypeCode_var resolved(CORBA::TypeCode_ptr type);
 
-}  // namespace editor
+}  // namespace tools

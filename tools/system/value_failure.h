@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace editor {
+namespace tools {
 
 struct ValueFailure {
   std::string message;
 };
 
-}  // namespace editor
+}  // namespace tools

@@ -30,7 +30,7 @@ Result<void> room_for(const HuntOptions& options, std::uintmax_t least) { return
 class Hunt {
  public:
   Hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const std::vector<HuntTarget>& targets, const HuntOptions& options,
-       const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter)
+       const std::function<void(const HuntProgress&)>& show, tools::Reporter& reporter)
       : orb_(orb),
         campaign_(campaign),
         options_(options),
@@ -45,17 +45,17 @@ class Hunt {
       std::vector<HuntCase> cases;
       for (std::size_t i = 0; i < generation; ++i) cases.push_back(next_case());
       std::vector<Outcome> outcomes(cases.size());
-      editor::in_parallel(
+      tools::in_parallel(
           cases.size(), options_.call_limit,
           [&](std::size_t i) {
-            if (!editor::is_interrupted()) outcomes[i] = run(cases[i], "case-" + std::to_string(i));
+            if (!tools::is_interrupted()) outcomes[i] = run(cases[i], "case-" + std::to_string(i));
           },
           static_cast<std::size_t>(options_.jobs));
-      if (editor::is_interrupted()) break;
+      if (tools::is_interrupted()) break;
       for (std::size_t i = 0; i < cases.size() && goes_on(); ++i) take(cases[i], outcomes[i]);
     }
     if (!problem_.empty()) return Error{problem_};
-    result_.is_interrupted = editor::is_interrupted();
+    result_.is_interrupted = tools::is_interrupted();
     result_.corpus = corpus_.size();
     result_.features = features_.size();
     result_.wall_s = wall();
@@ -65,7 +65,7 @@ class Hunt {
  private:
   double wall() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool goes_on() const {
-    if (editor::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
+    if (tools::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
     if (options_.most_finds > 0 && result_.finds.size() >= options_.most_finds) return false;
     return options_.most_cases == 0 || result_.cases < options_.most_cases;
   }
@@ -144,7 +144,7 @@ class Hunt {
 
   // How, if it does.
   std::optional<Broken> still_breaks(const HuntCase& tried, const std::string& kind) {
-    if (editor::is_interrupted()) return std::nullopt;
+    if (tools::is_interrupted()) return std::nullopt;
     const auto outcome = run(tried, "shrinking");
     return signature(outcome) == kind ? std::optional(Broken{outcome.run.first_problem(), outcome.run.state_hash}) : std::nullopt;
   }
@@ -217,11 +217,11 @@ class Hunt {
     find.problem = broken_.problem;
     find.state_hash = broken_.state_hash;
     const auto first = run(find.tried, "again"), second = run(find.tried, "again", find.file);
-    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !editor::is_interrupted()) {
+    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !tools::is_interrupted()) {
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.run.problem;
       return false;
     }
-    find.was_repeated = !editor::is_interrupted();
+    find.was_repeated = !tools::is_interrupted();
     if (find.was_repeated) {
       find.state_hash = first.run.state_hash;
       if (!first.run.first_problem().empty()) find.problem = first.run.first_problem();
@@ -240,7 +240,7 @@ class Hunt {
   const Campaign& campaign_;
   const HuntOptions& options_;
   const std::function<void(const HuntProgress&)>& show_;
-  editor::Reporter& reporter_;
+  tools::Reporter& reporter_;
   CaseMaker maker_;
   base::Random random_;
   std::vector<HuntCase> corpus_;
@@ -249,7 +249,7 @@ class Hunt {
   std::size_t tries_ = 0;
   HuntResult result_;
   std::size_t not_begun_ = 0;  // cases one after the other
-  const editor::WarmPrograms warm_{reporter_};
+  const tools::WarmPrograms warm_{reporter_};
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };
@@ -273,7 +273,7 @@ std::string signature(const Outcome& outcome) {
 }
 
 Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options,
-                        const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter) {
+                        const std::function<void(const HuntProgress&)>& show, tools::Reporter& reporter) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) return Error{"folder " + base::in_quotes(options.folder) + ": " + error.message()};

@@ -54,7 +54,7 @@ struct HuntProgress {
 
 // `show` is called after every case; `reporter` receives what the runs report.
 Result<HuntResult> hunt(CORBA::ORB_ptr orb, const Campaign& campaign, const HuntOptions& options,
-                        const std::function<void(const HuntProgress&)>& show, editor::Reporter& reporter);
+                        const std::function<void(const HuntProgress&)>& show, tools::Reporter& reporter);
 
 // What kind of problem it is: without numbers, so that the same one at another time is not a new one.
 std::string signature(const Outcome& outcome);

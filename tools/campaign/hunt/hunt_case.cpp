@@ -175,7 +175,7 @@ void shorten(std::vector<Condition>& conditions, double duration_s) {
     condition.within_s.reset();
     auto node = YAML::Load(condition.text);
     node.remove("within");
-    condition.text = editor::flow_text(node);
+    condition.text = tools::flow_text(node);
   }
 }
 
@@ -201,7 +201,7 @@ namespace {
 std::string event_text(const Event& event) {
   auto node = YAML::Load(event.text);
   if (event.at_s) node["at"] = base::format_number(*event.at_s);
-  return editor::flow_text(node);
+  return tools::flow_text(node);
 }
 
 }  // namespace

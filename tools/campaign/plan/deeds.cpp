@@ -13,8 +13,8 @@
 namespace campaign {
 namespace {
 
-using editor::fail_at;
-using editor::word;
+using tools::fail_at;
+using tools::word;
 using Kind = Fault::Kind;
 using Object = Fault::Object;
 
@@ -185,16 +185,16 @@ void set_spawned(Event& event, const std::string& file) {
   event.target = file;
   auto node = YAML::Load(event.text);
   node["spawn"]["model"] = file;
-  event.text = editor::flow_text(node);
+  event.text = tools::flow_text(node);
 }
 
 Condition to_condition(const YAML::Node& node) {
-  return {editor::flow_text(node), editor::to_expression(node), editor::number(node, "after").value_or(0), editor::number(node, "within")};
+  return {tools::flow_text(node), tools::to_expression(node), tools::number(node, "after").value_or(0), tools::number(node, "within")};
 }
 
 Event to_event(const YAML::Node& node) {
   Event event;
-  event.text = editor::flow_text(node);
+  event.text = tools::flow_text(node);
   if (node["at"] && node["when"]) fail_at(node, "an event must not have both at and when");
   if (node["at"]) event.at_s = *base::parse_number(node["at"].Scalar());
   if (event.at_s && *event.at_s < 0) fail_at(node["at"], "at must not be negative");

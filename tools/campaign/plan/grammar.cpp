@@ -11,9 +11,9 @@ namespace campaign {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using editor::Form;
-using editor::Key;
-using editor::Shape;
+using tools::Form;
+using tools::Key;
+using tools::Shape;
 
 constexpr std::array plan_keys = {
     Key{"system", Form::text, {}, true, "RTSProfile of the system, XML or YAML; files are relative to the plan's folder"},
@@ -306,11 +306,11 @@ Json schema_of(const Shape& shape) {
 
 }  // namespace
 
-editor::Shapes plan_shapes() { return shapes; }
+tools::Shapes plan_shapes() { return shapes; }
 
 Json plan_schema() {
   Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Plan of a campaign (rtse sweep, rtse hunt)"}};
-  json.update(schema_of(editor::shape(shapes, plan_shape)));
+  json.update(schema_of(tools::shape(shapes, plan_shape)));
   auto& definitions = json["$defs"] = Json::object();
   for (const Shape& one : shapes) {
     if (one.name != plan_shape) definitions[std::string(one.name)] = schema_of(one);

@@ -12,7 +12,7 @@ namespace campaign {
 inline constexpr std::string_view plan_shape = "plan";
 
 // All that a plan can have; plan_shape: itself.
-editor::Shapes plan_shapes();
+tools::Shapes plan_shapes();
 
 // Draft 2020-12.
 nlohmann::ordered_json plan_schema();

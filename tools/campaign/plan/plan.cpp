@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::array<std::string_view, 7> result_columns = {"row", "seed", "passed", "problem", "state", "simulated_s", "wall_s"};
 
-using editor::fail_at;
-using editor::number;
-using editor::word;
-using editor::words;
+using tools::fail_at;
+using tools::number;
+using tools::word;
+using tools::words;
 
 std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual) {
   return node[key] ? static_cast<std::uint64_t>(base::parse_integer(node[key].Scalar()).value_or(0)) : usual;
@@ -33,7 +33,7 @@ std::uint64_t count(const YAML::Node& node, const char* key, std::uint64_t usual
 // An option of a run, within the limits of its row.
 double run_number(const YAML::Node& node, const char* key, double usual, std::string_view option) {
   const auto value = number(node, key).value_or(usual);
-  const auto& row = editor::run_option(option);
+  const auto& row = tools::run_option(option);
   if (value < row.low || value > row.high)
     fail_at(node[key], std::string(key) + " must be from " + base::format_number(row.low) + " to " + base::format_number(row.high) +
                            " s, got " + base::format_number(value));
@@ -107,11 +107,11 @@ void read_measure(const std::string& kind, const YAML::Node& node, Measure& meas
   measure.member = word(node, "member");
   measure.joint = word(node, "name");
   measure.gripper = word(node, "gripper");
-  if (measure.kind == Measure::Kind::time_to) measure.reached = editor::to_expression(node);
+  if (measure.kind == Measure::Kind::time_to) measure.reached = tools::to_expression(node);
   if (node["take"]) measure.take = takes.at(node["take"].Scalar());
   if (measure.kind == Measure::Kind::value) measure.name = measure.port + " " + measure.member + " " + word(node, "take");
   if (measure.kind == Measure::Kind::joint) measure.name = measure.model + "::" + measure.joint + " " + word(node, "take");
-  if (measure.kind == Measure::Kind::holds) measure.name = editor::grip_name(measure.gripper, measure.model);
+  if (measure.kind == Measure::Kind::holds) measure.name = tools::grip_name(measure.gripper, measure.model);
   measure.name = word(node, "as", measure.name);
 }
 
@@ -120,7 +120,7 @@ std::vector<Measure> to_measures(const YAML::Node& node) {
   std::set<std::string> names;
   for (const auto& entry : node) {
     Measure measure;
-    measure.text = editor::flow_text(entry);
+    measure.text = tools::flow_text(entry);
     read_measure(entry.begin()->first.Scalar(), entry.begin()->second, measure);
     if (std::ranges::find(result_columns, measure.name) != result_columns.end())
       fail_at(entry, "the results have a column " + base::in_quotes(measure.name) + " already; name the measure otherwise with as");
@@ -222,7 +222,7 @@ void read_variation(const YAML::Node& root, Plan& plan) {
   for (const auto& entry : root["scatter"]) {
     Scatter scatter;
     scatter.models = words(entry["models"]);
-    scatter.region = editor::to_region(entry["region"]);
+    scatter.region = tools::to_region(entry["region"]);
     scatter.clearance = number(entry, "clearance").value_or(0.05);
     scatter.turns = flag(entry, "turn", true);
     plan.scatters.push_back(scatter);
@@ -252,7 +252,7 @@ void read_deeds(const YAML::Node& root, Plan& plan) {
 }
 
 Plan to_plan(const YAML::Node& root, const std::string& file) {
-  editor::check_shape(plan_shapes(), root, plan_shape, "plan");
+  tools::check_shape(plan_shapes(), root, plan_shape, "plan");
   Plan plan;
   plan.file = file;
   plan.run.system = in_folder(plan, word(root, "system"));
@@ -298,7 +298,7 @@ Result<Plan> read_plan(const std::string& file) {
     auto plan = to_plan(documents.front(), file);
     plan.text = text.str();
     return plan;
-  } catch (const editor::YamlFailure& error) {
+  } catch (const tools::YamlFailure& error) {
     return fail(error.line, error.column, error.message);
   } catch (const YAML::Exception& error) {
     return fail(error.mark.line + 1, error.mark.column + 1, "is no YAML: " + error.msg);

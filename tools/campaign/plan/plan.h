@@ -32,7 +32,7 @@ struct Axis {
 
 struct Scatter {
   std::vector<std::string> models;
-  editor::Region region;
+  tools::Region region;
   double clearance = 0.05;  // [m]
   bool turns = true;
 };
@@ -69,7 +69,7 @@ struct Plan {
   enum class Sampling { random, latin, sobol };
   std::string file;
   std::string text;
-  editor::RunOptions run;   // of each row; its seed is that of the row
+  tools::RunOptions run;    // of each row; its seed is that of the row
   std::string expect_text;  // YAML, when the expectations stand in the plan itself
   std::uint64_t seed = 1;
   std::size_t repeat = 1;

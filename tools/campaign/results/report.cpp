@@ -116,8 +116,8 @@ void print_csv(std::ostream& out, const Results& results) {
 }
 
 Result<void> write_junit(const Results& results, const std::string& file) {
-  using Outcome = editor::JunitCase::Outcome;
-  std::vector<editor::JunitCase> cases;
+  using Outcome = tools::JunitCase::Outcome;
+  std::vector<tools::JunitCase> cases;
   for (const auto& row : results.rows) {
     if (!row.run) continue;
     std::string name = "row " + std::to_string(row.number) + " seed " + std::to_string(row.seed);
@@ -130,7 +130,7 @@ Result<void> write_junit(const Results& results, const std::string& file) {
                      .problem = row.run->problem,
                      .details = command_again(results, row)});
   }
-  return editor::write_junit_suite(file, results.plan_file, cases);
+  return tools::write_junit_suite(file, results.plan_file, cases);
 }
 
 }  // namespace campaign

@@ -65,7 +65,7 @@ StandingModel to_model(const nlohmann::json& json) {
   StandingModel model;
   model.pose = pose_of(json.at("pose"));
   model.is_static = json.at("static").get<bool>();
-  model.parts = editor::to_parts(json);
+  model.parts = tools::to_parts(json);
   for (const auto& link : json.at("links")) {
     model.mass += link.at("mass").get<double>();
     const auto link_pose = model.pose.inverse() * pose_of(link.at("pose"));
@@ -99,12 +99,12 @@ WorldSurvey to_survey(const nlohmann::json& json) {
 
 Result<WorldSurvey> survey_world(const std::string& world, const std::vector<std::string>& resource_paths,
                                  const std::vector<std::string>& spawned) {
-  editor::ProgramCall call{{editor::own_program("sim-server"), world, "--check", "--json"}, {}, ""};
+  tools::ProgramCall call{{tools::own_program("sim-server"), world, "--check", "--json"}, {}, ""};
   for (const auto& path : resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   for (const auto& model : spawned) call.words.insert(call.words.end(), {"--spawn", model});
-  auto started = editor::ChildProcess::start(call);
+  auto started = tools::ChildProcess::start(call);
   if (!started) return started.error();
-  const auto said = editor::output_of(*started, longest_check);
+  const auto said = tools::output_of(*started, longest_check);
   // A world with findings is a world; they are told when it runs. The JSON is the only line that begins so.
   for (const auto& line : base::split_list(started->said(), '\n')) {
     if (!line.starts_with("{\"models\"")) continue;

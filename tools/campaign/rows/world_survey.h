@@ -20,7 +20,7 @@ struct StandingModel {
   Outline outline;  // empty: nothing of it collides, or nothing with an end (a plane, a mesh)
   bool is_static = false;
   double mass = 0;  // [kg]
-  editor::ModelParts parts;
+  tools::ModelParts parts;
 };
 
 // Absolute names of files, by the folder of the file that names them and the URI in it. Of an include: the SDFormat file.

@@ -20,9 +20,9 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-using editor::SavedComponent;
-using editor::SavedConnector;
-using editor::SavedSystem;
+using tools::SavedComponent;
+using tools::SavedConnector;
+using tools::SavedSystem;
 
 template <class Items, class Name>
 std::string names_in(const Items& items, Name name) {
@@ -99,7 +99,7 @@ constexpr std::array connector_keys = {"allow_dup_connection",
 // Transports of others read what they like.
 bool is_known_key(const SavedConnector& connector, std::string key) {
   const std::string& type = connector.interface_type;
-  if (!connector.is_data || !(type.empty() || editor::is_own_transport(type))) return true;
+  if (!connector.is_data || !(type.empty() || tools::is_own_transport(type))) return true;
   key = key.substr(std::string("dataport.").size());
   for (const char* end : {"inport.", "outport."}) {
     if (key.starts_with(end)) key.erase(0, std::string(end).size());
@@ -150,8 +150,8 @@ bool is_list_path(const std::string& path) { return path.starts_with("for/"); }
 // The files that a row needs, in order: programs and libraries.
 std::vector<std::string> programs_of(const Plan& plan) {
   std::vector<std::string> files;
-  for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(editor::own_program(name));
-  const auto libraries = fs::path(editor::own_program("rtcd")).parent_path().parent_path() / "lib";
+  for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(tools::own_program(name));
+  const auto libraries = fs::path(tools::own_program("rtcd")).parent_path().parent_path() / "lib";
   auto folders = plan.run.module_paths;
   folders.push_back(libraries.string());
   folders.push_back((libraries / "rtm-sim").string());
@@ -195,7 +195,7 @@ std::vector<std::string> spawned_models(Plan& plan) {
 }  // namespace
 
 bool can_be_started(const std::string& name) {
-  const auto program = editor::own_program(name);
+  const auto program = tools::own_program(name);
   if (program.find('/') != std::string::npos) return access(program.c_str(), X_OK) == 0;
   const char* path = std::getenv("PATH");
   return std::ranges::any_of(base::split_list(path != nullptr ? path : "", ':'),
@@ -236,10 +236,10 @@ Result<SavedSystem> Campaign::read_system() const {
     for (const auto& value : axis->values) {
       Row row;
       row.values.emplace_back(axis->path, value);
-      if (const auto tried = editor::read_system(plan_->run.system, lists_of(row)); !tried) return fail(*axis, tried.error().message);
+      if (const auto tried = tools::read_system(plan_->run.system, lists_of(row)); !tried) return fail(*axis, tried.error().message);
     }
   }
-  return editor::read_system(plan_->run.system, lists_of({}));
+  return tools::read_system(plan_->run.system, lists_of({}));
 }
 
 Result<void> Campaign::survey_world(const std::vector<std::string>& spawned) {
@@ -387,7 +387,7 @@ Result<std::optional<WorldFile>> Campaign::world_of(const Row& row) const {
   return std::optional<WorldFile>(std::move(*world));
 }
 
-Result<void> Campaign::alter(editor::SavedSystem& system, const Row& row) const {
+Result<void> Campaign::alter(tools::SavedSystem& system, const Row& row) const {
   for (const auto& [path, value] : row.values) {
     if (is_world_path(path) || is_list_path(path)) continue;
     if (const auto set = set_in_system(system, path, value); !set) return set;

@@ -23,7 +23,7 @@ class Campaign {
   Campaign(Campaign&&) noexcept = default;
 
   const Plan& plan() const { return *plan_; }
-  const editor::SavedSystem& system() const { return system_; }
+  const tools::SavedSystem& system() const { return system_; }
   std::size_t rows() const { return rows_->count(); }
   Result<Row> row(std::size_t number) const { return rows_->row(number); }
   // Rows with the same key give the same result: it stands for the programs, modules, world, system and plan as far as they matter, and for
@@ -41,7 +41,7 @@ class Campaign {
   // "robot=r0..r9", those of the plan and of the row.
   std::vector<std::string> lists_of(const Row& row) const;
   // Sets the row's values in the system.
-  Result<void> alter(editor::SavedSystem& system, const Row& row) const;
+  Result<void> alter(tools::SavedSystem& system, const Row& row) const;
   // "INSTANCE:KEY=VALUE", those of the plan and of the row.
   std::vector<std::string> properties_of(const Row& row) const;
   const std::map<std::string, StandingModel>& models() const { return survey_.models; }
@@ -49,14 +49,14 @@ class Campaign {
  private:
   explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}
   Result<void> check_files() const;
-  Result<editor::SavedSystem> read_system() const;
+  Result<tools::SavedSystem> read_system() const;
   Result<void> survey_world(const std::vector<std::string>& spawned);
   Result<void> check_axes() const;
   Result<void> hash_everything();
   void hash_questions(base::ContentHash& hash) const;
 
   std::unique_ptr<const Plan> plan_;
-  editor::SavedSystem system_;
+  tools::SavedSystem system_;
   WorldSurvey survey_;
   std::unique_ptr<RowMaker> rows_;
   std::string base_key_, parts_;

@@ -37,7 +37,7 @@ std::map<std::string, std::string> texts_of(const std::vector<Fault>& faults, Ob
 
 }  // namespace
 
-bool is_missing(const editor::RunScene& scene, const std::string& model) {
+bool is_missing(const tools::RunScene& scene, const std::string& model) {
   const auto models = scene.simulator.models();
   return models && std::ranges::find(*models, model.substr(0, model.find("::"))) == models->end();
 }
@@ -45,7 +45,7 @@ bool is_missing(const editor::RunScene& scene, const std::string& model) {
 DeedsRunner::DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s)
     : deeds_(std::move(deeds)), seed_(seed), duration_s_(duration_s) {}
 
-Result<void> DeedsRunner::alter(editor::SavedSystem& system) const {
+Result<void> DeedsRunner::alter(tools::SavedSystem& system) const {
   for (const auto& [target, text] : texts_of(deeds_.faults, Object::connector, seed_)) {
     const auto found = std::ranges::find_if(system.connectors, [&](const auto& one) { return one.id == target || one.name == target; });
     if (found == system.connectors.end()) return Error{"fault: the system has no connection " + base::in_quotes(target)};
@@ -71,13 +71,13 @@ std::vector<std::string> DeedsRunner::simulator_options() const {
   return options;
 }
 
-std::vector<editor::Expectation> DeedsRunner::watched() const {
-  std::vector<editor::Expectation> watched;
+std::vector<tools::Expectation> DeedsRunner::watched() const {
+  std::vector<tools::Expectation> watched;
   const auto add = [&](const Condition& condition) {
     for (const auto& value : condition.expression.values()) {
       if (value.kind != recorder::Expression::Value::Kind::port) continue;
-      editor::Expectation expectation;
-      expectation.kind = editor::Expectation::Kind::value;
+      tools::Expectation expectation;
+      expectation.kind = tools::Expectation::Kind::value;
       expectation.port = value.name;
       expectation.member = value.member;
       watched.push_back(std::move(expectation));
@@ -96,7 +96,7 @@ bool DeedsRunner::polls() const {
   return waits || !deeds_.never.empty() || !deeds_.eventually.empty();
 }
 
-Result<void> DeedsRunner::begin(editor::RunScene& scene) {
+Result<void> DeedsRunner::begin(tools::RunScene& scene) {
   step_s_ = scene.simulator.step();
   look_every_ = std::max<std::int64_t>(1, std::llround(look_period_s / step_s_));
   const auto step_of = [&](double time) { return static_cast<std::int64_t>(std::llround(time / step_s_)); };
@@ -127,7 +127,7 @@ std::optional<std::int64_t> DeedsRunner::next_stop(std::int64_t done) const {
   return next;
 }
 
-Result<void> DeedsRunner::act(editor::RunScene& scene, std::int64_t done) {
+Result<void> DeedsRunner::act(tools::RunScene& scene, std::int64_t done) {
   while (next_ < timed_.size() && timed_[next_].step <= done) {
     if (const auto carried = carry_out(scene, timed_[next_++]); !carried) return carried;
   }
@@ -139,21 +139,21 @@ void DeedsRunner::note(const std::string& text) {
   if (std::ranges::find(notes_, text) == notes_.end()) notes_.push_back(text);
 }
 
-Result<void> DeedsRunner::carry_out(editor::RunScene& scene, const Timed& timed) {
+Result<void> DeedsRunner::carry_out(tools::RunScene& scene, const Timed& timed) {
   if (timed.what == Timed::What::event) return happen(scene, deeds_.events[timed.place]);
   const auto done = timed.what == Timed::What::fault ? start_fault(scene, timed.place) : end_fault(scene, timed.place);
   if (!done) return Error{"fault " + deeds_.faults[timed.place].text() + ": " + done.error().message};
   return {};
 }
 
-Result<void> DeedsRunner::happen(editor::RunScene& scene, const Event& event) {
+Result<void> DeedsRunner::happen(tools::RunScene& scene, const Event& event) {
   const auto done = carry_out_event(scene, event);
   if (!done) return Error{"event " + event.text + ": " + done.error().message};
   if (!done->empty()) note("event " + event.text + ": did nothing: " + *done);
   return {};
 }
 
-Result<void> DeedsRunner::start_fault(editor::RunScene& scene, std::size_t place) {
+Result<void> DeedsRunner::start_fault(tools::RunScene& scene, std::size_t place) {
   const auto& fault = deeds_.faults[place];
   if (fault.object == Object::naming) {
     if (naming_gone_++ == 0) scene.set_naming(false);
@@ -171,7 +171,7 @@ Result<void> DeedsRunner::start_fault(editor::RunScene& scene, std::size_t place
   return {};
 }
 
-Result<void> DeedsRunner::end_fault(editor::RunScene& scene, std::size_t place) {
+Result<void> DeedsRunner::end_fault(tools::RunScene& scene, std::size_t place) {
   const auto& fault = deeds_.faults[place];
   if (fault.object == Object::component) {
     if (killed_.erase(place) == 0) return {};
@@ -189,13 +189,13 @@ Result<void> DeedsRunner::end_fault(editor::RunScene& scene, std::size_t place) 
   return {};
 }
 
-Result<void> DeedsRunner::restart(editor::RunScene& scene, const std::string& instance) {
+Result<void> DeedsRunner::restart(tools::RunScene& scene, const std::string& instance) {
   const auto there = scene.restart_host(instance);
   std::erase_if(away_, [&](const std::string& one) { return !scene.is_away(one); });
   return there;
 }
 
-Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
+Result<void> DeedsRunner::look(tools::RunScene& scene, double now_s) {
   for (std::size_t i = 0; i < deeds_.events.size(); ++i) {
     const auto& event = deeds_.events[i];
     if (!event.when || happened_.contains(i)) continue;
@@ -218,7 +218,7 @@ Result<void> DeedsRunner::look(editor::RunScene& scene, double now_s) {
 
 namespace {
 
-Result<std::optional<double>> look_up(editor::RunScene& scene, const recorder::Expression::Value& value,
+Result<std::optional<double>> look_up(tools::RunScene& scene, const recorder::Expression::Value& value,
                                       std::map<std::string, shm::Pose>& poses, double now_s) {
   using Number = std::optional<double>;
   // A model that does not exist, or does not exist yet, has no values.
@@ -238,7 +238,7 @@ Result<std::optional<double>> look_up(editor::RunScene& scene, const recorder::E
     }
     case recorder::Expression::Value::Kind::touches: {
       const auto contacts = scene.simulator.contacts(value.name);
-      return contacts ? Number(editor::is_touching(*contacts, value.member) ? 1 : 0) : none_if_missing(contacts.error());
+      return contacts ? Number(tools::is_touching(*contacts, value.member) ? 1 : 0) : none_if_missing(contacts.error());
     }
     case recorder::Expression::Value::Kind::pose:
       break;
@@ -248,12 +248,12 @@ Result<std::optional<double>> look_up(editor::RunScene& scene, const recorder::E
     if (!pose) return none_if_missing(pose.error());
     poses.emplace(value.name, *pose);
   }
-  return Number(editor::member_of(poses.at(value.name), value.member));
+  return Number(tools::member_of(poses.at(value.name), value.member));
 }
 
 }  // namespace
 
-Result<bool> DeedsRunner::is_true(editor::RunScene& scene, const Condition& condition, double now_s) {
+Result<bool> DeedsRunner::is_true(tools::RunScene& scene, const Condition& condition, double now_s) {
   if (now_s < condition.after_s) return false;
   std::map<std::string, shm::Pose> poses;  // one request for all members of a pose
   return condition.expression.holds([&](const auto& value) { return look_up(scene, value, poses, now_s); });
@@ -266,8 +266,8 @@ bool DeedsRunner::excuses(const std::string& instance) const {
          });
 }
 
-std::vector<editor::Verdict> DeedsRunner::verdicts() const {
-  std::vector<editor::Verdict> verdicts;
+std::vector<tools::Verdict> DeedsRunner::verdicts() const {
+  std::vector<tools::Verdict> verdicts;
   for (std::size_t i = 0; i < deeds_.never.size(); ++i) {
     const auto broken = broken_.find(i);
     verdicts.push_back(
@@ -289,8 +289,8 @@ std::vector<editor::Verdict> DeedsRunner::verdicts() const {
   return verdicts;
 }
 
-std::vector<editor::RunMark> DeedsRunner::marks() const {
-  std::vector<editor::RunMark> marks;
+std::vector<tools::RunMark> DeedsRunner::marks() const {
+  std::vector<tools::RunMark> marks;
   for (const auto& fault : deeds_.faults) {
     marks.push_back({fault.at_s, "fault", fault.text(), fault.target});
     if (fault.for_s) marks.push_back({fault.at_s + *fault.for_s, "restored", fault.text(), fault.target});

@@ -26,21 +26,21 @@ class DeedsRunner {
   DeedsRunner(Deeds deeds, std::uint64_t seed, double duration_s);
 
   // Faults of components and connections that are properties of what is created.
-  Result<void> alter(editor::SavedSystem& system) const;
+  Result<void> alter(tools::SavedSystem& system) const;
   std::vector<std::string> properties() const;
   // For sim-server: faults of sensors and drives, which it times itself.
   std::vector<std::string> simulator_options() const;
   // Ports that conditions are about.
-  std::vector<editor::Expectation> watched() const;
+  std::vector<tools::Expectation> watched() const;
 
-  Result<void> begin(editor::RunScene& scene);
+  Result<void> begin(tools::RunScene& scene);
   std::optional<std::int64_t> next_stop(std::int64_t done) const;
-  Result<void> act(editor::RunScene& scene, std::int64_t done);
+  Result<void> act(tools::RunScene& scene, std::int64_t done);
   bool excuses(const std::string& instance) const;
   // Of never and eventually.
-  std::vector<editor::Verdict> verdicts() const;
+  std::vector<tools::Verdict> verdicts() const;
   // Faults, and events that happened, in no order.
-  std::vector<editor::RunMark> marks() const;
+  std::vector<tools::RunMark> marks() const;
   // What did nothing, and why: each once.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -50,14 +50,14 @@ class DeedsRunner {
     enum class What { event, fault, end_of_fault } what = What::event;
     std::size_t place = 0;
   };
-  Result<void> carry_out(editor::RunScene& scene, const Timed& timed);
-  Result<void> happen(editor::RunScene& scene, const Event& event);
-  Result<void> start_fault(editor::RunScene& scene, std::size_t place);
-  Result<void> end_fault(editor::RunScene& scene, std::size_t place);
-  Result<void> restart(editor::RunScene& scene, const std::string& instance);
+  Result<void> carry_out(tools::RunScene& scene, const Timed& timed);
+  Result<void> happen(tools::RunScene& scene, const Event& event);
+  Result<void> start_fault(tools::RunScene& scene, std::size_t place);
+  Result<void> end_fault(tools::RunScene& scene, std::size_t place);
+  Result<void> restart(tools::RunScene& scene, const std::string& instance);
   void note(const std::string& text);
-  Result<void> look(editor::RunScene& scene, double now_s);
-  Result<bool> is_true(editor::RunScene& scene, const Condition& condition, double now_s);
+  Result<void> look(tools::RunScene& scene, double now_s);
+  Result<bool> is_true(tools::RunScene& scene, const Condition& condition, double now_s);
   bool polls() const;
 
   Deeds deeds_;
@@ -78,8 +78,8 @@ class DeedsRunner {
 };
 
 // Whether the world has no such model, or none that a link's name begins with. False, too, when the simulator does not answer.
-bool is_missing(const editor::RunScene& scene, const std::string& model);
+bool is_missing(const tools::RunScene& scene, const std::string& model);
 // One event, now. A text: why it did nothing.
-Result<std::string> carry_out_event(editor::RunScene& scene, const Event& event);
+Result<std::string> carry_out_event(tools::RunScene& scene, const Event& event);
 
 }  // namespace campaign

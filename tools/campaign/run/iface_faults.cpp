@@ -18,7 +18,7 @@ using Object = Fault::Object;
 constexpr std::array<std::string_view, 8> actuator_types = {":RTCPosition2d:", ":RTCPosition3d:",  ":RTCActArray:", ":RTCGripper:",
                                                             ":RTCLimb:",       ":RTCManipulator:", ":RTCPTZ:",      ":RTCRobotHardware:"};
 
-std::string parameter(const editor::SavedComponent& component, const std::string& name) {
+std::string parameter(const tools::SavedComponent& component, const std::string& name) {
   for (const auto& set : component.configuration_sets) {
     for (const auto& [key, value] : set.values) {
       if (!set.is_hidden() && key == name) return value;
@@ -28,7 +28,7 @@ std::string parameter(const editor::SavedComponent& component, const std::string
 }
 
 // Our own components say which iface they stand for.
-std::vector<HuntTarget> targets_of(const editor::SavedSystem& system) {
+std::vector<HuntTarget> targets_of(const tools::SavedSystem& system) {
   std::vector<HuntTarget> targets;
   for (const auto& connector : system.connectors) {
     const bool is_push = connector.is_data && !base::equal_ignoring_case(connector.dataflow_type, "pull");
@@ -58,10 +58,10 @@ Result<std::string> refused(const Plan& plan, std::vector<Fault> faults) {
   constexpr auto limit = 60s;
   const auto options = DeedsRunner({.events = {}, .faults = std::move(faults), .never = {}, .eventually = {}}, 1, 0).simulator_options();
   if (options.empty()) return std::string();
-  editor::ProgramCall call{{editor::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
+  tools::ProgramCall call{{tools::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
   for (const auto& path : plan.run.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options.begin(), options.end());
-  auto started = editor::ChildProcess::start(call);
+  auto started = tools::ChildProcess::start(call);
   if (!started) return started.error();
   if (!started->wait(limit)) return std::string();  // a world that takes so long is loaded once more, and says so then
   constexpr std::string_view mark = "sim-server: fault ";

@@ -10,7 +10,7 @@
 namespace campaign {
 namespace {
 
-Eigen::Isometry3d isometry(const editor::RecordedPose& recorded) {
+Eigen::Isometry3d isometry(const tools::RecordedPose& recorded) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Eigen::Vector3d(recorded.x, recorded.y, recorded.z);
   pose.linear() = Eigen::Quaterniond(recorded.qw, recorded.qx, recorded.qy, recorded.qz).normalized().toRotationMatrix();
@@ -19,8 +19,8 @@ Eigen::Isometry3d isometry(const editor::RecordedPose& recorded) {
 
 // Calls visit(poses of all moving models) for each moment of a record. A model that was deleted keeps its last pose.
 template <class Visit>
-void for_moments(const editor::PoseRecord& record, Visit visit) {
-  std::map<double, std::vector<std::pair<std::string, const editor::RecordedPose*>>> moments;
+void for_moments(const tools::PoseRecord& record, Visit visit) {
+  std::map<double, std::vector<std::pair<std::string, const tools::RecordedPose*>>> moments;
   for (const auto& [model, poses] : record.poses) {
     for (const auto& pose : poses) moments[pose.time].emplace_back(model, &pose);
   }
@@ -32,7 +32,7 @@ void for_moments(const editor::PoseRecord& record, Visit visit) {
 }
 
 std::optional<double> clearance(const Measure& measure, const std::map<std::string, StandingModel>& models,
-                                const editor::PoseRecord& record) {
+                                const tools::PoseRecord& record) {
   const auto mine = models.find(measure.model);
   if (mine == models.end() || mine->second.outline.parts.empty()) return std::nullopt;
   std::vector<std::pair<std::string, std::vector<Polygon>>> standing;
@@ -52,15 +52,15 @@ std::optional<double> clearance(const Measure& measure, const std::map<std::stri
   return std::isfinite(least) ? std::optional(least) : std::nullopt;
 }
 
-std::optional<double> time_to(const Measure& measure, const editor::Seen& seen) {
+std::optional<double> time_to(const Measure& measure, const tools::Seen& seen) {
   const auto poses = seen.record.poses.find(measure.model);
   if (poses == seen.record.poses.end()) return std::nullopt;
   const auto in =
-      std::ranges::find_if(poses->second, [&](const auto& pose) { return measure.reached.holds(editor::values_at(pose)).value(); });
+      std::ranges::find_if(poses->second, [&](const auto& pose) { return measure.reached.holds(tools::values_at(pose)).value(); });
   return in == poses->second.end() ? std::nullopt : std::optional(in->time);
 }
 
-std::optional<double> number_of(const editor::SeenValue& seen, Measure::Take take) {
+std::optional<double> number_of(const tools::SeenValue& seen, Measure::Take take) {
   if (!seen.mean()) return std::nullopt;
   switch (take) {
     case Measure::Take::min:
@@ -74,41 +74,41 @@ std::optional<double> number_of(const editor::SeenValue& seen, Measure::Take tak
   }
 }
 
-std::optional<double> value(const Measure& measure, const editor::Seen& seen) {
+std::optional<double> value(const Measure& measure, const tools::Seen& seen) {
   const auto found = seen.values.find(measure.port + " " + measure.member);
   if (measure.take == Measure::Take::count) return found == seen.values.end() ? 0.0 : static_cast<double>(found->second.samples);
   return found == seen.values.end() ? std::nullopt : number_of(found->second, measure.take);
 }
 
-std::optional<double> joint(const Measure& measure, const editor::PoseRecord& record) {
+std::optional<double> joint(const Measure& measure, const tools::PoseRecord& record) {
   const auto found = record.joints.find(measure.model + "::" + measure.joint);
   if (found == record.joints.end() || found->second.empty()) return std::nullopt;
-  editor::SeenValue seen;
+  tools::SeenValue seen;
   for (const auto& one : found->second) seen.take(one.position);
   return number_of(seen, measure.take);
 }
 
-std::optional<double> holds(const Measure& measure, const editor::Seen& seen) {
-  const auto found = seen.grips.find(editor::grip_name(measure.gripper, measure.model));
+std::optional<double> holds(const Measure& measure, const tools::Seen& seen) {
+  const auto found = seen.grips.find(tools::grip_name(measure.gripper, measure.model));
   return found == seen.grips.end() ? std::nullopt : std::optional(found->second.empty() ? 1.0 : 0.0);
 }
 
-double contacts(const Measure& measure, const editor::Seen& seen) {
+double contacts(const Measure& measure, const tools::Seen& seen) {
   return static_cast<double>(std::ranges::count_if(seen.record.contacts, [&](const auto& contact) {
-    return (contact.model == measure.model && contact.other != editor::usually_touched) ||
-           (contact.other == measure.model && contact.model != editor::usually_touched);
+    return (contact.model == measure.model && contact.other != tools::usually_touched) ||
+           (contact.other == measure.model && contact.model != tools::usually_touched);
   }));
 }
 
 }  // namespace
 
-std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures) {
-  std::vector<editor::Expectation> watched;
+std::vector<tools::Expectation> watched_values(const std::vector<Measure>& measures) {
+  std::vector<tools::Expectation> watched;
   for (const auto& measure : measures) {
-    using Kind = editor::Expectation::Kind;
+    using Kind = tools::Expectation::Kind;
     const bool is_value = measure.kind == Measure::Kind::value, is_joint = measure.kind == Measure::Kind::joint;
     if (!is_value && !is_joint && measure.kind != Measure::Kind::holds) continue;
-    editor::Expectation expectation;
+    tools::Expectation expectation;
     expectation.kind = is_value ? Kind::value : is_joint ? Kind::joint : Kind::holds;
     expectation.model = measure.model;
     expectation.joint = measure.joint;
@@ -121,7 +121,7 @@ std::vector<editor::Expectation> watched_values(const std::vector<Measure>& meas
   return watched;
 }
 
-std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const editor::Seen& seen,
+std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const tools::Seen& seen,
                                             const std::map<std::string, StandingModel>& models, double wall_s) {
   std::map<std::string, double> numbers;
   for (const auto& measure : measures) {
@@ -129,7 +129,7 @@ std::map<std::string, double> take_measures(const std::vector<Measure>& measures
     const auto poses = seen.record.poses.find(measure.model);
     switch (measure.kind) {
       case Measure::Kind::path_length:
-        if (poses != seen.record.poses.end()) number = editor::path_length(poses->second);
+        if (poses != seen.record.poses.end()) number = tools::path_length(poses->second);
         break;
       case Measure::Kind::time_to:
         number = time_to(measure, seen);

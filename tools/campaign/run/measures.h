@@ -13,10 +13,10 @@
 namespace campaign {
 
 // What port values, joints and grips the measures need to be seen, as expectations without limits.
-std::vector<editor::Expectation> watched_values(const std::vector<Measure>& measures);
+std::vector<tools::Expectation> watched_values(const std::vector<Measure>& measures);
 
 // By name; what a run does not have (a goal that was not reached) is missing. `models`: of the run's world.
-std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const editor::Seen& seen,
+std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const tools::Seen& seen,
                                             const std::map<std::string, StandingModel>& models, double wall_s);
 
 }  // namespace campaign

@@ -18,17 +18,17 @@ namespace {
 std::string recording_of(const RowRunOptions& options) { return options.folder + "/run.mcap"; }
 
 // A page that cannot be written takes nothing from the verdict.
-void write_page(const RowRunOptions& options, editor::RunResult& run) {
+void write_page(const RowRunOptions& options, tools::RunResult& run) {
   if (options.page.empty()) return;
   std::error_code ignored;
   if (!run.is_passed() && fs::exists(recording_of(options), ignored)) {
-    const auto written = editor::write_run_page({recording_of(options), options.page}, editor::page_summary(run, options.command));
+    const auto written = tools::write_run_page({recording_of(options), options.page}, tools::page_summary(run, options.command));
     if (!written) run.notes.push_back(written.error().message);
   }
   if (!options.records) fs::remove(recording_of(options), ignored);
 }
 
-editor::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
+tools::RunOptions options_of(const Campaign& campaign, const Row& row, const RowRunOptions& options) {
   auto run = campaign.plan().run;
   run.seed = row.seed;
   run.duration_s = options.duration_s.value_or(run.duration_s);
@@ -40,7 +40,7 @@ editor::RunOptions options_of(const Campaign& campaign, const Row& row, const Ro
 }
 
 // The files of the row: the world, when it is another one, and the expectations, when they stand in the plan.
-Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world, editor::RunOptions& run) {
+Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world, tools::RunOptions& run) {
   std::error_code error;
   fs::create_directories(run.keep, error);
   if (error) return Error{"folder " + base::in_quotes(run.keep) + ": " + error.message()};
@@ -60,7 +60,7 @@ Result<void> write_files(const Plan& plan, const std::optional<WorldFile>& world
   return {};
 }
 
-Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter) {
+Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, tools::Reporter& reporter) {
   Outcome outcome;
   const auto world = campaign.world_of(row);
   if (!world) {
@@ -81,8 +81,8 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
                     .checks_invariants = options.checks_invariants || campaign.plan().checks_invariants,
                     .draws = options.draws && campaign.plan().has_pictures});
   for (const auto& property : script.properties()) run.properties.push_back(property);
-  const editor::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
-  outcome.run = editor::run_system(orb, run, reporter, hooks);
+  const tools::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
+  outcome.run = tools::run_system(orb, run, reporter, hooks);
   write_page(options, outcome.run);
   outcome.measures = script.measures();
   outcome.features = script.features();
@@ -96,22 +96,22 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
 
 }  // namespace
 
-Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, editor::Reporter& reporter) {
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, tools::Reporter& reporter) {
   ValueScript script(campaign.plan());
   if (!script.is_needed()) return {};
   auto run = options_of(campaign, Row{}, {.folder = folder});
   run.expectations.clear();
-  static_cast<void>(editor::run_system(orb, run, reporter, {.script = &script}));
+  static_cast<void>(tools::run_system(orb, run, reporter, {.script = &script}));
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   if (script.problem().empty()) return {};
   return Error{"plan " + base::in_quotes(campaign.plan().file) + ": " + script.problem()};
 }
 
-Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter) {
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, tools::Reporter& reporter) {
   const auto warm = options.warm != nullptr ? options.warm->count() : 0;
   auto outcome = run_once(orb, campaign, row, options, reporter);
-  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || editor::is_interrupted()) return outcome;
+  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || tools::is_interrupted()) return outcome;
   // Who made a program of it was killed and took that along: that says nothing about the row.
   std::error_code ignored;
   fs::remove_all(options.folder, ignored);

@@ -25,19 +25,19 @@ struct RowRunOptions {
   bool records = false;                // run.mcap in the folder
   std::string page{};                  // HTML to write if it fails; empty: none
   std::string command{};               // that repeats it, for its page
-  const editor::WarmPrograms* warm = nullptr;
+  const tools::WarmPrograms* warm = nullptr;
 };
 
 struct Outcome {
-  editor::RunResult run;
+  tools::RunResult run;
   std::map<std::string, double> measures;
   std::set<std::string> features;  // states, places and values that it has reached, coarsely
 };
 
 // Whether the components take the values that the plan has for their parameters. Starts the system for it, when there are some; one that
 // does not start is no error here: rows say so. `folder`: as of a row.
-Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, editor::Reporter& reporter);
+Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const std::string& folder, tools::Reporter& reporter);
 
-Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, editor::Reporter& reporter);
+Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, tools::Reporter& reporter);
 
 }  // namespace campaign

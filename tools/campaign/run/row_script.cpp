@@ -21,19 +21,19 @@ RowScript::RowScript(const Campaign& campaign, const Row& row, RowScriptOptions 
     const auto port = connector.source.instance + ":" + name.substr(name.find('.') + 1);
     if (std::ranges::find(invariant_ports_, port) != invariant_ports_.end()) continue;
     invariant_ports_.push_back(port);
-    editor::Expectation all;  // an empty member: every number
-    all.kind = editor::Expectation::Kind::value;
+    tools::Expectation all;  // an empty member: every number
+    all.kind = tools::Expectation::Kind::value;
     all.port = port;
     watched_.push_back(std::move(all));
   }
 }
 
-editor::Result<void> RowScript::alter(editor::SavedSystem& system) {
+tools::Result<void> RowScript::alter(tools::SavedSystem& system) {
   if (const auto altered = campaign_.alter(system, row_); !altered) return altered;
   return deeds_.alter(system);
 }
 
-void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::RunResult& result) {
+void RowScript::end(tools::RunScene* scene, const tools::Seen& seen, tools::RunResult& result) {
   if (scene && result.problem.empty()) {
     for (auto& verdict : deeds_.verdicts()) result.verdicts.push_back(std::move(verdict));
     for (const auto& port : invariant_ports_) {
@@ -57,7 +57,7 @@ void RowScript::end(editor::RunScene* scene, const editor::Seen& seen, editor::R
   static_cast<void>(scene->simulator.screenshot(options_.folder + "/picture.png", picture_size));
 }
 
-void RowScript::add_features(const editor::Seen& seen) {
+void RowScript::add_features(const tools::Seen& seen) {
   constexpr double cell = 0.5;  // [m]
   for (const auto& [component, state] : seen.states) features_.insert(component + " " + state);
   for (const auto& [model, poses] : seen.record.poses) {

@@ -21,7 +21,7 @@ struct RowScriptOptions {
   bool draws = true;
 };
 
-class RowScript final : public editor::RunScript {
+class RowScript final : public tools::RunScript {
  public:
   // All must live as long.
   RowScript(const Campaign& campaign, const Row& row, RowScriptOptions options);
@@ -31,26 +31,26 @@ class RowScript final : public editor::RunScript {
   // For sim-server.
   std::vector<std::string> simulator_options() const { return deeds_.simulator_options(); }
 
-  editor::Result<void> alter(editor::SavedSystem& system) override;
-  const std::vector<editor::Expectation>& watched() const override { return watched_; }
-  editor::Result<void> begin(editor::RunScene& scene) override { return deeds_.begin(scene); }
+  tools::Result<void> alter(tools::SavedSystem& system) override;
+  const std::vector<tools::Expectation>& watched() const override { return watched_; }
+  tools::Result<void> begin(tools::RunScene& scene) override { return deeds_.begin(scene); }
   std::optional<std::int64_t> next_stop(std::int64_t done) const override { return deeds_.next_stop(done); }
-  editor::Result<void> act(editor::RunScene& scene, std::int64_t done) override { return deeds_.act(scene, done); }
+  tools::Result<void> act(tools::RunScene& scene, std::int64_t done) override { return deeds_.act(scene, done); }
   bool excuses(const std::string& instance) const override { return deeds_.excuses(instance); }
-  void end(editor::RunScene* scene, const editor::Seen& seen, editor::RunResult& result) override;
+  void end(tools::RunScene* scene, const tools::Seen& seen, tools::RunResult& result) override;
 
   const std::map<std::string, double>& measures() const { return measures_; }
   const std::set<std::string>& features() const { return features_; }
 
  private:
-  void add_features(const editor::Seen& seen);
+  void add_features(const tools::Seen& seen);
 
   const Campaign& campaign_;
   const Row& row_;
   RowScriptOptions options_;
   DeedsRunner deeds_;
   std::vector<std::string> invariant_ports_;
-  std::vector<editor::Expectation> watched_;
+  std::vector<tools::Expectation> watched_;
   std::map<std::string, double> measures_;
   std::set<std::string> features_;
 };

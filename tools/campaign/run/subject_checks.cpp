@@ -12,10 +12,10 @@
 namespace campaign {
 namespace {
 
-using editor::Expectation;
+using tools::Expectation;
 
 // COMPONENT:PORT of a condition or a measure; empty: good. The problem says what is there.
-std::string port_problem(const editor::SavedSystem& system, const std::string& port) {
+std::string port_problem(const tools::SavedSystem& system, const std::string& port) {
   const auto colon = port.find(':');
   if (colon == std::string::npos || colon + 1 == port.size()) return "port " + base::in_quotes(port) + ": expected COMPONENT:PORT";
   const auto* component = system.component(port.substr(0, colon));
@@ -28,17 +28,17 @@ std::string port_problem(const editor::SavedSystem& system, const std::string& p
 }
 
 // Of a number that it sends, as far as the profile's connections tell; empty: good.
-std::string value_problem(const editor::SavedSystem& system, const std::string& port, const std::string& member) {
-  const auto path = editor::member_path(member);
+std::string value_problem(const tools::SavedSystem& system, const std::string& port, const std::string& member) {
+  const auto path = tools::member_path(member);
   if (!path) return path.error().message;
-  const auto is_at = [&](const editor::SavedTarget& end) {
+  const auto is_at = [&](const tools::SavedTarget& end) {
     return end.instance + ":" + end.port_name.substr(end.port_name.find('.') + 1) == port;
   };
   bool is_read = false;
   for (const auto& connector : system.connectors) {
     if (!connector.is_data) continue;
     if (is_at(connector.source)) {
-      const auto problem = editor::member_problem(connector.data_type, *path);
+      const auto problem = tools::member_problem(connector.data_type, *path);
       return problem.empty() ? "" : "port " + base::in_quotes(port) + " sends no number " + base::in_quotes(member) + "; it has " + problem;
     }
     is_read = is_read || is_at(connector.target);
@@ -48,7 +48,7 @@ std::string value_problem(const editor::SavedSystem& system, const std::string& 
 
 class SubjectChecks {
  public:
-  SubjectChecks(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models)
+  SubjectChecks(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, StandingModel>& models)
       : plan_(plan), system_(system), models_(models) {
     for (const auto* events : {&plan.events, &plan.hunt.events}) {
       for (const auto& event : *events) {
@@ -62,14 +62,14 @@ class SubjectChecks {
   Result<void> check() {
     for (const auto& measure : plan_.measures) check_measure(measure);
     for (const auto& text : plan_.run.properties) {
-      const auto property = editor::parse_property(text);
+      const auto property = tools::parse_property(text);
       if (!property) return property.error();
       check_component("properties", property->instance);
     }
     if (!plan_.run.expectations.empty() || !plan_.expect_text.empty()) {
       const auto expectations = plan_.run.expectations.empty()
-                                    ? editor::parse_expectations(plan_.expect_text, "plan " + base::in_quotes(plan_.file) + ": expect")
-                                    : editor::read_expectations(plan_.run.expectations);
+                                    ? tools::parse_expectations(plan_.expect_text, "plan " + base::in_quotes(plan_.file) + ": expect")
+                                    : tools::read_expectations(plan_.run.expectations);
       if (!expectations) return expectations.error();
       for (const auto& expectation : *expectations) check_expectation(expectation);
     }
@@ -187,21 +187,21 @@ class SubjectChecks {
     if (expectation.kind == Expectation::Kind::holds) check_gripper(where, expectation.gripper);
   }
 
-  std::vector<editor::ModelParts> parts() const {
-    std::vector<editor::ModelParts> all;
+  std::vector<tools::ModelParts> parts() const {
+    std::vector<tools::ModelParts> all;
     for (const auto& [name, model] : models_) all.push_back(model.parts);
     return all;
   }
 
   void check_joint(const std::string& where, const std::string& model, const std::string& joint) {
     if (!models_.contains(model)) return;  // it is spawned, or that has been said
-    if (const auto found = editor::find_joint(parts(), model, joint); !found) fail(where, found.error().message);
+    if (const auto found = tools::find_joint(parts(), model, joint); !found) fail(where, found.error().message);
   }
 
   // What is spawned may bring one.
   void check_gripper(const std::string& where, const std::string& gripper) {
     if (has_unnamed_ || !spawned_.empty()) return;
-    if (const auto found = editor::find_gripper(parts(), gripper); !found) fail(where, found.error().message);
+    if (const auto found = tools::find_gripper(parts(), gripper); !found) fail(where, found.error().message);
   }
 
   void check_event(const std::string& where, const Event& event) {
@@ -260,7 +260,7 @@ class SubjectChecks {
   }
 
   const Plan& plan_;
-  const editor::SavedSystem& system_;
+  const tools::SavedSystem& system_;
   const std::map<std::string, StandingModel>& models_;
   std::set<std::string> spawned_;
   bool has_unnamed_ = false;  // something that is spawned has the name that its file says
@@ -269,7 +269,7 @@ class SubjectChecks {
 
 }  // namespace
 
-Result<void> check_subjects(const Plan& plan, const editor::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
+Result<void> check_subjects(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
   return SubjectChecks(plan, system, models).check();
 }
 

@@ -28,7 +28,7 @@ void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRo
   const auto outcome = run(*row, folder);
   const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
   if (!room) tally.give_up(room.error().message);
-  if (!room || (editor::is_interrupted() && !outcome.run.problem.empty())) {
+  if (!room || (tools::is_interrupted() && !outcome.run.problem.empty())) {
     fs::remove_all(folder, ignored);
     return;
   }
@@ -37,7 +37,7 @@ void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRo
 
 void work(const Campaign& campaign, const SweepOptions& options, const RunRow& run, Tally& tally, const RowLocks& locks,
           const Tally::Todo& todo) {
-  if (editor::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
+  if (tools::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
   run_todo(campaign, options, run, tally, todo);
   locks.give_back(todo.number);
 }
@@ -49,7 +49,7 @@ std::string again(const std::string& plan, std::size_t row) {
 }
 
 RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
-                          const editor::WarmPrograms* warm) {
+                          const tools::WarmPrograms* warm) {
   return {.folder = folder,
           .records = options.records,
           .page = options.writes_pages ? folder + "/run.html" : "",
@@ -67,7 +67,7 @@ Result<void> make_kept(const SweepOptions& options) {
 }
 
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
-                          const std::function<void(const Progress&)>& show, editor::Reporter& reporter) {
+                          const std::function<void(const Progress&)>& show, tools::Reporter& reporter) {
   if (const auto made = make_kept(options); !made) return made.error();
   if (const auto room = check_room({temporary_folder()}, room_to_begin); !room) return room.error();
   if (const auto writable = check_writable(temporary_folder()); !writable) return writable.error();
@@ -83,13 +83,13 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
   Tally tally(campaign, options, std::move(*store), show);
   if (const auto listed = tally.list_rows(); !listed) return listed.error();
   const auto& todo = tally.todo();
-  const auto warm = todo.size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
+  const auto warm = todo.size() > 1 ? std::make_optional<tools::WarmPrograms>(reporter) : std::nullopt;
   const auto run = [&](const Row& row, const std::string& folder) {
     return run_row(orb, campaign, row, row_options(campaign, options, row.number, folder, warm ? &*warm : nullptr), reporter);
   };
   {
     const RowLocks locks(options.kept);
-    editor::in_parallel(
+    tools::in_parallel(
         todo.size(), options.call_limit, [&](std::size_t i) { work(campaign, options, run, tally, locks, todo[i]); },
         static_cast<std::size_t>(options.jobs));
   }

@@ -52,7 +52,7 @@ struct SweepResult {
 std::string again(const std::string& plan, std::size_t row);
 // Of a row whose files are in `folder`.
 RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
-                          const editor::WarmPrograms* warm);
+                          const tools::WarmPrograms* warm);
 // Of the files of a row, in the folder for kept files.
 std::string folder_name(std::size_t number, const std::string& key);
 // The folder for kept files. The error: it cannot be made, or its disk is full.
@@ -60,6 +60,6 @@ Result<void> make_kept(const SweepOptions& options);
 
 // `show` is called after every row, one call at a time; `reporter` receives what the runs report.
 Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options,
-                          const std::function<void(const Progress&)>& show, editor::Reporter& reporter);
+                          const std::function<void(const Progress&)>& show, tools::Reporter& reporter);
 
 }  // namespace campaign

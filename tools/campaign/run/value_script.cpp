@@ -21,8 +21,8 @@ ValueScript::ValueScript(const Plan& plan) {
   }
 }
 
-editor::Result<void> ValueScript::begin(editor::RunScene& scene) {
-  std::map<std::string, editor::ComponentView> views;
+tools::Result<void> ValueScript::begin(tools::RunScene& scene) {
+  std::map<std::string, tools::ComponentView> views;
   for (const auto& one : wanted_) {
     auto known = views.find(one.component);
     if (known == views.end()) {
@@ -30,7 +30,7 @@ editor::Result<void> ValueScript::begin(editor::RunScene& scene) {
       if (!view) return view.error();
       known = views.emplace(one.component, std::move(*view)).first;
     }
-    const auto problem = editor::value_problem(known->second, one.parameter, one.value);
+    const auto problem = tools::value_problem(known->second, one.parameter, one.value);
     if (problem.empty()) continue;
     problem_ = one.where + ": cannot be " + base::in_quotes(one.value) + ", expected " + problem;
     break;

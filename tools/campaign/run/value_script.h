@@ -12,7 +12,7 @@
 
 namespace campaign {
 
-class ValueScript final : public editor::RunScript {
+class ValueScript final : public tools::RunScript {
  public:
   explicit ValueScript(const Plan& plan);
   // Whether there is anything to ask.
@@ -20,12 +20,12 @@ class ValueScript final : public editor::RunScript {
   // What a component does not take; empty: it takes all, or has not come so far.
   const std::string& problem() const { return problem_; }
 
-  const std::vector<editor::Expectation>& watched() const override { return watched_; }
-  editor::Result<void> begin(editor::RunScene& scene) override;
+  const std::vector<tools::Expectation>& watched() const override { return watched_; }
+  tools::Result<void> begin(tools::RunScene& scene) override;
   std::optional<std::int64_t> next_stop(std::int64_t) const override { return std::nullopt; }
-  editor::Result<void> act(editor::RunScene&, std::int64_t) override { return {}; }
+  tools::Result<void> act(tools::RunScene&, std::int64_t) override { return {}; }
   bool excuses(const std::string&) const override { return true; }
-  void end(editor::RunScene*, const editor::Seen&, editor::RunResult&) override {}
+  void end(tools::RunScene*, const tools::Seen&, tools::RunResult&) override {}
 
  private:
   struct Wanted {
@@ -33,7 +33,7 @@ class ValueScript final : public editor::RunScript {
     std::string component, parameter, value;
   };
   std::vector<Wanted> wanted_;
-  std::vector<editor::Expectation> watched_;
+  std::vector<tools::Expectation> watched_;
   std::string problem_;
 };
 

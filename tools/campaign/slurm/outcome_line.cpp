@@ -18,7 +18,7 @@ std::optional<OutcomeLine> from_line(const std::string& text) {
     OutcomeLine line;
     json.at("key").get_to(line.key);
     json.at("folder").get_to(line.folder);
-    line.outcome.run = editor::run_result_of(json.at("run"));
+    line.outcome.run = tools::run_result_of(json.at("run"));
     line.outcome.run.has_begun = true;  // a row that did not begin has no line
     json.at("measures").get_to(line.outcome.measures);
     return line;

@@ -36,6 +36,6 @@ std::optional<TaskPlace> parse_task(const std::string& text);
 // What a task does: runs its rows on this machine, in a folder of this machine, and tells what has come out. Rows that fail keep their
 // files in options.kept. The error: why it could not.
 Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const TaskPlace& place,
-                      editor::Reporter& reporter);
+                      tools::Reporter& reporter);
 
 }  // namespace campaign

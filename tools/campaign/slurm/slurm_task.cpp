@@ -86,25 +86,25 @@ std::optional<TaskPlace> parse_task(const std::string& text) {
 }
 
 Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepOptions& options, const TaskPlace& place,
-                      editor::Reporter& reporter) {
+                      tools::Reporter& reporter) {
   const TaskFolder shared(place.folder);
   if (const auto same = shared.check_key(campaign.base_key()); !same) return same;
   const auto rows = shared.rows_of(place.attempt, place.task);
   if (!rows) return rows.error();
   Part part(shared.part(place.attempt, place.task));
   // Rows run on a disk of this machine; only what a row leaves behind goes to the shared one.
-  const auto scratch = base::ScratchFolder::make(editor::scratch_prefix);
+  const auto scratch = base::ScratchFolder::make(tools::scratch_prefix);
   if (!scratch) return scratch.error();
-  const auto warm = rows->size() > 1 ? std::make_optional<editor::WarmPrograms>(reporter) : std::nullopt;
+  const auto warm = rows->size() > 1 ? std::make_optional<tools::WarmPrograms>(reporter) : std::nullopt;
   const auto work = [&](std::size_t number) {
-    if (editor::is_interrupted() || !part.problem().empty()) return;
+    if (tools::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
     if (!row) return;  // the caller has made it
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = fs::path(scratch->path()) / name;
     auto outcome = run_row(orb, campaign, *row, row_options(campaign, options, number, folder.string(), warm ? &*warm : nullptr), reporter);
-    if (editor::is_interrupted() && !outcome.run.problem.empty()) return;
+    if (tools::is_interrupted() && !outcome.run.problem.empty()) return;
     const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);
     if (!outcome.run.has_begun && !outcome.run.problem.empty()) return part.give_up(outcome.run.problem);  // another machine may let it
@@ -117,10 +117,10 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     fs::remove_all(folder, ignored);
     part.add(to_line({key, std::move(outcome), kept}));
   };
-  editor::in_parallel(
+  tools::in_parallel(
       rows->size(), options.call_limit, [&](std::size_t i) { work((*rows)[i]); }, static_cast<std::size_t>(options.jobs));
   if (const auto problem = part.problem(); !problem.empty()) return Error{problem};
-  if (editor::is_interrupted()) return Error{"interrupted"};
+  if (tools::is_interrupted()) return Error{"interrupted"};
   return {};
 }
 

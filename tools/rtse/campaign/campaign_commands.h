@@ -4,14 +4,14 @@
 namespace base {
 class Command;
 }
-namespace editor {
+namespace tools {
 struct Chosen;
 }
 
 namespace campaign {
 
-void add_sweep(base::Command& app, editor::Chosen& chosen);
-void add_hunt(base::Command& app, editor::Chosen& chosen);
-void add_results(base::Command& app, editor::Chosen& chosen);
+void add_sweep(base::Command& app, tools::Chosen& chosen);
+void add_hunt(base::Command& app, tools::Chosen& chosen);
+void add_results(base::Command& app, tools::Chosen& chosen);
 
 }  // namespace campaign

@@ -18,8 +18,8 @@
 namespace campaign {
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 struct HuntCall {
   std::string plan, folder, budget = "10m";
@@ -88,7 +88,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   if (call.seed >= 0) plan->hunt.seed = static_cast<std::uint64_t>(call.seed);
   const auto campaign = Campaign::prepare(std::move(*plan));
   if (!campaign) return console.fail(campaign.error());
-  editor::catch_interrupts();
+  tools::catch_interrupts();
   HuntOptions options;
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
   options.jobs = call.jobs;
@@ -115,7 +115,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
                                         {"states", result->features},
                                         {"wall", result->wall_s},
                                         {"finds", finds},
-                                        {"interrupted", editor::is_interrupted()}}
+                                        {"interrupted", tools::is_interrupted()}}
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
@@ -123,12 +123,12 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
                 result->features);
   }
   if (!result->finds.empty()) console.set_failed();
-  if (editor::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
+  if (tools::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
 }
 
 }  // namespace
 
-void add_hunt(base::Command& app, editor::Chosen& chosen) {
+void add_hunt(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("hunt", "Search for faults, events and parameters that violate the plan");
   auto call = std::make_shared<HuntCall>();
   command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->required()->check(base::existing_file());

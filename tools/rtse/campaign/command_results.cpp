@@ -14,8 +14,8 @@
 namespace campaign {
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 struct ResultsCall {
   std::string file, junit, html, runs;
@@ -62,7 +62,7 @@ void show_results(Console& console, const ResultsCall& call) {
 
 }  // namespace
 
-void add_results(base::Command& app, editor::Chosen& chosen) {
+void add_results(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("results", "Show the results of a campaign");
   auto call = std::make_shared<ResultsCall>();
   command->add_option("FILE", call->file, "Results file of rtse sweep")->required()->check(base::existing_file());

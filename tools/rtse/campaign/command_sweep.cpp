@@ -29,8 +29,8 @@ namespace campaign {
 namespace fs = std::filesystem;
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 constexpr const char* no_state = "-";  // of a run that does not get to its end
 
@@ -125,7 +125,7 @@ void run_one(const Session& session, Console& console, const Campaign& campaign,
     console.fail({"row " + std::to_string(call.row) + ": state " + state + ", expected " + call.state});
   if (!outcome.run.problem.empty()) console.fail({outcome.run.problem});
   for (const auto& verdict : outcome.run.verdicts) {
-    if (!verdict.problem.empty()) console.fail({editor::failure_text(verdict)});
+    if (!verdict.problem.empty()) console.fail({tools::failure_text(verdict)});
   }
 }
 
@@ -190,7 +190,7 @@ void print_commands(const Campaign& campaign, const SweepCall& call) {
   const auto word = isatty(STDOUT_FILENO) ? base::shell_word : base::script_word;
   for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
     const auto last = std::min(campaign.rows(), first + call.chunk - 1);
-    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(editor::own_program("rtse")).c_str(),
+    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(tools::own_program("rtse")).c_str(),
                 word(fs::absolute(call.plan).string()).c_str(), first, last, word(fs::absolute(results_of(call)).string()).c_str());
   }
 }
@@ -216,7 +216,7 @@ SlurmOptions slurm_options_of(const SweepCall& call, const SweepOptions& options
   slurm.chunk = call.chunk;
   slurm.tries = call.tries;
   slurm.options = call.sbatch;
-  slurm.command = {editor::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
+  slurm.command = {tools::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
                    std::to_string(call.jobs)};
   if (call.records) slurm.command.emplace_back("--record");
   if (call.pages) slurm.command.emplace_back("--page");
@@ -232,7 +232,7 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
   if (!plan) return console.fail(plan.error());
   const auto campaign = Campaign::prepare(std::move(*plan));
   if (!campaign) return console.fail(campaign.error());
-  editor::catch_interrupts();
+  tools::catch_interrupts();
   if (call.engine == "parallel") return print_commands(*campaign, call);
   if (call.row > 0) return run_one(session, console, *campaign, call);
   const auto options = options_of(session, call);
@@ -278,7 +278,7 @@ void add_engines(base::Command& command, SweepCall& call) {
 
 }  // namespace
 
-void add_sweep(base::Command& app, editor::Chosen& chosen) {
+void add_sweep(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("sweep", "Run all rows of a plan and store their results");
   auto call = std::make_shared<SweepCall>();
   auto* plan = command->add_option("PLAN", call->plan, "Plan, YAML (docs/campaign-plan.md)")->check(base::existing_file());
@@ -308,9 +308,9 @@ void add_sweep(base::Command& app, editor::Chosen& chosen) {
   auto* fails_fast = command->add_flag("--fail-fast", call->fails_fast, "Start no further rows after a failure");
   command->add_flag("--schema", call->prints_schema, "Print the JSON Schema of plans");
   command->callback([&chosen, call, plan, audit, fails_fast] {
-    editor::require(call->prints_schema || plan->count() > 0, "sweep", "expected a PLAN");
-    editor::require(call->engine == "local" || audit->count() + fails_fast->count() == 0, "sweep",
-                    "--audit and --fail-fast are of --engine local");
+    tools::require(call->prints_schema || plan->count() > 0, "sweep", "expected a PLAN");
+    tools::require(call->engine == "local" || audit->count() + fails_fast->count() == 0, "sweep",
+                   "--audit and --fail-fast are of --engine local");
     chosen.needs_orb = !call->prints_schema;
     chosen.work = [call](const Session& session, Console& console) { sweep_plan(session, console, *call); };
   });

@@ -6,5 +6,5 @@
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
-  return editor::run_program({campaign::add_sweep, campaign::add_hunt, campaign::add_results}, argc, argv);
+  return tools::run_program({campaign::add_sweep, campaign::add_hunt, campaign::add_results}, argc, argv);
 }

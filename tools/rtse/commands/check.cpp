@@ -8,7 +8,7 @@
 #include "system/profile/matched_system.h"
 #include "system/profile/system_template.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 // What is not as in the file, in order.
@@ -125,4 +125,4 @@ void add_check(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -5,7 +5,7 @@ namespace base {
 class Command;
 }
 
-namespace editor {
+namespace tools {
 
 struct Chosen;
 
@@ -24,4 +24,4 @@ void add_run(base::Command& app, Chosen& chosen);      // run
 void add_diff(base::Command& app, Chosen& chosen);     // diff
 void add_new(base::Command& app, Chosen& chosen);      // new
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 #include "system/configuration.h"
 #include "system/parameter_check.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 struct ConfigurationOptions {
@@ -134,4 +134,4 @@ void add_conf(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

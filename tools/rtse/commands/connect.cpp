@@ -10,7 +10,7 @@
 #include "rtse/commands/commands.h"
 #include "system/connections.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 // "key=value"; keys of data ports may leave out the leading "dataport.".
@@ -182,4 +182,4 @@ void add_connect(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

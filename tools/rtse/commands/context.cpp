@@ -8,7 +8,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 struct ContextOptions {
@@ -79,4 +79,4 @@ void add_context(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -20,7 +20,7 @@
 #include "system/typed_value.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -202,7 +202,7 @@ void add_data(base::Command& app, Chosen& chosen) {
   print->add_option("-t,--timeout", options->timeout_s, "Stop after N seconds")->check(base::number_between(0.0, 1e9));
   print->add_option("-r,--rate", options->rate, "Maximum number of samples per second")->check(base::number_between(0.0, 1e6));
   print->callback([&chosen, options] {
-    chosen.work = [options](const Session& session, Console& console) { editor::print_ports(session, console, *options); };
+    chosen.work = [options](const Session& session, Console& console) { tools::print_ports(session, console, *options); };
   });
 
   auto* inject = app.add_subcommand("inject", "Write values to an InPort");
@@ -214,8 +214,8 @@ void add_data(base::Command& app, Chosen& chosen) {
       ->capture_default_str();
   inject->add_option("-r,--rate", values->rate, "Samples per second")->check(base::number_between(1e-3, 1e5))->capture_default_str();
   inject->callback([&chosen, values] {
-    chosen.work = [values](const Session& session, Console& console) { editor::inject(session, console, *values); };
+    chosen.work = [values](const Session& session, Console& console) { tools::inject(session, console, *values); };
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -12,7 +12,7 @@
 #include "run/hash_report.h"
 #include "run/run_hashes.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 bool is_recording(const std::string& file) {
@@ -55,4 +55,4 @@ void add_diff(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -21,7 +21,7 @@
 #include "shm/client.h"
 #include "shm/lockstep.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -221,15 +221,15 @@ void add_join(base::Command& app, Chosen& chosen) {
   join->add_option("-o,--option", options->options, "Key of rtc.conf for that host, KEY:VALUE, e.g. of corba.endpoints")
       ->allow_extra_args(false);
   join->callback([&chosen, options] {
-    chosen.work = [options](const Session& session, Console& console) { editor::join(session, console, *options); };
+    chosen.work = [options](const Session& session, Console& console) { tools::join(session, console, *options); };
   });
 
   auto* leave = app.add_subcommand("leave", "Undo join: components run in their own contexts again");
   auto components = std::make_shared<std::vector<std::string>>();
   leave->add_option("COMPONENT", *components, "Components")->required();
   leave->callback([&chosen, components] {
-    chosen.work = [components](const Session& session, Console& console) { editor::leave(session, console, *components); };
+    chosen.work = [components](const Session& session, Console& console) { tools::leave(session, console, *components); };
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 struct ListOptions {
@@ -344,13 +344,13 @@ void add_list(base::Command& app, Chosen& chosen) {
   ls->add_flag("-l,--long", list->is_long, "Also show state, rate and ports (all/connected)");
   ls->add_flag("-R,--recurse", list->recurse, "Also list nested contexts");
   ls->callback(
-      [&chosen, list] { chosen.work = [list](const Session& session, Console& console) { editor::list(session, console, *list); }; });
+      [&chosen, list] { chosen.work = [list](const Session& session, Console& console) { tools::list(session, console, *list); }; });
 
   auto* tree = app.add_subcommand("tree", "Show the name server as a tree, with states and ports");
   auto tree_path = std::make_shared<std::string>();
   tree->add_option("PATH", *tree_path, "Path of the root (default: the whole name server)");
   tree->callback([&chosen, tree_path] {
-    chosen.work = [tree_path](const Session& session, Console& console) { editor::tree(session, console, *tree_path); };
+    chosen.work = [tree_path](const Session& session, Console& console) { tools::tree(session, console, *tree_path); };
   });
 
   auto* cat = app.add_subcommand("cat", "Show the details of a component, port or manager");
@@ -359,8 +359,8 @@ void add_list(base::Command& app, Chosen& chosen) {
   cat->add_option("PATH", *cat_path, "COMPONENT, COMPONENT:PORT or MANAGER")->required();
   cat->add_flag("-l,--long", *cat_long, "Also show all properties");
   cat->callback([&chosen, cat_path, cat_long] {
-    chosen.work = [cat_path, cat_long](const Session& session, Console& console) { editor::cat(session, console, *cat_path, *cat_long); };
+    chosen.work = [cat_path, cat_long](const Session& session, Console& console) { tools::cat(session, console, *cat_path, *cat_long); };
   });
 }
 
-}  // namespace editor
+}  // namespace tools

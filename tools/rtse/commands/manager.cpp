@@ -8,7 +8,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 struct ManagerOptions {
@@ -188,4 +188,4 @@ void add_manager(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "rtse/commands/commands.h"
 #include "rtse/skeleton/specification.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -131,4 +131,4 @@ void add_new(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

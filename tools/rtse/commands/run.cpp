@@ -26,7 +26,7 @@
 #include "run/run_system.h"
 #include "run/run_twice.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -320,7 +320,7 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
     chosen.work = [=](const Session& session, Console& console) {
       auto base = read_like ? read_like(console, *like) : *has_input ? read_input() : RunOptions();
       if (!base) return console.fail(base.error());
-      editor::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
+      tools::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
     };
   });
 }
@@ -333,4 +333,4 @@ void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::f
   declare_run(app, chosen, std::move(read_like), check);
 }
 
-}  // namespace editor
+}  // namespace tools

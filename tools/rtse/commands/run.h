@@ -11,7 +11,7 @@ namespace base {
 class Command;
 }
 
-namespace editor {
+namespace tools {
 
 class Console;
 struct Chosen;
@@ -24,4 +24,4 @@ using ReadLike = std::function<base::Result<RunOptions>(Console& console, const 
 // `check`: what is wrong with the name of a recording; empty: nothing.
 void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::function<std::string(const std::string&)> check);
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/shell_word.h"
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 void add_words(std::vector<std::string>& words, const RunOptionRow& row, const RunOptions& options) {
@@ -73,4 +73,4 @@ void WrittenPage::end(Console& console, const RunResult& result) {
   if (!console.json()) std::cout << "page " << *written;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 #include "run/run_page.h"
 #include "run/run_system.h"
 
-namespace editor {
+namespace tools {
 
 // The run with a recording for its page: a temporary one beside the page, if the user wants none. Without --page the options as they are.
 RunOptions recorded_for_page(const RunOptions& options);
@@ -35,4 +35,4 @@ class WrittenPage {
 // The command that repeats the run, as words of a shell.
 std::string repeating_command(const RunOptions& options);
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "rtse/commands/commands.h"
 #include "system/transitions.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 void change_state(const Session& session, Console& console, const std::vector<std::string>& paths, Transition transition, int context) {
@@ -158,4 +158,4 @@ void add_state(base::Command& app, Chosen& chosen) {
   });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include "system/profile/system_template.h"
 #include "system/saved_system.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 struct SaveCall {
@@ -91,7 +91,7 @@ void add_system(base::Command& app, Chosen& chosen) {
     chosen.work = [load_call](const Session& session, Console& console) {
       const auto& options = load_call->options;
       change_system(console, load_call->file, options.dry_run,
-                    [&](const SavedSystem& system) { return editor::load(session, system, options); });
+                    [&](const SavedSystem& system) { return tools::load(session, system, options); });
     };
   });
   add("start", "Activate the components of a saved system", start);
@@ -99,4 +99,4 @@ void add_system(base::Command& app, Chosen& chosen) {
   add("teardown", "Remove the connections of a saved system", teardown);
 }
 
-}  // namespace editor
+}  // namespace tools

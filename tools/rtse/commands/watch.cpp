@@ -12,7 +12,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr std::chrono::milliseconds refresh_period{500};
@@ -184,8 +184,8 @@ void add_watch(base::Command& app, Chosen& chosen) {
   auto watch_path = std::make_shared<std::string>();
   watch->add_option("PATH", *watch_path, "A name server, as /HOST:PORT");
   watch->callback([&chosen, watch_path] {
-    chosen.work = [watch_path](const Session& session, Console& console) { editor::watch(session, console, *watch_path); };
+    chosen.work = [watch_path](const Session& session, Console& console) { tools::watch(session, console, *watch_path); };
   });
 }
 
-}  // namespace editor
+}  // namespace tools

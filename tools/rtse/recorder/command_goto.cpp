@@ -27,8 +27,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 struct GotoOptions {
   std::string what;  // a recording or a profile
@@ -39,7 +39,7 @@ struct GotoOptions {
   std::string then;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> start;
-  editor::RunOptions run;  // those of a run that can be given here
+  tools::RunOptions run;  // those of a run that can be given here
 };
 
 // A run that stands at a moment: what is done with it, until it is to stand at another one before it, or to end.
@@ -50,7 +50,7 @@ class Stand {
         double time_s, std::string& input)
       : session_(session), console_(console), options_(options), condition_(condition), time_s_(time_s), input_(input) {}
 
-  base::Result<void> drive(editor::RunningSystem& system);
+  base::Result<void> drive(tools::RunningSystem& system);
   // Where a run that is made anew is to stand.
   std::optional<double> wish() const { return wish_; }
 
@@ -71,7 +71,7 @@ class Stand {
   const std::optional<Expression>& condition_;
   const double time_s_;
   std::string& input_;
-  editor::RunningSystem* system_ = nullptr;
+  tools::RunningSystem* system_ = nullptr;
   std::int64_t steps_ = 0;
   std::int64_t tick_ = 1;  // [steps]
   std::optional<double> wish_;
@@ -121,11 +121,11 @@ void Stand::say() const {
 base::Result<void> Stand::then() {
   std::cout.flush();
   std::fflush(stdout);
-  auto child = editor::ChildProcess::start({{"sh", "-c", options_.then},
-                                            {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
-                                            editor::own_output});
+  auto child = tools::ChildProcess::start({{"sh", "-c", options_.then},
+                                           {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
+                                           tools::own_output});
   if (!child) return child.error();
-  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != editor::Ending::ended) return base::Error{"goto: interrupted"};
+  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != tools::Ending::ended) return base::Error{"goto: interrupted"};
   if (child->exit_code() != 0) return base::Error{"command " + base::in_quotes(options_.then) + ": " + child->how_it_ended()};
   return {};
 }
@@ -166,9 +166,9 @@ base::Result<void> Stand::listen() {
       if (*is_over) return {};
       say();
     }
-    pollfd handles[2] = {{editor::interrupt_handle(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
+    pollfd handles[2] = {{tools::interrupt_handle(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
     (void)::poll(handles, 2, -1);
-    if (editor::is_interrupted()) return {};
+    if (tools::is_interrupted()) return {};
     char piece[512];
     const auto size = ::read(STDIN_FILENO, piece, sizeof piece);
     if (size <= 0) return {};
@@ -176,7 +176,7 @@ base::Result<void> Stand::listen() {
   }
 }
 
-base::Result<void> Stand::drive(editor::RunningSystem& system) {
+base::Result<void> Stand::drive(tools::RunningSystem& system) {
   system_ = &system;
   const auto tick = tick_of(system.simulator(), system.step());
   if (!tick) return tick.error();
@@ -211,7 +211,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
     condition = std::move(*parsed);
   }
   std::optional<RecordedRun> recorded;
-  editor::RunOptions call;
+  tools::RunOptions call;
   if (options.world.empty()) {
     if (!is_recording(options.what))
       return console.fail({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
@@ -235,15 +235,15 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
   if (options.seed) call.seed = *options.seed;
   auto given = options.run;
   given.world = call.world, given.seed = call.seed;  // options of this command that have the names of a run's
-  call = editor::with_given(std::move(call), given, command);
-  editor::catch_interrupts();
+  call = tools::with_given(std::move(call), given, command);
+  tools::catch_interrupts();
   GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
   std::string input;
   for (;;) {
     Stand stand(session, console, wanted, condition, time_s, input);
     const auto made =
-        editor::run_system(session.orb(), call, console, {.driver = [&](editor::RunningSystem& system) { return stand.drive(system); }});
+        tools::run_system(session.orb(), call, console, {.driver = [&](tools::RunningSystem& system) { return stand.drive(system); }});
     if (!made.problem.empty()) return console.fail({made.problem});
     if (!stand.wish()) return;
     // The same run once more, and not so far.
@@ -255,7 +255,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
 
 }  // namespace
 
-void add_goto(base::Command& app, editor::Chosen& chosen) {
+void add_goto(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("goto", "Repeat a recorded run and stop at a given time, with all processes running");
   auto options = std::make_shared<GotoOptions>();
   command->add_option("RUN", options->what, "Recording of rtse run --record, or an RTSProfile with --world")
@@ -273,9 +273,9 @@ void add_goto(base::Command& app, editor::Chosen& chosen) {
       ->check(base::number_between(0, 1e18));
   command->add_option("--start", options->start, "Command that starts third-party components (default: the recorded commands)")
       ->allow_extra_args(false);
-  editor::add_run_options(*command, options->run, {"run-file", "module-path", "resource-path", "property", "hang-timeout"});
+  tools::add_run_options(*command, options->run, {"run-file", "module-path", "resource-path", "property", "hang-timeout"});
   command->callback([&chosen, options, command] {
-    editor::require(options->time_s || !options->condition.empty(), "goto", "name a TIME, or a condition with --break");
+    tools::require(options->time_s || !options->condition.empty(), "goto", "name a TIME, or a condition with --break");
     chosen.work = [options, command](const Session& session, Console& console) { go(session, console, *options, *command); };
   });
 }

@@ -14,8 +14,8 @@
 namespace recorder {
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 // "/A0/velocity" -> "A0"; empty: no topic of a component's port.
 std::string component_of(const std::string& topic) {
@@ -52,14 +52,14 @@ void write_page(Console& console, const CompareOptions& options, const std::stri
     if (!comparison) return console.fail(comparison.error());
     summary = summary_of(*comparison);
   }
-  const auto written = editor::write_run_page({.recording = options.first, .file = page, .other = options.second}, summary);
+  const auto written = tools::write_run_page({.recording = options.first, .file = page, .other = options.second}, summary);
   if (!written) return console.fail(written.error());
   if (!console.json()) std::cout << *written;
 }
 
 }  // namespace
 
-void add_page(base::Command& app, editor::Chosen& chosen) {
+void add_page(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("page", "Write a recording, or two to compare, as one HTML page for any browser");
   auto options = std::make_shared<CompareOptions>();
   auto page = std::make_shared<std::string>();

@@ -25,8 +25,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 using WallClock = std::chrono::steady_clock;
 
 struct PlayOptions {
@@ -42,7 +42,7 @@ struct PlayOptions {
 
 // A channel of the recording, and the InPorts that get it.
 struct Route {
-  std::vector<std::unique_ptr<editor::Tap>> targets;
+  std::vector<std::unique_ptr<tools::Tap>> targets;
   std::uint64_t sent = 0;
 };
 using Routes = std::map<std::uint16_t, Route>;
@@ -82,7 +82,7 @@ base::Result<void> add_route(const Session& session, const mcap::Reader& reader,
   if (!type.empty() && channels::scoped_name(type) != channels::scoped_name(port->port.data_type())) {
     return base::Error{"port " + port->port.full_name + ": takes " + port->port.data_type() + ", " + recorded.topic + " was " + type};
   }
-  auto tap = editor::Tap::connect(session.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
+  auto tap = tools::Tap::connect(session.orb(), port->port, {{"rtmsim.play.topic", recorded.topic}}, {});
   if (!tap) return tap.error();
   routes[*channel].targets.push_back(std::move(*tap));
   return {};
@@ -121,10 +121,10 @@ class Pace {
 };
 
 bool wait_until(WallClock::time_point due) {
-  while (!editor::is_interrupted()) {
+  while (!tools::is_interrupted()) {
     const auto left = due - WallClock::now();
     if (left <= WallClock::duration::zero()) return true;
-    pollfd handle{editor::interrupt_handle(), POLLIN, 0};
+    pollfd handle{tools::interrupt_handle(), POLLIN, 0};
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
     const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
     (void)::ppoll(&handle, 1, &limit, nullptr);
@@ -152,7 +152,7 @@ class SimulatedPace final : public Pace {
   }
   bool wait(std::chrono::nanoseconds moment) override {
     while (!start_ || now_ - *start_ < moment) {
-      if (editor::is_interrupted()) return false;
+      if (tools::is_interrupted()) return false;
       shm::Tick tick;
       const auto what = participant_.wait(tick, std::chrono::milliseconds(100));
       if (what == shm::Participant::State::timed_out) continue;
@@ -221,8 +221,8 @@ void play(const Session& session, Console& console, const PlayOptions& options) 
   if (options.links.empty()) {
     if (const auto added = add_recorded_routes(session, console, *reader, routes); !added) return console.fail(added.error());
   }
-  editor::catch_interrupts();
-  const editor::CallLimit limited(session.call_timeout());
+  tools::catch_interrupts();
+  const tools::CallLimit limited(session.call_timeout());
   const auto sent = [&] {
     std::uint64_t sum = 0;
     for (const auto& [channel, route] : routes) sum += route.sent;
@@ -244,7 +244,7 @@ void play(const Session& session, Console& console, const PlayOptions& options) 
 
 }  // namespace
 
-void add_play(base::Command& app, editor::Chosen& chosen) {
+void add_play(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("play", "Send a recording to InPorts of a running system");
   auto options = std::make_shared<PlayOptions>();
   command->add_option("FILE", options->file, "Recording")->required();

@@ -43,8 +43,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 // How long a port waits for the recorder. In lock step time waits with it, so that nothing is lost; in real time a sample is dropped.
 constexpr std::chrono::seconds lockstep_timeout{10};
@@ -117,7 +117,7 @@ base::Result<std::vector<Session::Port>> chosen_ports(const Session& session, Co
   }
   const auto tree = session.tree();
   if (!tree) return tree.error();
-  for (const auto& component : editor::read_components(*tree, {.connectors = true}, session.call_timeout())) {
+  for (const auto& component : tools::read_components(*tree, {.connectors = true}, session.call_timeout())) {
     if (!component.problem.empty()) console.fail({"component " + component.instance + ": " + component.problem});
     for (const auto& port : component.ports) {
       if (port.port_type() != "DataOutPort") continue;
@@ -135,13 +135,13 @@ base::Result<std::vector<Session::Port>> chosen_ports(const Session& session, Co
 }
 
 // Those whose ports are recorded, or all.
-std::vector<editor::ComponentView> chosen_components(const Session& session, const RecordOptions& options,
-                                                     const std::vector<Session::Port>& ports) {
+std::vector<tools::ComponentView> chosen_components(const Session& session, const RecordOptions& options,
+                                                    const std::vector<Session::Port>& ports) {
   if (!options.components && !options.until_error && (!options.all || options.only_ports)) return {};
-  std::vector<editor::ComponentView> chosen;
+  std::vector<tools::ComponentView> chosen;
   const auto tree = session.tree();
   if (!tree) return chosen;
-  for (auto& component : editor::read_components(*tree, {.contexts = true, .configuration = true}, session.call_timeout())) {
+  for (auto& component : tools::read_components(*tree, {.contexts = true, .configuration = true}, session.call_timeout())) {
     const bool is_meant = options.all || std::ranges::any_of(ports, [&](const auto& one) { return one.component.path == component.path; });
     if (is_meant && component.problem.empty()) chosen.push_back(std::move(component));
   }
@@ -205,8 +205,8 @@ std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const R
 // Components that were killed and are there again go on in their channels. Who is not there need not be.
 void look_again(const Session& session, Console& console, PortSource& source, ComponentSource& components) {
   if (const auto tree = session.tree()) {
-    const editor::Detail all{.contexts = true, .connectors = true, .configuration = true};
-    for (const auto& component : editor::read_components(*tree, all, session.call_timeout())) {
+    const tools::Detail all{.contexts = true, .connectors = true, .configuration = true};
+    for (const auto& component : tools::read_components(*tree, all, session.call_timeout())) {
       if (!component.problem.empty()) continue;
       for (const auto& port : component.ports) {
         if (const auto done = source.connect_again(component, port); !done) console.fail(done.error());
@@ -246,14 +246,14 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
                   const std::function<void()>& look) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
-  while (!editor::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
+  while (!tools::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
     int wait_ms = -1;
     if (options.duration_s > 0) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
       if (passed.count() >= options.duration_s) return;
       wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    pollfd handles[3] = {{editor::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
+    pollfd handles[3] = {{tools::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
     (void)::poll(handles, 3, wait_ms);
     const auto order = orders.next(std::chrono::milliseconds(0));
     if (order == RecorderMessage::stop) return;
@@ -326,7 +326,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
   ComponentSource components(session.orb(), exchange, clock);
   auto facts = lockstep_facts(options);
   for (const auto& [component, port] : ports) {
-    if (editor::is_interrupted()) return false;
+    if (tools::is_interrupted()) return false;
     if (const auto added = source.add(component, port, facts[component.instance]); !added) console.fail(added.error());
   }
   if (options.until_error) {
@@ -335,13 +335,13 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
     });
   }
   for (const auto& component : chosen_components(session, options, ports)) {
-    if (editor::is_interrupted()) return false;
+    if (tools::is_interrupted()) return false;
     if (const auto added = components.add(component); !added) console.fail(added.error());
   }
   // On the thread of the views, which end before the others.
   const auto diagnose = [&](channels::Time now) {
     const omni_thread::ensure_self known_to_the_orb;  // time-outs per thread need it
-    const editor::CallLimit limited(session.call_timeout());
+    const tools::CallLimit limited(session.call_timeout());
     components.diagnose(now, source);
   };
   const auto views =
@@ -428,7 +428,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
   if (!stale) return console.fail(stale.error());
   auto sinks = open_sinks(options, clock);
   if (!sinks) return console.fail(sinks.error());
-  editor::catch_interrupts();
+  tools::catch_interrupts();
   Orders orders(options.controlled);
   base::Result<void> written;
   {
@@ -457,7 +457,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
 
 }  // namespace
 
-void add_record(base::Command& app, editor::Chosen& chosen) {
+void add_record(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("record", "Record the samples of ports into an MCAP file");
   auto options = std::make_shared<RecordOptions>();
   command->add_option("PORT", options->ports, "OutPorts to record");
@@ -496,8 +496,8 @@ void add_record(base::Command& app, editor::Chosen& chosen) {
   command->add_flag("-q,--quiet", options->quiet, "Print errors only");
   command->callback([&chosen, options, split] {
     if (!split->empty()) options->split = *parse_split(*split);
-    editor::require(options->all ? options->ports.empty() : options->views || !options->ports.empty(), "record",
-                    "name OutPorts, or --all, or --views");
+    tools::require(options->all ? options->ports.empty() : options->views || !options->ports.empty(), "record",
+                   "name OutPorts, or --all, or --views");
     chosen.work = [options](const Session& session, Console& console) { record(session, console, *options); };
   });
 }

@@ -27,8 +27,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 // ---- info, ls ----
 
@@ -254,7 +254,7 @@ void export_samples(Console& console, const ExportOptions& options) {
 }
 
 void export_page(Console& console, const Selection& selection, const std::string& page) {
-  const auto written = editor::write_run_page({.recording = selection.file, .file = page}, nlohmann::ordered_json::object());
+  const auto written = tools::write_run_page({.recording = selection.file, .file = page}, nlohmann::ordered_json::object());
   if (!written) return console.fail(written.error());
   if (!console.json()) std::cout << *written;
 }
@@ -347,7 +347,7 @@ void add_selection(base::Command& command, Selection& selection) {
 
 }  // namespace
 
-void add_recording(base::Command& app, editor::Chosen& chosen) {
+void add_recording(base::Command& app, tools::Chosen& chosen) {
   auto* recording = app.add_subcommand("recording", "Inspect recordings");
   recording->require_subcommand(1);
   const auto choose = [&chosen](base::Command* command, std::function<void(const Session&, Console&)> work) {

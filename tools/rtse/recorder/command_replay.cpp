@@ -23,8 +23,8 @@ namespace recorder {
 
 namespace {
 
-using editor::Console;
-using editor::Session;
+using tools::Console;
+using tools::Session;
 
 struct Options {
   std::string file, component;
@@ -41,18 +41,18 @@ struct Options {
 std::string after_dot(const std::string& port_name) { return port_name.substr(port_name.find('.') + 1); }
 
 // With --module-path the component comes from there: with the installation's own a comparison would say nothing.
-base::Result<void> check_module(const Options& options, const editor::SavedComponent& component) {
+base::Result<void> check_module(const Options& options, const tools::SavedComponent& component) {
   if (options.module_paths.empty() || !options.start.empty()) return {};
   const auto parts = base::split_list(component.id, ':');
   const auto type = parts.size() >= 4 ? parts[3] : component.instance;
-  if (editor::module_kind(type, options.module_paths) != editor::ModuleKind::none) return {};
-  return base::Error{"component " + component.instance + ": module " + editor::module_names(type) + " is not in --module-path " +
+  if (tools::module_kind(type, options.module_paths) != tools::ModuleKind::none) return {};
+  return base::Error{"component " + component.instance + ": module " + tools::module_names(type) + " is not in --module-path " +
                      base::join(options.module_paths, ", ")};
 }
 
 // The properties that decide what an InPort keeps: its buffer, and the stamps that it gives.
-editor::Properties of_receiver(const editor::SavedConnector& connector) {
-  editor::Properties kept;
+tools::Properties of_receiver(const tools::SavedConnector& connector) {
+  tools::Properties kept;
   for (const auto& [key, value] : connector.properties) {
     const bool is_kept = key.find("buffer") != std::string::npos || key.ends_with("timestamp_policy");
     if (key.starts_with("dataport.") && is_kept) kept[key] = value;
@@ -61,7 +61,7 @@ editor::Properties of_receiver(const editor::SavedConnector& connector) {
 }
 
 // The links that the profile has, and those of the command line in their place.
-base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system, const Options& options) {
+base::Result<std::vector<ReplayLink>> links_of(const tools::SavedSystem& system, const Options& options) {
   std::vector<ReplayLink> links;
   for (const auto& text : options.links) {
     const auto equals = text.find('=');
@@ -80,7 +80,7 @@ base::Result<std::vector<ReplayLink>> links_of(const editor::SavedSystem& system
 }
 
 // What the recording cannot give the component is said, and left out; what the command line names has to be there.
-base::Result<std::vector<ReplayLink>> possible(Console& console, std::vector<ReplayLink> links, const editor::SavedSystem& system,
+base::Result<std::vector<ReplayLink>> possible(Console& console, std::vector<ReplayLink> links, const tools::SavedSystem& system,
                                                const Options& options) {
   auto reader = open_recording(options.file);
   if (!reader) return reader.error();
@@ -104,8 +104,8 @@ base::Result<std::vector<ReplayLink>> possible(Console& console, std::vector<Rep
   return links;
 }
 
-editor::SavedSystem alone(const editor::SavedSystem& system, const std::string& instance) {
-  editor::SavedSystem one;
+tools::SavedSystem alone(const tools::SavedSystem& system, const std::string& instance) {
+  tools::SavedSystem one;
   one.id = system.id;
   one.abstract = "a component alone";
   one.creation_date = system.creation_date;
@@ -116,14 +116,14 @@ editor::SavedSystem alone(const editor::SavedSystem& system, const std::string& 
 }
 
 // Other values of the active configuration set than the recorded ones.
-base::Result<void> configure(editor::SavedComponent& component, const std::vector<std::string>& settings) {
+base::Result<void> configure(tools::SavedComponent& component, const std::vector<std::string>& settings) {
   for (const auto& text : settings) {
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    const auto set = std::ranges::find(component.configuration_sets, component.active_set, &editor::SavedConfigurationSet::id);
+    const auto set = std::ranges::find(component.configuration_sets, component.active_set, &tools::SavedConfigurationSet::id);
     const bool has_set = set != component.configuration_sets.end();
     const auto value =
-        has_set ? std::ranges::find(set->values, name, &std::pair<std::string, std::string>::first) : editor::NamedValues::iterator();
+        has_set ? std::ranges::find(set->values, name, &std::pair<std::string, std::string>::first) : tools::NamedValues::iterator();
     if (!has_set || value == set->values.end())
       return base::Error{"component " + component.instance + ": has no parameter " + base::in_quotes(name)};
     value->second = text.substr(equals + 1);
@@ -133,7 +133,7 @@ base::Result<void> configure(editor::SavedComponent& component, const std::vecto
 
 // The rate in which it ran; the profile may say something else. Of a component that was recorded outside of lock step it is not known, as
 // is the tick in which it read a sample.
-base::Result<void> take_rate(Console& console, editor::SavedComponent& component, const std::string& file) {
+base::Result<void> take_rate(Console& console, tools::SavedComponent& component, const std::string& file) {
   auto reader = open_recording(file);
   if (!reader) return reader.error();
   bool is_recorded = false;
@@ -153,7 +153,7 @@ base::Result<void> take_rate(Console& console, editor::SavedComponent& component
 }
 
 // A world with nothing in it. Where the component ticks at whole steps one step is one tick.
-base::Result<std::string> empty_world(const RecordedRun& run, const editor::SavedComponent& component) {
+base::Result<std::string> empty_world(const RecordedRun& run, const tools::SavedComponent& component) {
   std::int64_t step = base::parse_integer(run.note("step_ns")).value_or(1'000'000);
   const auto rate = component.contexts.empty() ? 0 : base::parse_number(component.contexts.front().rate).value_or(0);
   const auto period = rate > 0 ? std::llround(1e9 / rate) : 0;
@@ -213,23 +213,23 @@ std::string nothing_compared(const Options& options, const ReplayResult& result)
 }
 
 base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem) {
-  editor::RunOptions names;
+  tools::RunOptions names;
   names.system = "replay";
   names.world = options.component;
   names.duration_s = result.simulated_s;
-  editor::RunResult run;
+  tools::RunResult run;
   run.problem = problem;
   run.page = options.page;
   run.wall_s = result.wall_s;
   for (const auto& output : result.outputs)
     run.verdicts.push_back(
         {"output " + output.topic + " is as recorded", output.first.empty() ? "" : "first difference at " + output.first});
-  return editor::write_junit(options.junit, names, {run});
+  return tools::write_junit(options.junit, names, {run});
 }
 
 // The page of the recording, which opens at the first difference. It shows the recorded run, not what the component sent now.
 base::Result<void> write_page(Console& console, const Options& options, const ReplayResult& result, const std::string& command) {
-  editor::RunResult run;
+  tools::RunResult run;
   for (const auto& output : result.outputs) {
     if (output.first.empty()) continue;
     run.verdicts.push_back({.expectation = "output " + output.topic + " is as recorded",
@@ -237,9 +237,9 @@ base::Result<void> write_page(Console& console, const Options& options, const Re
                             .time = output.first_s,
                             .subject = options.component});
   }
-  auto summary = editor::page_summary(run, command);
+  auto summary = tools::page_summary(run, command);
   for (const char* unknown : {"seed", "hash", "simulated"}) summary.erase(unknown);
-  const auto written = editor::write_run_page({options.file, options.page}, summary);
+  const auto written = tools::write_run_page({options.file, options.page}, summary);
   if (!written) return written.error();
   if (!console.json()) std::cout << "page " << *written;
   return {};
@@ -270,7 +270,7 @@ bool has_own_stamps(const RecordedRun& run, const std::string& component) {
 void replay_file(const Session& session, Console& console, const Options& options) {
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return console.fail(run.error());
-  const auto system = editor::read_system(run->system());
+  const auto system = tools::read_system(run->system());
   if (!system) return console.fail(system.error());
   if (system->component(options.component) == nullptr) {
     std::vector<std::string> names;
@@ -313,17 +313,17 @@ void replay_file(const Session& session, Console& console, const Options& option
   std::erase_if(call.properties, [&](const std::string& property) { return !property.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
   if (const auto done = configure(one.components.front(), options.settings); !done) return console.fail(done.error());
-  if (const auto written = editor::write_system(one, call.system); !written) return console.fail(written.error());
+  if (const auto written = tools::write_system(one, call.system); !written) return console.fail(written.error());
   ReplayResult result;
-  editor::RunHooks hooks;
-  hooks.driver = [&](editor::RunningSystem& running) -> base::Result<void> {
+  tools::RunHooks hooks;
+  hooks.driver = [&](tools::RunningSystem& running) -> base::Result<void> {
     auto done = replay(session.orb(), running, replayed);
     if (!done) return done.error();
     result = std::move(*done);
     return {};
   };
-  editor::catch_interrupts();
-  const auto made = editor::run_system(session.orb(), call, console, hooks);
+  tools::catch_interrupts();
+  const auto made = tools::run_system(session.orb(), call, console, hooks);
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
     problem += "; it was in a third-party process: start that with --start COMMAND";
@@ -346,7 +346,7 @@ void replay_file(const Session& session, Console& console, const Options& option
 
 }  // namespace
 
-void add_replay(base::Command& app, editor::Chosen& chosen) {
+void add_replay(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("replay", "Send recorded inputs to one component, in lock step, and compare its outputs");
   auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "Recording of rtse run --record")->required();
@@ -375,7 +375,7 @@ void add_replay(base::Command& app, editor::Chosen& chosen) {
   command->add_option("--page", options->page, "With --compare: write the recording as an HTML page, opened at the first difference");
   command->add_option("--keep", options->keep, "Folder for the logs");
   command->callback([&chosen, options] {
-    editor::require(options->page.empty() || options->compares, "replay", "--page needs --compare");
+    tools::require(options->page.empty() || options->compares, "replay", "--page needs --compare");
     chosen.work = [options](const Session& session, Console& console) { replay_file(session, console, *options); };
   });
 }

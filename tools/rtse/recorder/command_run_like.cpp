@@ -11,11 +11,11 @@
 
 namespace recorder {
 
-void add_run_like(base::Command& app, editor::Chosen& chosen) {
+void add_run_like(base::Command& app, tools::Chosen& chosen) {
   const auto kept = std::make_shared<std::optional<RecordedRun>>();  // its files, until the run has ended
-  editor::add_run_like(
+  tools::add_run_like(
       app, chosen,
-      [kept](editor::Console& console, const std::string& recording) -> base::Result<editor::RunOptions> {
+      [kept](tools::Console& console, const std::string& recording) -> base::Result<tools::RunOptions> {
         auto run = RecordedRun::unpack(recording);
         if (!run) return run.error();
         if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);

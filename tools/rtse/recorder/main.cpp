@@ -3,7 +3,7 @@
 #include "rtse/recorder/recorder_commands.h"
 
 int main(int argc, char** argv) {
-  return editor::run_program({recorder::add_record, recorder::add_play, recorder::add_replay, recorder::add_goto, recorder::add_run_like,
-                              recorder::add_recording, recorder::add_page},
-                             argc, argv);
+  return tools::run_program({recorder::add_record, recorder::add_play, recorder::add_replay, recorder::add_goto, recorder::add_run_like,
+                             recorder::add_recording, recorder::add_page},
+                            argc, argv);
 }

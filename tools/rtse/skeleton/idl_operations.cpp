@@ -15,7 +15,7 @@
 #include "base/plain_file.h"
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -229,4 +229,4 @@ bool defines_type(const std::map<std::string, std::string>& idl, const std::stri
   return std::ranges::any_of(idl, [&](const auto& file) { return std::regex_search(file.second, definition); });
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -8,7 +8,7 @@
 
 #include "rtse/skeleton/skeleton.h"
 
-namespace editor {
+namespace tools {
 
 struct Operation {
   std::string declaration;  // "Mod::Pt* q(char*& s)"
@@ -32,4 +32,4 @@ base::Result<std::map<std::string, std::string>> with_included(const std::vector
 // A struct, union or typedef of this C++ name ("Mod::Pt") is in one of the texts.
 bool defines_type(const std::map<std::string, std::string>& idl, const std::string& type);
 
-}  // namespace editor
+}  // namespace tools

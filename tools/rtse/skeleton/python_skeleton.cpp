@@ -9,7 +9,7 @@
 #include "rtse/skeleton/idl_operations.h"
 #include "rtse/skeleton/skeleton.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Result;
@@ -224,4 +224,4 @@ Result<std::map<std::string, std::string>> python_skeleton(const NewComponent& g
   return files;
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "rtse/skeleton/idl_operations.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -407,4 +407,4 @@ Result<std::map<std::string, std::string>> skeleton(const NewComponent& given) {
   return files;
 }
 
-}  // namespace editor
+}  // namespace tools

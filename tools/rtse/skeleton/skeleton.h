@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace editor {
+namespace tools {
 
 struct NewPort {
   std::string name;
@@ -59,4 +59,4 @@ base::Result<std::map<std::string, std::string>> skeleton(const NewComponent& co
 // The same for a component in Python.
 base::Result<std::map<std::string, std::string>> python_skeleton(const NewComponent& component);
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "system/parameter_check.h"
 #include "system/value_codec.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -162,4 +162,4 @@ Result<void> check(const NewComponent& component) {
   return check_services(component, members, data_ports);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "base/yaml_keys.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -241,4 +241,4 @@ Result<NewComponent> read_specification(const std::string& file) {
   return file.ends_with(".xml") ? read_rtc_xml(file) : read_yaml(file);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 
 #include "rtse/skeleton/skeleton.h"
 
-namespace editor {
+namespace tools {
 
 // RTC.xml (RtcProfile, what RTCBuilder saves) or a YAML specification.
 base::Result<NewComponent> read_specification(const std::string& file);
@@ -15,4 +15,4 @@ base::Result<NewComponent> read_specification(const std::string& file);
 std::string full_type(const std::string& type);
 void add_once(std::vector<std::string>& list, const std::string& item);
 
-}  // namespace editor
+}  // namespace tools

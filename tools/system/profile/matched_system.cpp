@@ -2,7 +2,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 
 std::string path_uri(const ComponentView& component) { return base::join(component.segments, "/"); }
 
@@ -98,4 +98,4 @@ Result<const PortView*> Matched::port(const SavedTarget& target) const {
                (names.empty() ? "; it has none" : "; it has " + base::join(names, ", "))};
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "system/profile/rts_profile.h"
 #include "system/session.h"
 
-namespace editor {
+namespace tools {
 
 // The path as the file format writes it, without the leading slash.
 std::string path_uri(const ComponentView& component);
@@ -51,4 +51,4 @@ class Matched {
   std::set<std::string> optional_;  // instances that the profile does not require
 };
 
-}  // namespace editor
+}  // namespace tools

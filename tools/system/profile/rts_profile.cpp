@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr std::uintmax_t largest_file = 64u << 20;
@@ -55,4 +55,4 @@ base::Result<void> write_system(const SavedSystem& system, const std::string& fi
   return base::write_whole_file(file, is_yaml ? to_yaml(system) : to_xml(system));
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "system/parameter_check.h"
 
-namespace editor {
+namespace tools {
 
 // The format has no place for states: they are kept as a property of the execution context, which other readers leave alone.
 inline constexpr const char* state_property = "state";
@@ -117,4 +117,4 @@ base::Result<SavedSystem> read_system(const std::string& file);
 // By the ending: .yaml and .yml YAML, anything else XML. Written whole or not at all.
 base::Result<void> write_system(const SavedSystem& system, const std::string& file);
 
-}  // namespace editor
+}  // namespace tools

@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -282,4 +282,4 @@ std::string to_xml(const SavedSystem& system) {
   return out.str();
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -6,7 +6,7 @@
 #include "base/yaml_keys.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 using base::Error;
@@ -316,4 +316,4 @@ std::string to_yaml(const SavedSystem& system) {
   return std::string(out.c_str()) + "\n";
 }
 
-}  // namespace editor
+}  // namespace tools

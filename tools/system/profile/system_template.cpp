@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace editor {
+namespace tools {
 namespace {
 
 constexpr std::size_t most_entries = 1'000'000;  // components, or connections
@@ -159,4 +159,4 @@ base::Result<SavedSystem> read_system(const std::string& file, const std::vector
   return filled_in(std::move(*system), lists, file);
 }
 
-}  // namespace editor
+}  // namespace tools

@@ -9,7 +9,7 @@
 #include "base/name_list.h"
 #include "system/profile/rts_profile.h"
 
-namespace editor {
+namespace tools {
 
 // The system with each of `lists` ("robot=r0..r99") filled in; a system without names in braces as it is. Fails when a list is not used,
 // when a name in braces has no list, and when two components get one name. `file` is for messages.
@@ -21,4 +21,4 @@ base::Result<std::vector<std::string>> filled_in(std::vector<std::string> texts,
 // read_system() and filled_in().
 base::Result<SavedSystem> read_system(const std::string& file, const std::vector<std::string>& lists);
 
-}  // namespace editor
+}  // namespace tools
