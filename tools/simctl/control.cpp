@@ -1,4 +1,6 @@
 // Requests and commands: step, pose, velocity, spawn, screenshot, contacts.
+#include <poll.h>
+
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -112,7 +114,8 @@ void pose(Control& control, const std::string& model, const std::vector<double>&
 namespace {
 
 // Until the command is over; without a duration, until an interrupt. The simulator counts from the step that first sees the command: the
-// one after the time on the clock, or the one after that.
+// one after the time on the clock, or the one after that. Without a duration no step is waited for: the simulator would have to wake each
+// such client at each of them.
 void await_end(Control& control, const shm::Iface& iface, shm::Iface& simulation, std::chrono::nanoseconds duration) {
   const auto stamp = [&] { return simulation.read() ? simulation.sample<shm::SimulationSample>().stamp : shm::Stamp{}; };
   const auto begin = stamp();
@@ -122,7 +125,13 @@ void await_end(Control& control, const shm::Iface& iface, shm::Iface& simulation
     if (duration.count() > 0 && now.sim_time_ns >= end) return;
     if (now.resets != begin.resets) return control.fail("iface " + iface.name() + ": the world was reset, which ends the command");
     if (!iface.is_commander()) return control.fail("iface " + iface.name() + ": another client commands it now");
-    if (simulation.wait(now.sequence, std::chrono::milliseconds(100)) == shm::Wait::closed) return control.fail("the simulator has exited");
+    constexpr std::chrono::milliseconds pause(100);
+    if (duration.count() > 0) {
+      simulation.wait(now.sequence, pause);
+    } else {
+      ::poll(nullptr, 0, pause.count());  // ends early at an interrupt
+    }
+    if (simulation.status() != shm::Status::live) return control.fail("the simulator has exited");
     if (iface.status() != shm::Status::live)
       return control.fail("iface " + iface.name() + ": its model was deleted, which ends the command");
   }
