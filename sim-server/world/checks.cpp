@@ -1,11 +1,10 @@
 #include "world/checks.h"
 
-#include <cmath>
-#include <map>
 #include <set>
 
 #include "base/text.h"
 #include "world/frame_references.h"
+#include "world/number_rules.h"
 #include "world/taken_names.h"
 #include "world/xml_file.h"
 #include "world/xml_values.h"
@@ -15,168 +14,6 @@ namespace sim {
 namespace {
 
 constexpr std::size_t longest_name = 200;
-constexpr double largest_length = 1e9;  // [m] and other physical values where a user cannot mean more
-
-enum class Form { finite, not_negative, positive, number, vector2, positive2, vector3, positive3, scale3, direction };
-enum class Remedy { drop_owner, ignore };
-struct Rule {
-  Form form;
-  Remedy remedy;
-};
-
-const std::map<std::string_view, Rule>& rules() {
-  using enum Form;
-  using enum Remedy;
-  static const std::map<std::string_view, Rule> table{
-      {"box/size", {positive3, drop_owner}},
-      {"sphere/radius", {positive, drop_owner}},
-      {"cylinder/radius", {positive, drop_owner}},
-      {"cylinder/length", {positive, drop_owner}},
-      {"cone/radius", {positive, drop_owner}},
-      {"cone/length", {positive, drop_owner}},
-      {"capsule/radius", {positive, drop_owner}},
-      {"capsule/length", {positive, drop_owner}},
-      {"ellipsoid/radii", {positive3, drop_owner}},
-      {"plane/normal", {direction, drop_owner}},
-      {"plane/size", {positive2, ignore}},
-      {"mesh/scale", {scale3, drop_owner}},
-      {"heightmap/size", {positive3, drop_owner}},
-      {"heightmap/pos", {vector3, drop_owner}},
-      {"polyline/point", {vector2, drop_owner}},
-      {"polyline/height", {positive, drop_owner}},
-      {"axis/xyz", {direction, drop_owner}},
-      {"axis2/xyz", {direction, drop_owner}},
-      {"limit/lower", {number, ignore}},
-      {"limit/upper", {number, ignore}},
-      {"limit/effort", {number, ignore}},
-      {"limit/velocity", {number, ignore}},
-      {"limit/stiffness", {not_negative, ignore}},
-      {"limit/dissipation", {not_negative, ignore}},
-      {"dynamics/damping", {not_negative, ignore}},
-      {"dynamics/friction", {not_negative, ignore}},
-      {"dynamics/spring_reference", {finite, ignore}},
-      {"dynamics/spring_stiffness", {finite, ignore}},
-      {"joint/thread_pitch", {finite, ignore}},
-      {"joint/screw_thread_pitch", {finite, ignore}},
-      {"joint/gearbox_ratio", {finite, ignore}},
-      {"road/width", {positive, drop_owner}},
-      {"road/point", {vector3, drop_owner}},
-      {"population/model_count", {positive, drop_owner}},
-      {"distribution/rows", {positive, drop_owner}},
-      {"distribution/cols", {positive, drop_owner}},
-      {"distribution/step", {vector3, drop_owner}},
-      {"world/gravity", {vector3, ignore}},
-      {"atmosphere/temperature", {positive, ignore}},
-      {"atmosphere/pressure", {positive, ignore}},
-      {"world/magnetic_field", {vector3, ignore}},
-      {"wind/linear_velocity", {vector3, ignore}},
-      {"physics/max_step_size", {positive, ignore}},
-      {"physics/real_time_factor", {not_negative, ignore}},
-      {"sensor/update_rate", {not_negative, ignore}},
-      {"range/min", {not_negative, drop_owner}},
-      {"range/max", {number, drop_owner}},
-      {"range/resolution", {not_negative, ignore}},
-      {"horizontal/min_angle", {finite, drop_owner}},
-      {"horizontal/max_angle", {finite, drop_owner}},
-      {"horizontal/resolution", {positive, ignore}},
-      {"vertical/min_angle", {finite, drop_owner}},
-      {"vertical/max_angle", {finite, drop_owner}},
-      {"vertical/resolution", {positive, ignore}},
-      {"camera/horizontal_fov", {positive, drop_owner}},
-      {"image/width", {positive, drop_owner}},
-      {"image/height", {positive, drop_owner}},
-      {"clip/near", {positive, ignore}},
-      {"clip/far", {positive, ignore}},
-      {"noise/mean", {finite, ignore}},
-      {"noise/stddev", {not_negative, ignore}},
-      {"noise/bias_mean", {finite, ignore}},
-      {"noise/bias_stddev", {not_negative, ignore}},
-      {"sonar/min", {not_negative, drop_owner}},
-      {"sonar/max", {positive, drop_owner}},
-      {"sonar/radius", {not_negative, ignore}},
-      {"attenuation/range", {not_negative, ignore}},
-      {"attenuation/constant", {not_negative, ignore}},
-      {"attenuation/linear", {not_negative, ignore}},
-      {"attenuation/quadratic", {not_negative, ignore}},
-      {"light/intensity", {not_negative, ignore}},
-      {"light/direction", {direction, ignore}},
-      {"visual/transparency", {finite, ignore}},
-      {"velocity_decay/linear", {not_negative, ignore}},
-      {"velocity_decay/angular", {not_negative, ignore}},
-      {"waypoint/time", {finite, drop_owner}},
-      {"skin/scale", {positive, ignore}},
-      {"animation/scale", {positive, ignore}},
-      {"script/delay_start", {not_negative, ignore}},
-  };
-  return table;
-}
-
-std::string_view expectation(Form form) {
-  switch (form) {
-    case Form::finite:
-      return "a finite number";
-    case Form::not_negative:
-      return "a number that is not negative";
-    case Form::positive:
-      return "a positive number";
-    case Form::number:
-      return "a number";
-    case Form::vector2:
-      return "two finite numbers";
-    case Form::positive2:
-      return "two positive numbers";
-    case Form::vector3:
-      return "three finite numbers";
-    case Form::positive3:
-      return "three positive numbers";
-    case Form::scale3:
-      return "three numbers other than zero";
-    case Form::direction:
-      return "three numbers that are not all zero";
-  }
-  return "a number";
-}
-
-bool is_sane(double value) { return std::isfinite(value) && std::abs(value) <= largest_length; }
-
-bool fits(Form form, const std::string& text) {
-  const std::optional<std::vector<double>> parsed = parse_numbers(text);
-  if (!parsed) return false;
-  const std::vector<double>& n = *parsed;
-  const auto all = [&](std::size_t count, auto good) {
-    if (n.size() != count) return false;
-    for (double value : n) {
-      if (!good(value)) return false;
-    }
-    return true;
-  };
-  const auto sane = [](double value) { return is_sane(value); };
-  const auto above = [](double value) { return is_sane(value) && value > 1e-9; };
-  switch (form) {
-    case Form::finite:
-      return all(1, sane);
-    case Form::not_negative:
-      return all(1, [](double value) { return std::isfinite(value) && value >= 0; });
-    case Form::positive:
-      return all(1, above);
-    case Form::number:
-      return all(1, [](double value) { return !std::isnan(value); });
-    case Form::vector2:
-      return all(2, sane);
-    case Form::positive2:
-      return all(2, above);
-    case Form::vector3:
-      return all(3, sane);
-    case Form::positive3:
-      return all(3, above);
-    case Form::scale3:
-      return all(3, [](double value) { return is_sane(value) && std::abs(value) > 1e-12; });
-    case Form::direction:
-      return all(3, sane) && std::hypot(n[0], n[1], n[2]) > 1e-9;
-  }
-  return false;
-}
-
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
   for (std::string_view candidate : names) {
     if (name == candidate) return true;
@@ -198,11 +35,11 @@ struct NumberCheck {
   Complaints& complaints;
   std::vector<pugi::xml_node> dropped, ignored;
 
-  void fail(pugi::xml_node node, std::string_view expected, Remedy remedy) {
+  void fail(pugi::xml_node node, const std::string& expected, NumberRule::Remedy remedy) {
     const pugi::xml_node owner = owner_of(node);
     const std::string text = "<" + std::string(node.name()) + "> of " + describe_in_context(owner ? owner : node.parent()) + " must be " +
-                             std::string(expected) + ", got " + base::in_quotes(text_of(node));
-    if (remedy == Remedy::drop_owner && owner) {
+                             expected + ", got " + base::in_quotes(text_of(node));
+    if (remedy == NumberRule::Remedy::drop_owner && owner) {
       complaints.drop(node, text + "; the " + owner.name() + " is left out");
       dropped.push_back(owner);
     } else {
@@ -230,14 +67,12 @@ struct NumberCheck {
         const std::optional<Eigen::Isometry3d> pose = parse_pose(child);
         if (!pose || pose->translation().cwiseAbs().maxCoeff() > largest_length) {
           const bool is_quaternion = std::string_view(child.attribute("rotation_format").value()) == "quat_xyzw";
-          fail(child, is_quaternion ? "seven finite numbers" : "six finite numbers", Remedy::drop_owner);
+          fail(child, is_quaternion ? "seven finite numbers" : "six finite numbers", NumberRule::Remedy::drop_owner);
         }
         continue;
       }
-      const auto rule = rules().find(parent + "/" + std::string(name));
-      if (rule != rules().end() && child.first_child() && !fits(rule->second.form, text_of(child))) {
-        fail(child, expectation(rule->second.form), rule->second.remedy);
-      }
+      const NumberRule* rule = find_number_rule(parent, name);
+      if (rule != nullptr && child.first_child() && !fits(*rule, text_of(child))) fail(child, expectation(*rule), rule->remedy);
       walk(child);
     }
   }

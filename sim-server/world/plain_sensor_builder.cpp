@@ -48,7 +48,11 @@ std::optional<DvlDef> build_dvl(pugi::xml_node sensor, BuildContext& context) {
   if (dvl.beams.size() < fewest || dvl.beams.size() > most)
     wrong = must(sensor, "number of beams", "from 3 to 64", static_cast<double>(dvl.beams.size()));
   dvl.range_min = number_at(node, "minimum_range", 0.1);
-  dvl.range_max = std::min(number_at(node, "maximum_range", 100), 1e5);
+  dvl.range_max = number_at(node, "maximum_range", 100);
+  if (constexpr double furthest = 1e5; dvl.range_max > furthest) {
+    context.complaints.note(node, "largest range of " + describe_in_context(sensor) + " is cut to 100000 m");
+    dvl.range_max = furthest;
+  }
   if (wrong.empty() && !(dvl.range_max > dvl.range_min && dvl.range_min >= 0))
     wrong = must(sensor, "maximum range", "above the minimum range, which is not negative", dvl.range_max);
   dvl.reference = pose_at(node, "reference_frame");

@@ -58,7 +58,7 @@ ScanDef build_scan(pugi::xml_node node) {
   // Gazebo lets some rays stand for more points and fills in between; here every point has its own ray.
   scan.resolution = number_at(node, "resolution", 1);
   const double points = std::round(scan.samples * scan.resolution);
-  if (scan.samples >= 1 && points <= most_rays) scan.samples = std::max(1, static_cast<int>(points));
+  if (scan.samples >= 1) scan.samples = static_cast<int>(std::clamp(points, 1.0, most_rays + 1.0));
   scan.min_angle = number_at(node, "min_angle", 0);
   scan.max_angle = number_at(node, "max_angle", 0);
   return scan;
@@ -155,6 +155,8 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
   if (!camera.lens && camera.horizontal_fov >= 3.1)
     wrong = must(sensor, "horizontal field of view", "below 3.1 without a <lens>", camera.horizontal_fov);
   if (!(camera.near_clip < camera.far_clip)) wrong = must(sensor, "near clip distance", "below the far one", camera.near_clip);
+  if (camera.lens && camera.lens->type == "custom" && camera.lens->c1 * camera.lens->c2 * camera.lens->f == 0)
+    wrong = must(sensor, "c1, c2 and f of the custom lens", "other than zero", 0);
   if (wrong.empty()) return camera;
   context.complaints.drop(sensor, wrong);
   return std::nullopt;
