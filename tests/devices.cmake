@@ -3,7 +3,7 @@ rtmsim_test(attachments_test devices/attachments_test.cpp LIBRARIES simserver LA
 rtmsim_test(follower_test devices/follower_test.cpp devices/path_test.cpp LIBRARIES simserver LABELS sim)
 rtmsim_test(camera_device_test devices/camera_device_test.cpp LIBRARIES simserver LABELS sim render)
 rtmsim_test(label_camera_test devices/label_camera_test.cpp LIBRARIES simserver LABELS sim render)
-rtmsim_test(sensor_nonsense_test devices/sensor_nonsense_test.cpp LIBRARIES simserver iface_json LABELS sim render)
+rtmsim_test(sensor_nonsense_test devices/sensor_nonsense_test.cpp devices/devices_world_test.cpp LIBRARIES simserver iface_json LABELS sim render)
 find_library(APRILTAG_LIBRARY apriltag REQUIRED)
 rtmsim_test(april_tag_test devices/april_tag_test.cpp LIBRARIES simserver ${APRILTAG_LIBRARY} LABELS sim render)
 rtmsim_test(actor_test devices/actor_test.cpp LIBRARIES simserver LABELS sim render)

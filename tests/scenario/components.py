@@ -289,7 +289,7 @@ def names():
 
 # Each sensor of the world that does not look, against what its iface says of the same moment.
 def others():
-    rig.server(world=f"{sys.argv[4]}/worlds/power.sdf")
+    rig.server(world=f"{sys.argv[4]}/worlds/devices.sdf")
     rig.naming()
     devices = {"RTCPower": "rover::battery", "RTCDvl": "diver::dvl", "RTCAirSpeed": "glider::air_speed", "RTCIns": "rover::ins", "RTCRfid": "rover::rfid",
                "RTCWireless": "rover::wireless", "RTCWheels": "rover::wheels", "RTCLocalization": "rover::localization"}
@@ -310,7 +310,8 @@ def others():
     assert len(ranges) == 4 and min(ranges) > 3.8 / math.cos(math.radians(29)) - 0.1 and abs(sample("RTCDvl0:range")["data"] - min(ranges)) < 0.1, ranges
     close([sample("RTCAirSpeed0:pressure")["data"], sample("RTCAirSpeed0:temperature")["data"]], [truth("glider::air_speed")["pressure"], 288.15 - 0.0065 * 35], 1)
     position = sample("RTCIns0:position")
-    close([position["latitude"], position["longitude"]], [36.06, 140.13], 2e-5)
+    metre = 1 / (111320 * math.cos(math.radians(36.06)))  # to the east [deg]
+    close([position["latitude"], position["longitude"]], [36.06, 140.13 - 4 * metre], 2e-5)
     assert abs(position["altitude"] - 25.3) < 0.1 and abs(position["orientation"]["y"]) < 0.1, position
     assert sample("RTCRfid0:tags")["data"] == ["E200-0017"]
     rig.rtse("con", "DeviceProbe0:rfid", "RTCRfid0:rfid")
@@ -318,7 +319,7 @@ def others():
     assert sample("RTCWireless0:essids")["data"] == ["lab"] and -60 < sample("RTCWireless0:levels")["data"][0] < -30
     assert sample("RTCWheels0:ticks")["data"] == [0, 0] or len(sample("RTCWheels0:angles")["data"]) == 2
     best = sample("RTCLocalization0:pose")["data"]
-    close([best["position"]["x"], best["position"]["y"], best["heading"]], [0, 0, 0], 0.6)
+    close([best["position"]["x"], best["position"]["y"], best["heading"]], [-4, 0, 0], 0.6)
     hypotheses = sample("RTCLocalization0:hypotheses")["hypotheses"]
     assert len(hypotheses) == 3 and abs(sum(one["weight"] for one in hypotheses) - 1) < 1e-9, hypotheses
 

@@ -459,7 +459,7 @@ def storm():
 # What does not look: a battery, a charger, tags, transmitters, an estimate; the ports are those of a configuration file of Player.
 def power():
     with Rig() as rig:
-        rig.sim("--rtf", "4", world=f"{source}/worlds/power.sdf")
+        rig.sim("--rtf", "4", world=f"{source}/worlds/devices.sdf")
         with open(f"{rig.work}/robots.cfg", "w") as file:
             file.write('''
 driver ( name "stage" provides ["0:simulation:0"] plugin "stageplugin" worldfile "power.world" )
@@ -488,9 +488,9 @@ driver ( name "amcl" provides ["localize:1"] requires ["position2d:0"] )
 
 def estimates():
     with Rig() as rig:
-        rig.sim(world=f"{source}/worlds/power.sdf")
-        port = rig.gateway(robots=3)[0]
-        words = dict(word.split("=") for word in rig.lines()[0][2].split())
+        rig.sim(world=f"{source}/worlds/devices.sdf")
+        rig.gateway(robots=3)
+        port, words = next((int(port), dict(word.split("=") for word in words.split())) for port, robot, words in rig.lines() if robot == "rover")
         assert words["power:0"] == "rover::battery" and words["gps:0"] == "rover::ins" and words["aio:0"] == "rover::wheels", words
         client = Client(port)
         for interface in (LOCALIZE, RFID, WIFI, GPS, AIO):
@@ -500,7 +500,7 @@ def estimates():
         hypotheses = [fields.take("3d6dd") for _ in range(fields.count())]
         fields.finish()
         assert len(hypotheses) == 3 and abs(sum(one[9] for one in hypotheses) - 1) < 1e-9, hypotheses
-        assert all(abs(one[0]) < 0.6 and abs(one[3] - 0.01) < 1e-9 and abs(one[5] - 0.0025) < 1e-9 for one in hypotheses), hypotheses
+        assert all(abs(one[0] + 4) < 0.6 and abs(one[3] - 0.01) < 1e-9 and abs(one[5] - 0.0025) < 1e-9 for one in hypotheses), hypotheses
         assert len(client.demand(LOCALIZE, 0, 2)) == 32 + 8 + 3 * 32
         client.refused(LOCALIZE, 0, 1, struct.pack(">9d", *range(9)))
         fields = Fields(client.read_until(RFID))
@@ -509,7 +509,7 @@ def estimates():
         fields = Fields(client.read_until(WIFI))
         assert fields.count() == 1 and fields.raw() == b"access_point::radio\0" and fields.raw() == b"\0" and fields.raw() == b"lab\0"
         _, frequency, _, _, level, _ = fields.take("6I")
-        distance = math.dist((-8, 0, 2), (0, 0, 0.3))
+        distance = math.dist((-12, 0, 2), (-4, 0, 0.3))
         assert frequency == 2442 and abs(level - 256 - (19.5 - 20 * math.log10(4 * math.pi * distance * 2.442e9 / 299792458))) < 1, level
         assert abs(struct.unpack(">2I2i", client.read_until(GPS)[:16])[2] - 36.06e7) < 200
         assert len(Fields(client.read_until(AIO)).many("f")) == 2
