@@ -13,7 +13,14 @@ static const iface::Specification specification{
 };
 
 RTCRfid::RTCRfid(RTC::Manager* manager)
-    : IfaceComponent(manager, specification, shm::IfaceType::rfid, true), tags_out_("tags", tags_), service_port_("rfid") {}
+    : IfaceComponent(manager, specification, shm::IfaceType::rfid, true),
+      tags_out_("tags", tags_),
+      service_port_("rfid"),
+      errand_(say()),
+      service_([this](const std::string& id, const std::string& data) {
+        const iface::Device device = described_.snapshot();
+        errand_.post(device.server_id, shm::WriteTagRequest{device.device_id, id, data});
+      }) {}
 
 RTC::ReturnCode_t RTCRfid::onInitialize() {
   addOutPort("tags", tags_out_);
@@ -23,7 +30,14 @@ RTC::ReturnCode_t RTCRfid::onInitialize() {
   return RTC::RTC_OK;
 }
 
-void RfidService::Write(const char*, const RTC::RFIDTagData&) { throw CORBA::NO_PERMISSION(); }
+void RfidService::Write(const char* id, const RTC::RFIDTagData& data) {
+  constexpr std::size_t most = sizeof(shm::RfidTag::data) - 1;
+  const std::string text(reinterpret_cast<const char*>(data.get_buffer()), data.length());
+  constexpr std::string_view impossible("\n\0", 2);
+  const bool is_there = data_of_.snapshot().contains(id);
+  if (!is_there || text.size() > most || text.find_first_of(impossible) != std::string::npos) throw CORBA::BAD_PARAM();
+  send_(id, text);
+}
 
 RTC::RFIDTagData* RfidService::Read(const char* id) {
   const auto tags = data_of_.snapshot();
@@ -35,7 +49,10 @@ RTC::RFIDTagData* RfidService::Read(const char* id) {
   return data._retn();
 }
 
-void RTCRfid::describe(const shm::Iface& rfid) { service_.describe(iface::to_geometry(rfid.info<shm::RfidInfo>().pose)); }
+void RTCRfid::describe(const shm::Iface& rfid) {
+  *described_.lock() = link().device();
+  service_.describe(iface::to_geometry(rfid.info<shm::RfidInfo>().pose));
+}
 
 void RTCRfid::publish(const shm::Iface& device) {
   const auto found = device.elements<shm::RfidTag>();

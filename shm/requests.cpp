@@ -17,35 +17,16 @@ constexpr std::uint32_t flag_1 = 1, flag_2 = 2, flag_3 = 4, flag_4 = 8;
 constexpr std::int64_t max_steps = 1'000'000'000;
 constexpr std::uint32_t max_pixels = 8192;
 
-constexpr std::array<std::string_view, 29> names = {"",
-                                                    "pause",
-                                                    "run",
-                                                    "step",
-                                                    "reset",
-                                                    "get-pose",
-                                                    "set-pose",
-                                                    "get-velocity",
-                                                    "set-velocity",
-                                                    "wrench",
-                                                    "list",
-                                                    "tree",
-                                                    "spawn",
-                                                    "delete",
-                                                    "screenshot",
-                                                    "statistics",
-                                                    "reset-odometry",
-                                                    "set-motors",
-                                                    "set-rtf",
-                                                    "contacts",
-                                                    "drop-participant",
-                                                    "export",
-                                                    "poses",
-                                                    "fault",
-                                                    "end-faults",
-                                                    "faults",
-                                                    "models",
-                                                    "pose-log",
-                                                    "show"};
+constexpr std::array<std::string_view, 30> names = {"",           "pause",          "run",
+                                                    "step",       "reset",          "get-pose",
+                                                    "set-pose",   "get-velocity",   "set-velocity",
+                                                    "wrench",     "list",           "tree",
+                                                    "spawn",      "delete",         "screenshot",
+                                                    "statistics", "reset-odometry", "set-motors",
+                                                    "set-rtf",    "contacts",       "drop-participant",
+                                                    "export",     "poses",          "fault",
+                                                    "end-faults", "faults",         "models",
+                                                    "pose-log",   "show",           "write-tag"};
 static_assert(std::variant_size_v<Request> == names.size() - 1);
 
 void put_pose(RequestBody& body, const Pose& pose) {
@@ -146,6 +127,10 @@ struct Encoder {
   void operator()(const FaultsRequest& r) { name(r.iface); }
   void operator()(const ModelsRequest&) {}
   void operator()(const ShowRequest&) {}
+  void operator()(const WriteTagRequest& r) {
+    name(r.iface);
+    raw.text = r.id + "\n" + r.data;
+  }
   void operator()(const PoseLogRequest& r) {
     raw.body.count = r.from;
     raw.text = r.joints;
@@ -180,6 +165,7 @@ class Decoder {
   base::Result<Request> reset_odometry() const;
   base::Result<Request> fault() const;
   base::Result<Request> end_faults() const;
+  base::Result<Request> write_tag() const;
 
   const RawRequest& raw_;
   std::string_view kind_;
@@ -335,6 +321,20 @@ base::Result<Request> Decoder::end_faults() const {
   return Request(EndFaultsRequest{name_, raw_.text});
 }
 
+base::Result<Request> Decoder::write_tag() const {
+  constexpr std::size_t room_of_id = sizeof(rtmsim_rfid_tag::id), room_of_data = sizeof(rtmsim_rfid_tag::data);
+  if (name_.empty()) return fail("needs a name");
+  const std::size_t end = raw_.text.find('\n');
+  if (end == std::string::npos || end == 0) return fail("needs the id of a tag and its data");
+  WriteTagRequest request{name_, raw_.text.substr(0, end), raw_.text.substr(end + 1)};
+  if (request.id.size() >= room_of_id) return fail("the id of a tag must have at most 63 bytes, got " + std::to_string(request.id.size()));
+  if (request.data.size() >= room_of_data)
+    return fail("the data of a tag must have at most 127 bytes, got " + std::to_string(request.data.size()));
+  constexpr std::string_view impossible("\n\0", 2);
+  if (request.data.find_first_of(impossible) != std::string::npos) return fail("the data of a tag must have no line breaks and no zeros");
+  return Request(std::move(request));
+}
+
 base::Result<Request> Decoder::decode() {
   if (auto good = check_common(); !good) return good.error();
   switch (raw_.kind) {
@@ -396,6 +396,8 @@ base::Result<Request> Decoder::decode() {
       return Request(PoseLogRequest{body().count, raw_.text});
     case RTMSIM_REQUEST_SHOW:
       return Request(ShowRequest{});
+    case RTMSIM_REQUEST_WRITE_TAG:
+      return write_tag();
     default:
       return fail("unknown kind");
   }

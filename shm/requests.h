@@ -117,6 +117,11 @@ struct ModelsRequest {};
 // Sensors that somebody is subscribed to publish what is there now, as after a reset or after a model was moved. Refused while time goes
 // on.
 struct ShowRequest {};
+// New data of a tag that a reader has in its reach, until a reset.
+struct WriteTagRequest {
+  std::string iface;     // of the reader
+  std::string id, data;  // without line breaks; fewer than 64 and 128 bytes
+};
 // See shm/pose_log.h.
 struct PoseLogRequest {
   std::int64_t from = 0;  // [bytes]; the simulator deletes what is before it
@@ -127,7 +132,7 @@ using Request =
     std::variant<PauseRequest, RunRequest, StepRequest, ResetRequest, GetPoseRequest, SetPoseRequest, GetVelocityRequest,
                  SetVelocityRequest, WrenchRequest, ListRequest, TreeRequest, SpawnRequest, DeleteRequest, ScreenshotRequest, StatsRequest,
                  ResetOdometryRequest, SetMotorsRequest, SetRtfRequest, ContactsRequest, DropParticipantRequest, ExportRequest,
-                 PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest, PoseLogRequest, ShowRequest>;
+                 PosesRequest, FaultRequest, EndFaultsRequest, FaultsRequest, ModelsRequest, PoseLogRequest, ShowRequest, WriteTagRequest>;
 
 enum class RequestStatus : std::uint32_t {
   ok = RTMSIM_STATUS_OK,

@@ -809,6 +809,7 @@ enum {
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
   RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
+  RTMSIM_REQUEST_WRITE_TAG = 29,  /* name = rfid iface; text = id of a tag in its reach, line break, its new data; until a reset */
   RTMSIM_REQUEST_SHOW = 28,       /* while time stands still: subscribed sensors publish the present moment; nothing later changes */
   RTMSIM_REQUEST_POSE_LOG = 27    /* the first one starts the pose log (shm/pose_log.h). count = first byte wanted; earlier ones are
                                      deleted. text = joints MODEL::JOINT, a line each, whose positions are in the log from now on (empty:

@@ -24,7 +24,8 @@ bool is_one_of(const shm::Request& request) {
 
 bool changes_the_world(const shm::Request& request) {
   return is_one_of<shm::ResetRequest, shm::SetPoseRequest, shm::SetVelocityRequest, shm::SpawnRequest, shm::DeleteRequest,
-                   shm::ResetOdometryRequest, shm::FaultRequest, shm::EndFaultsRequest, shm::SetMotorsRequest>(request);
+                   shm::ResetOdometryRequest, shm::FaultRequest, shm::EndFaultsRequest, shm::SetMotorsRequest, shm::WriteTagRequest>(
+      request);
 }
 
 }  // namespace

@@ -24,6 +24,10 @@ bool Schedule::is_due(std::chrono::nanoseconds now, std::uint64_t era) const {
   return shown_at_.count() == 0 || era != shown_era_ || now >= after(shown_at_);
 }
 
+base::Result<void> Device::write_tag(const std::string&, const std::string&) {
+  return base::Error{iface().name() + " is no reader of RFID tags"};
+}
+
 shm::Pose to_pose(const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond q(pose.linear());
   const Eigen::Vector3d p = pose.translation();

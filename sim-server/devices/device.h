@@ -24,6 +24,7 @@ namespace sim {
 
 class RayWorld;
 class RenderWorld;
+class TagData;
 
 struct Moment {
   std::chrono::nanoseconds time{0};  // simulated
@@ -58,6 +59,7 @@ struct DeviceWorld {
   std::uint64_t seed = 0;
   const WorldDef& world;
   RenderWorld* pictures = nullptr;  // never null while there are cameras
+  TagData* tags = nullptr;          // never null
 };
 
 class Device {
@@ -89,6 +91,8 @@ class Device {
   // Of position devices; others refuse.
   virtual bool set_odometry(const Eigen::Isometry3d&) { return false; }
   virtual bool set_motors(bool) { return false; }
+  // Of readers of RFID tags; others refuse. The tag must be in reach now.
+  virtual base::Result<void> write_tag(const std::string& id, const std::string& data);
 
   // Of devices with motors, after a step: whether a motor has been told to work.
   virtual bool is_working() const { return false; }

@@ -45,6 +45,7 @@ class FaultyDevice final : public Device {
   void add_to(StateHash& hash) const override { device_->add_to(hash); }
   bool set_odometry(const Eigen::Isometry3d& pose) override { return device_->set_odometry(pose); }
   bool set_motors(bool enabled) override { return device_->set_motors(enabled); }
+  base::Result<void> write_tag(const std::string& id, const std::string& data) override { return device_->write_tag(id, data); }
 
  private:
   struct Entry {

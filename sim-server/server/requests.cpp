@@ -298,6 +298,12 @@ struct ServerLoop::Handler {
     if (!device->set_motors(request.are_enabled)) return refused(shm::RequestStatus::unsupported, request.iface + " has no motors");
     return {};
   }
+  shm::Reply operator()(const shm::WriteTagRequest& request) {
+    Device* device = simulation.device(request.iface);
+    if (device == nullptr) return no_iface(simulation, request.iface);
+    const auto written = device->write_tag(request.id, request.data);
+    return written ? shm::Reply{} : failed(written.error());
+  }
   shm::Reply operator()(const shm::FaultRequest& request) {
     if (!simulation.can_have_faults(request.iface)) return no_iface(simulation, request.iface);
     const shm::FaultRow& row = *shm::find_fault(request.kind);

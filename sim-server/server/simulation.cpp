@@ -58,7 +58,7 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
   if (options.rolling) s->physics_->let_roll(true);
   s->rays_ = std::make_unique<RayWorld>(*s->physics_, s->triangles_);
   s->pictures_ = std::make_unique<RenderWorld>(*s->physics_, *s->world_);
-  s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_, s->pictures_.get()});
+  s->device_world_.reset(new DeviceWorld{*s->physics_, *s->rays_, shm, options.seed, *s->world_, s->pictures_.get(), &s->tags_});
   s->initial_models_ = s->physics_->model_slots();
   std::vector<std::string> ray_notes;  // physics has said the same about the same shapes
   for (ModelId id = 0; id < s->initial_models_; ++id) {
@@ -286,6 +286,7 @@ base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
   std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model >= initial_models_; });
   physics_->reset();
   attachments_.reset(static_cast<ModelId>(initial_models_));
+  tags_.reset();
   wrenches_.clear();
   trails_.clear();
   time_ = std::chrono::nanoseconds(0);
@@ -401,6 +402,7 @@ void Simulation::remove(ModelId model) {
   std::erase_if(holds_, [&](const JointHold& hold) { return hold.joint.model == model; });
   std::erase_if(wrenches_, [&](const Wrench& wrench) { return wrench.link.model == model; });
   attachments_.remove(model);
+  tags_.forget_model(physics_->def(model).name);
   if (model < trails_.size()) trails_[model] = Trail();
   rays_->remove(model);
   physics_->remove(model);
@@ -483,6 +485,7 @@ std::uint64_t Simulation::hash() const {
   physics_->add_to(hash);
   for (const auto& device : devices_) device->add_to(hash);
   attachments_.add_to(hash);
+  tags_.add_to(hash);
   for (const auto& wrench : wrenches_) {
     hash.add_all(std::uint64_t{wrench.link.model}, std::uint64_t{wrench.link.link});
     hash.add(wrench.force);

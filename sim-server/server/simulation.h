@@ -13,6 +13,7 @@
 #include "devices/device.h"
 #include "devices/drives/joint_hold.h"
 #include "devices/joints/attachments.h"
+#include "devices/tag_data.h"
 #include "devices/ray_world.h"
 #include "devices/render_world.h"
 #include "devices/sensors/sensor_fault.h"
@@ -150,6 +151,7 @@ class Simulation {
   WorkerPool::Pace commands_pace_;
   std::vector<JointHold> holds_;
   Attachments attachments_;
+  TagData tags_;
   std::vector<Device*> due_;
   std::vector<Wrench> wrenches_;
   std::vector<StandingWrench> standing_;  // of the world's file

@@ -162,6 +162,32 @@ TEST(Rfid, reads_through_walls_unless_it_needs_sight) {
   EXPECT_EQ(tags_read("<gz:rfid><line_of_sight>1</line_of_sight></gz:rfid>", around).size(), 0U);
 }
 
+TEST(Rfid, writes_a_tag_in_its_reach_for_all_readers_until_a_reset) {
+  SimulationFixture f(world_of_text(
+      "<model name='m'><static>1</static><pose>0 0 1 0 0 0</pose><link name='l'><sensor name='a' type='rfid'/><sensor name='b' "
+      "type='rfid'/>"
+      "<sensor name='imu' type='imu'/></link></model>" +
+      tag("near", "-0.5 0 1 0 0 0", "<gz:rfidtag><id>E200-17</id><data>shelf 3</data></gz:rfidtag>") + tag("out", "0 1.1 1 0 0 0")));
+  auto other = f.open(IfaceType::rfid, "m::b");
+  const auto data = [&] {
+    f.run(0.01);
+    EXPECT_TRUE(other.read());
+    return std::string(other.elements<shm::RfidTag>()[0].data);
+  };
+  EXPECT_EQ(data(), "shelf 3");
+  Device& reader = *f.simulation->device("m::a");
+  const std::uint64_t before = f.simulation->hash();
+  EXPECT_TRUE(reader.write_tag("E200-17", "shelf 4"));
+  EXPECT_NE(f.simulation->hash(), before);
+  EXPECT_EQ(data(), "shelf 4");
+  const auto message = [](const base::Result<void>& written) { return written ? std::string("written") : written.error().message; };
+  EXPECT_EQ(message(reader.write_tag("out::tag", "x")), "m::a has no tag \"out::tag\" in reach; it has E200-17");
+  EXPECT_EQ(message(f.simulation->device("m::imu")->write_tag("E200-17", "x")), "m::imu is no reader of RFID tags");
+  EXPECT_EQ(data(), "shelf 4");
+  ASSERT_TRUE(f.simulation->reset(f.notes));
+  EXPECT_EQ(data(), "shelf 3");
+}
+
 TEST(Wireless, receives_what_free_space_leaves_and_less_behind_a_wall) {
   const std::string wall =
       "<model name='wall'><static>1</static><pose>5 0 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>0.1 2 "

@@ -316,6 +316,10 @@ def others():
     assert sample("RTCRfid0:tags")["data"] == ["E200-0017"]
     rig.rtse("con", "DeviceProbe0:rfid", "RTCRfid0:rfid")
     call("tag")
+    call("write_tag")
+    await_("a tag that is written", lambda: truth("rover::rfid")["tags"][0]["data"] == "shelf 4")
+    sample("RTCRfid0:tags")  # the component has read them, too
+    call("tag_written")
     assert sample("RTCWireless0:essids")["data"] == ["lab"] and -60 < sample("RTCWireless0:levels")["data"][0] < -30
     assert sample("RTCWheels0:ticks")["data"] == [0, 0] or len(sample("RTCWheels0:angles")["data"]) == 2
     best = sample("RTCLocalization0:pose")["data"]

@@ -70,6 +70,8 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
         {"camera", [this] { return is_camera(); }},
         {"place", [this] { return is_at(imu_->GetGeometry(), 0.1) && is_at(gps_->GetGeometry(), 0.2); }},
         {"tag", [this] { return is_tag(); }},
+        {"write_tag", [this] { return write_tag(); }},
+        {"tag_written", [this] { return is_written(); }},
         {"bumper",
          [this] {
            const RTC::BumperGeometry shape = bumper_->GetGeometry();
@@ -172,14 +174,18 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
            is_near(info.principalPoint.y, 8) && is_near(info.k1, -0.1) && is_near(info.p2, 0.01) && is_at(camera_->GetGeometry(), 0);
   }
 
-  // Of worlds/power.sdf; its data cannot be written, and there is no other one.
+  // Of worlds/devices.sdf; there is no other one.
   bool is_tag() {
     const RTC::RFIDTagData_var data = rfid_->Read("E200-0017");
     const std::string text(data->get_buffer(), data->get_buffer() + data->length());
-    try {
-      rfid_->Write("E200-0017", data);
-      return false;
-    } catch (const CORBA::NO_PERMISSION&) {
+    RTC::RFIDTagData impossible;
+    impossible.length(200);
+    for (const auto& [id, bytes] : {std::pair{"other", *data}, std::pair{"E200-0017", impossible}}) {
+      try {
+        rfid_->Write(id, bytes);
+        return false;
+      } catch (const CORBA::BAD_PARAM&) {
+      }
     }
     try {
       RTC::RFIDTagData_var other = rfid_->Read("other");
@@ -187,6 +193,19 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     } catch (const CORBA::BAD_PARAM&) {
     }
     return text == "shelf 3" && is_near(rfid_->GetGeometry().pose.position.z, 0.3);
+  }
+
+  bool write_tag() {
+    RTC::RFIDTagData data;
+    const std::string text = "shelf 4";
+    data.length(static_cast<CORBA::ULong>(text.size()));
+    std::copy(text.begin(), text.end(), data.get_buffer());
+    rfid_->Write("E200-0017", data);
+    return true;
+  }
+  bool is_written() {
+    const RTC::RFIDTagData_var data = rfid_->Read("E200-0017");
+    return std::string(data->get_buffer(), data->get_buffer() + data->length()) == "shelf 4";
   }
 
   static bool is_at(const RTC::Geometry3D& geometry, double x) { return is_near(geometry.pose.position.x, x); }

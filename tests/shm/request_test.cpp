@@ -78,6 +78,11 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_FALSE(there_and_back(FaultRequest{"robot::laser", "off", std::nullopt, 0}).amount);
   EXPECT_EQ(there_and_back(EndFaultsRequest{"", "stuck"}).kind, "stuck");
   EXPECT_EQ(there_and_back(FaultsRequest{"robot::laser"}).iface, "robot::laser");
+  const auto tag = there_and_back(WriteTagRequest{"robot::rfid", "E200-0017", "shelf 3"});
+  EXPECT_EQ(tag.iface, "robot::rfid");
+  EXPECT_EQ(tag.id, "E200-0017");
+  EXPECT_EQ(tag.data, "shelf 3");
+  EXPECT_TRUE(there_and_back(WriteTagRequest{"robot::rfid", "E200-0017", ""}).data.empty());
 }
 
 TEST(Requests, nonsense_is_refused_with_a_message) {

@@ -4,8 +4,10 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/text.h"
 #include "devices/ray_world.h"
 #include "devices/sensors/sensor_makers.h"
+#include "devices/tag_data.h"
 
 namespace sim {
 namespace {
@@ -50,26 +52,47 @@ class Rfid final : public Sensor {
  public:
   Rfid(Setup setup, const SensorSite& site) : Sensor(std::move(setup)), mount_(site.mount), def_(std::get<RfidDef>(site.def.data)) {}
   bool uses_rays() const override { return def_.needs_sight; }
+  // The nearest tag of this id.
+  base::Result<void> write_tag(const std::string& id, const std::string& data) override {
+    std::pair<double, std::string> nearest{infinite, ""};
+    std::vector<std::string> ids;
+    each_in_reach([&](double distance, const std::string& name, const RfidTagDef& def) {
+      ids.push_back(def.id.empty() ? name : def.id);
+      if (ids.back() == id) nearest = std::min(nearest, {distance, name});
+    });
+    if (nearest.second.empty())
+      return base::Error{iface().name() + " has no tag " + base::in_quotes(id) + " in reach" +
+                         (ids.empty() ? "" : "; it has " + base::join(ids, ", "))};
+    world().tags->write(nearest.second, data);
+    return {};
+  }
 
  private:
   void measure(const Moment&) const override {
+    std::vector<std::pair<double, shm::RfidTag>> found;
+    each_in_reach([&](double distance, const std::string& name, const RfidTagDef& def) {
+      shm::RfidTag one{};
+      shm::set_text(one.id, def.id.empty() ? name : def.id);
+      shm::set_text(one.data, world().tags->of(name, def.data));
+      found.emplace_back(distance, one);
+    });
+    auto& out = sample<shm::RfidSample>();
+    fill(found, followers<shm::RfidTag>(0), out.count, out.total);
+  }
+
+  // distance [m], scoped name and definition of each tag.
+  template <class Do>
+  void each_in_reach(Do&& act) const {
     constexpr double margin = 0.05;  // [m]
     const Eigen::Isometry3d pose = mount_.in_world(physics());
-    std::vector<std::pair<double, shm::RfidTag>> found;
     each_sensor(physics(), SensorKind::rfid_tag, [&](const ModelDef& model, const SensorDef& tag, const Eigen::Vector3d& place) {
       const Eigen::Vector3d way = place - pose.translation();
       const double distance = way.norm();
       const double off = distance > 0 ? std::acos(std::clamp(way.dot(pose.linear().col(0)) / distance, -1.0, 1.0)) : 0;
       if (distance > def_.range || off > def_.angle / 2) return;
       if (def_.needs_sight && is_between(world().rays.scene(), pose.translation(), place, margin)) return;
-      const auto& def = std::get<RfidTagDef>(tag.data);
-      shm::RfidTag one{};
-      shm::set_text(one.id, def.id.empty() ? scoped_name(model, tag) : def.id);
-      shm::set_text(one.data, def.data);
-      found.emplace_back(distance, one);
+      act(distance, scoped_name(model, tag), std::get<RfidTagDef>(tag.data));
     });
-    auto& out = sample<shm::RfidSample>();
-    fill(found, followers<shm::RfidTag>(0), out.count, out.total);
   }
 
   Mount mount_;
