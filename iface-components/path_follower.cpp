@@ -1,42 +1,55 @@
 #include "path_follower.h"
 
+#include <shm/requests.h>
+
 #include <algorithm>
 #include <cmath>
 
-bool PathFollower::set(const RTC::Waypoint2DList& path) {
+std::vector<double> numbers_of(const RTC::Waypoint2D& point) {
+  const auto& [position, heading] = point.target;
+  return {position.x, position.y, heading, point.distanceTolerance, point.headingTolerance, point.maxSpeed.vx, point.maxSpeed.va};
+}
+
+std::vector<double> numbers_of(const RTC::Waypoint3D& point) {
+  const auto& [at, turn] = point.target;
+  return {at.x, at.y, at.z, turn.r, turn.p, turn.y, point.distanceTolerance, point.headingTolerance};
+}
+
+template <class Skeleton, class Waypoint, class WaypointList>
+bool PathService<Skeleton, Waypoint, WaypointList>::set(const WaypointList& path) {
   constexpr CORBA::ULong most = 10000;
   if (path.length() > most) return false;
-  std::vector<RTC::Waypoint2D> points;
+  std::vector<Waypoint> points;
   for (CORBA::ULong i = 0; i < path.length(); ++i) {
-    const RTC::Waypoint2D& point = path[i];
-    for (const double value : {point.target.position.x, point.target.position.y, point.target.heading, point.distanceTolerance,
-                               point.headingTolerance, point.maxSpeed.vx, point.maxSpeed.va}) {
-      if (!std::isfinite(value)) return false;
-    }
-    points.push_back(point);
+    if (!std::ranges::all_of(numbers_of(path[i]), [](double value) { return std::isfinite(value); })) return false;
+    points.push_back(path[i]);
   }
   state_.lock()->fresh = std::move(points);
   return true;
 }
 
-void PathFollower::SetPath(const RTC::Waypoint2DList& path) {
+template <class Skeleton, class Waypoint, class WaypointList>
+void PathService<Skeleton, Waypoint, WaypointList>::SetPath(const WaypointList& path) {
   if (!set(path)) throw CORBA::BAD_PARAM();
 }
 
-const RTC::Waypoint2D* PathFollower::current(const State& state) {
+template <class Skeleton, class Waypoint, class WaypointList>
+const Waypoint* PathService<Skeleton, Waypoint, WaypointList>::current(const State& state) {
   const auto& path = state.fresh ? *state.fresh : state.path;
   const std::size_t index = state.fresh ? 0 : state.index;
   return index < path.size() ? &path[index] : nullptr;
 }
 
-CORBA::UShort PathFollower::GetCurrentWaypointIndex() {
+template <class Skeleton, class Waypoint, class WaypointList>
+CORBA::UShort PathService<Skeleton, Waypoint, WaypointList>::GetCurrentWaypointIndex() {
   constexpr CORBA::UShort none = 65535;
   auto state = state_.lock();
   if (current(*state) == nullptr) return none;
   return state->fresh ? CORBA::UShort{0} : static_cast<CORBA::UShort>(state->index);
 }
 
-RTC::Waypoint2D PathFollower::GetCurrentWaypoint() {
+template <class Skeleton, class Waypoint, class WaypointList>
+Waypoint PathService<Skeleton, Waypoint, WaypointList>::GetCurrentWaypoint() {
   {
     auto state = state_.lock();
     if (const auto* point = current(*state)) return *point;
@@ -44,20 +57,41 @@ RTC::Waypoint2D PathFollower::GetCurrentWaypoint() {
   throw CORBA::BAD_INV_ORDER();
 }
 
-bool PathFollower::take_news() {
+template <class Skeleton, class Waypoint, class WaypointList>
+bool PathService<Skeleton, Waypoint, WaypointList>::take_news() {
   auto state = state_.lock();
   if (!state->fresh) return false;
   state->path = std::move(*state->fresh);
   state->fresh.reset();
   state->index = 0;
-  leg_.reset();
+  leave_leg();
   return true;
 }
 
-void PathFollower::end() {
+template <class Skeleton, class Waypoint, class WaypointList>
+void PathService<Skeleton, Waypoint, WaypointList>::end() {
   auto state = state_.lock();
   state->path.clear();
-  leg_.reset();
+  leave_leg();
+}
+
+template class PathService<POA_RTC::PathFollower2D, RTC::Waypoint2D, RTC::Waypoint2DList>;
+template class PathService<POA_RTC::PathFollower3D, RTC::Waypoint3D, RTC::Waypoint3DList>;
+
+PathFollower3d::Step PathFollower3d::next(const shm::Pose& odometry) {
+  constexpr double near_enough = 0.1, straight_enough = 0.1;  // [m], [rad]
+  auto state = state_.lock();
+  for (; state->index < state->path.size(); ++state->index) {
+    if (!state->is_enabled) return {std::nullopt, true};
+    const RTC::Waypoint3D& point = state->path[state->index];
+    const auto& [at, turn] = point.target;
+    const double distance = std::hypot(at.x - odometry.x, at.y - odometry.y, at.z - odometry.z);
+    const double off = std::abs(std::remainder(turn.y - shm::yaw_of(odometry), 2 * std::acos(-1.0)));
+    if (distance > std::max(near_enough, point.distanceTolerance) || off > std::max(straight_enough, point.headingTolerance))
+      return {Pose{at.x, at.y, at.z, turn.r, turn.p, turn.y}};
+  }
+  state->path.clear();
+  return {};
 }
 
 std::optional<shm::PlanarPose> PathFollower::next(const shm::PlanarPose& odometry, const shm::Position2dInfo& robot) {

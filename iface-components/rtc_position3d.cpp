@@ -18,6 +18,7 @@ RTCPosition3d::RTCPosition3d(RTC::Manager* manager)
     : DriveComponent(manager, specification, shm::IfaceType::position3d),
       pose_in_("pose_control", wanted_pose_),
       heading_in_("heading_control", heading_),
+      path_in_("path", path_),
       pose_out_("pose", pose_),
       actual_velocity_out_("actual_velocity", actual_velocity_),
       odometry_service_([this](const RTC::Pose3D& pose) {
@@ -33,12 +34,14 @@ RTC::ReturnCode_t RTCPosition3d::onInitialize() {
   addVelocityPort();
   addInPort("pose_control", pose_in_);
   addInPort("heading_control", heading_in_);
+  addInPort("path", path_in_);
   addOutPort("pose", pose_out_);
   addOutPort("actual_velocity", actual_velocity_out_);
   service_port().registerProvider("odometry", "RTC::Odometry3D", odometry_service_);
   service_port().registerProvider("velocity_control", "RTC::VelocityControl3D", velocity_service_);
   service_port().registerProvider("pose_control", "RTC::PoseControl3D", pose_service_);
   service_port().registerProvider("heading_control", "RTC::HeadingControl3D", heading_service_);
+  service_port().registerProvider("path_follower", "RTC::PathFollower3D", path_follower_);
   bindDrive();
   return RTC::RTC_OK;
 }
@@ -67,6 +70,7 @@ void RTCPosition3d::read_goals() {
   const auto are_numbers = [](std::initializer_list<double> values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
+  read_path();
   bool has_pose = false, has_heading = false;
   while (pose_in_.isNew()) has_pose = pose_in_.read() || has_pose;
   while (heading_in_.isNew()) has_heading = heading_in_.read() || has_heading;
@@ -92,6 +96,34 @@ void RTCPosition3d::read_goals() {
   }
 }
 
+void RTCPosition3d::read_path() {
+  bool has_path = false;
+  while (path_in_.isNew()) has_path = path_in_.read() || has_path;
+  if (has_path && !path_follower_.set(path_.waypoints)) RTC_WARN(("path: expected finite numbers and at most 10000 way points; ignored"));
+  if (!path_follower_.take_news()) return;
+  if (!std::holds_alternative<std::monostate>(goal_)) commander().stop();
+  goal_ = Following{};
+  last_.reset();
+  resets_.reset();
+}
+
+// The pose of the last way point stays the goal.
+void RTCPosition3d::follow(const shm::Position3dSample& sample) {
+  const auto [pose, is_waiting] = path_follower_.next(sample.odometry);
+  if (pose) {
+    last_ = *pose;
+    command(*pose, shm::CommandKind::pose);
+  } else if (is_waiting) {
+    command({}, shm::CommandKind::velocity);
+  } else if (last_) {
+    goal_ = *last_;
+    command(*last_, shm::CommandKind::pose);
+  } else {
+    goal_ = {};
+    command({}, shm::CommandKind::velocity);
+  }
+}
+
 void RTCPosition3d::go_on(const shm::Position3dSample& sample) {
   constexpr double fastest_turn = 1, gain = 2;                                                        // [rad/s], [1/s]
   const bool was_set = was_odometry_set_.exchange(false, std::memory_order_acquire);                  // pairs with SetOdometry
@@ -101,6 +133,11 @@ void RTCPosition3d::go_on(const shm::Position3dSample& sample) {
     goal_ = {};
     commander().stop();
   }
+  if (std::holds_alternative<Following>(goal_)) {
+    follow(sample);
+    return;
+  }
+  path_follower_.end();
   if (const auto* pose = std::get_if<Goal>(&goal_)) {
     command(*pose, shm::CommandKind::pose);
   } else if (const auto* heading = std::get_if<Heading>(&goal_)) {

@@ -538,6 +538,11 @@ def drone():
     order = lambda port, data: rig.rtse("inject", f"RTCPosition3d0:{port}", json.dumps({"data": data}))
     order("pose_control", {"position": {"x": start["x"] + 0.5, "y": start["y"], "z": start["z"] + 0.5}, "orientation": {"r": 0, "p": 0, "y": 0.5}})
     await_("a drone at its goal", lambda: all(abs(odometry()[key] - start[key] - way) < 0.05 for key, way in (("x", 0.5), ("z", 0.5), ("yaw", 0.5))))
+    odometry_now = odometry()
+    at = lambda dx, dz, yaw: {"position": {"x": odometry_now["x"] + dx, "y": odometry_now["y"], "z": odometry_now["z"] + dz}, "orientation": {"r": 0, "p": 0, "y": yaw}}
+    points = [{"target": at(0.4, 0, 0), "distanceTolerance": 0.2, "headingTolerance": 4}, {"target": at(0.4, 0.4, 1), "distanceTolerance": 0, "headingTolerance": 0}]
+    rig.rtse("inject", "RTCPosition3d0:path", json.dumps({"waypoints": points}))
+    await_("a drone at the end of its path", lambda: all(abs(odometry()[key] - wanted) < 0.06 for key, wanted in (("x", odometry_now["x"] + 0.4), ("z", odometry_now["z"] + 0.4), ("yaw", 1))))
     await_("a drone in another direction", lambda: order("heading_control", {"speed": 0.2, "direction": {"r": 0, "p": 0, "y": -0.5}}) or abs(odometry()["yaw"] + 0.5) < 0.1)
     await_("a drone that stands when nobody commands", lambda: max(map(abs, rig.robot("drone::position3d")["velocity"])) < 0.01)
 
