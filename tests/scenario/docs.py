@@ -95,9 +95,23 @@ def facts_of_components():
             yield "parameter", name, parameter, default
 
 
+# Types and services of the interface guidelines: the table has each, and says of those that no component has that they have no device.
+def check_guideline():
+    shown = (docs / "components.md").read_text().split("\n## Types of the interface guidelines")[1].split("\n## ")[0]
+    named = {name for row in re.findall(r"^\| (`.*?) \|", shown, re.M) for name in re.findall(r"`(\w+)`", row)}
+    idl = (source / "idl/InterfaceDataTypes.idl").read_text()
+    types = set(re.findall(r"^  (?:struct|enum) (\w+)", idl, re.M)) | {name for name in re.findall(r"^  typedef sequence<.*> (\w+);", idl, re.M) if not name.endswith("List")}
+    offered = {service for file in (source / "iface-components").glob("*.cpp") for service in re.findall(r'"RTC::(\w+)"', file.read_text())}
+    services = {name for file in sorted((source / "idl/ext").glob("*.idl")) for name in re.findall(r"^module RTC \{.*?^\};", file.read_text(), re.M | re.S) for name in re.findall(r"^  interface (\w+)", name, re.M)}
+    for name in sorted(named ^ (types | (services - offered))):
+        problems.append(f"docs/components.md: types of the interface guidelines: {name}: {'is no type, or a service that a component has' if name in named else 'is missing'}")
+
+
 def check_components():
     shown = set()
     for section in (docs / "components.md").read_text().split("\n## ")[1:]:
+        if section.split("\n")[0] not in ("Components", "Ports", "Parameters"):
+            continue
         for line in re.findall(r"^\| (`\w+` \|.*) \|$", section, re.M):
             cells = [cell.strip() for cell in line.split("|")]
             name, first = cells[0].strip("`"), cells[1].strip("`")
@@ -108,6 +122,7 @@ def check_components():
 
 def check_pages():
     check_layers()
+    check_guideline()
     check_components()
     for page in pages:
         check_links(page)
