@@ -1,6 +1,6 @@
 # The protocol of Player, player-gateway before a peer of another make, and the follower.
 rtmsim_test(player_protocol_test player/player_protocol_test.cpp LIBRARIES player_protocol)
-rtmsim_test(player_gateway_test player/player_gateway_test.cpp player/player_cfg_test.cpp LIBRARIES player_gateway)
+rtmsim_test(player_gateway_test player/player_gateway_test.cpp player/player_cfg_test.cpp player/disparity_test.cpp LIBRARIES player_gateway)
 rtmsim_test(player_devices_test player/player_devices_test.cpp player/seen_devices_test.cpp player/new_player_interface_test.cpp LIBRARIES player_gateway)
 rtmsim_test(door_test player/door_test.cpp LIBRARIES player_gateway)
 rtmsim_test(alarm_test player/alarm_test.cpp LIBRARIES player_gateway)
@@ -27,7 +27,7 @@ foreach(case seen identity configure power estimates settings meters_and_depths 
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)
 endforeach()
 
-foreach(case lines_of_the_map maps_delay_nobody planner stereo opaque dio graphics)
+foreach(case lines_of_the_map maps_delay_nobody planner stereo stereo_of_no_pair opaque dio graphics)
   add_test(NAME player.${case}
     COMMAND ${judged} python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/player_world.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
   set_tests_properties(player.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -64,6 +64,7 @@ std::vector<Device::Subscriber>::iterator Device::find(const Client& client) {
 
 base::Result<void> Device::subscribe(Client& client) {
   if (!source_) return base::Error{player::to_text(address_) + " has no data: the simulator does not run, or no longer has it"};
+  if (auto good = check(); !good) return good;
   if (auto good = start_reading(); !good) return good;
   if (const auto known = find(client); known != subscribers_.end()) {
     ++known->count;

@@ -102,6 +102,8 @@ class Device {
   virtual void on_unused() {}
   // False for devices that never have data.
   virtual bool has_data() const { return true; }
+  // Why nobody can subscribe.
+  virtual base::Result<void> check() const { return {}; }
 
   std::uint32_t port() const { return robot_; }
   shm::Iface& iface() const { return source_->iface(); }

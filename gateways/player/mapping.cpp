@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -389,6 +390,35 @@ const ListedIface* find_iface(const ConfiguredDevice& device, const std::vector<
   const auto all = candidates(device.model, device.address.interface, ifaces);
   return device.which < all.size() ? all[device.which] : nullptr;
 }
+
+// "laser:0 of port 6665".
+std::string of_port(const ConfiguredDevice& device, const ConfiguredPort& port) {
+  return player::to_text(device.address) + " of port " + std::to_string(port.port);
+}
+
+// Why no iface of this name is one of these types: it is of another type, or not there.
+std::string why_not_found(const std::string& name, std::span<const shm::IfaceType> wanted, const std::vector<ListedIface>& ifaces) {
+  std::vector<std::string> types, expected;
+  for (const ListedIface& one : ifaces) {
+    if (one.name == name) types.emplace_back(shm::to_text(one.type));
+  }
+  for (const shm::IfaceType type : wanted) expected.emplace_back(shm::to_text(type));
+  if (types.empty()) {
+    std::vector<std::string> names;
+    for (const ListedIface& one : ifaces) {
+      if (std::ranges::find(wanted, one.type) != wanted.end()) names.push_back(one.name);
+    }
+    return "no " + (expected.size() == 1 ? expected.front() : "iface") + " " + base::in_quotes(name) + base::suggestion(name, names);
+  }
+  return "iface " + base::in_quotes(name) + " is of type " + base::join(types, ", ") + "; expected " + base::join(expected, ", ");
+}
+
+std::string why_missing(const ConfiguredDevice& device, const std::vector<ListedIface>& ifaces) {
+  const bool is_of_model = !device.model.empty() && (device.iface.empty() || device.iface == device.model);
+  if (is_of_model) return "no such device of model " + base::in_quotes(device.model);
+  if (device.type) return why_not_found(device.iface, std::span(&*device.type, 1), ifaces);
+  return why_not_found(device.iface, find_kind(device.address.interface)->shows, ifaces);
+}
 }  // namespace
 
 std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, const std::vector<ListedIface>& ifaces,
@@ -409,13 +439,9 @@ std::vector<PortPlan> plan_by_config(const std::vector<ConfiguredPort>& ports, c
         if (device.address.interface == player::Interface::planner) plan.devices.back().companion = truth_of(*found, ifaces);
         const auto type = companion_type(device.address.interface);
         if (!device.companion.empty() && !is_there(type, device.companion, ifaces))
-          missing.push_back(player::to_text(device.address) + " of port " + std::to_string(port.port) + ": no " +
-                            std::string(shm::to_text(type)) + " " + base::in_quotes(device.companion));
+          missing.push_back(of_port(device, port) + ": " + why_not_found(device.companion, std::span(&type, 1), ifaces));
       } else if (device.address.interface != player::Interface::simulation) {
-        const bool is_of_model = !device.model.empty() && (device.iface.empty() || device.iface == device.model);
-        missing.push_back(
-            player::to_text(device.address) + " of port " + std::to_string(port.port) + ": " +
-            (is_of_model ? "no such device of model " + base::in_quotes(device.model) : "no iface " + base::in_quotes(device.iface)));
+        missing.push_back(of_port(device, port) + ": " + why_missing(device, ifaces));
       }
     }
     for (const std::string& robot : port.robots) {

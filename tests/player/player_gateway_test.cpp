@@ -305,11 +305,17 @@ TEST_F(MappingFile, an_imu_may_have_a_magnetometer) {
 }
 
 TEST_F(MappingFile, what_is_not_in_the_world_is_named) {
-  const auto ports = read("ports:\n- port: 7000\n  robots: [c]\n  devices: {laser:0: b::drive}\n");
+  const auto ports = read(
+      "ports:\n- port: 7000\n  robots: [c]\n  devices: {laser:0: b::drive, camera:0: a::arm::camara, camera:1: 'depth:a::arm::camera', "
+      "'stereo:0': [a::arm::camera, b::front]}\n");
   ASSERT_TRUE(ports) << ports.error().message;
   std::vector<std::string> missing;
-  EXPECT_EQ(shown(plan_by_config(*ports, world, missing)[0]), "7000 c: simulation:0=world");
-  EXPECT_EQ(missing.size(), 2U);
+  EXPECT_EQ(shown(plan_by_config(*ports, world, missing)[0]), "7000 c: stereo:0=a::arm::camera simulation:0=world");
+  EXPECT_EQ(missing, (std::vector<std::string>{"laser:0 of port 7000: iface \"b::drive\" is of type position2d; expected laser",
+                                               "camera:0 of port 7000: no iface \"a::arm::camara\"; did you mean a::arm::camera?",
+                                               "camera:1 of port 7000: iface \"a::arm::camera\" is of type camera; expected depth",
+                                               "stereo:0 of port 7000: iface \"b::front\" is of type laser; expected camera",
+                                               "port 7000: no robot \"c\""}));
 }
 
 TEST_F(MappingFile, errors_say_where) {

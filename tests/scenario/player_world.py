@@ -134,7 +134,7 @@ def planner():
         await_("the robot to stand", lambda: max(map(abs, stopped())) < 0.01)
 
 
-# Left and right picture of the same time, and nothing in the place of disparity and points.
+# Left and right picture of the same time, and what they tell of distances: a mark at 3.5 m is 8 pixels apart.
 def stereo():
     with Rig() as rig:
         rig.sim(world=f"{source}/worlds/devices.sdf")
@@ -146,18 +146,39 @@ def stereo():
         for _ in range(3):
             fields = Fields(client.read_until(STEREO))
             pictures = []
-            for size in (320 * 240 * 3, 320 * 240 * 3, 0):
+            for bits in (24, 24, 16):
                 head = fields.take("6I")
                 pictures.append(fields.raw())
-                assert head[:2] == ((320, 240) if size else (0, 0)) and len(pictures[-1]) == size, head
-            assert fields.count() == 0 and fields.take("I") == 0
+                assert head[:3] == (320, 240, bits) and len(pictures[-1]) == 320 * 240 * bits // 8, head
+            points = [fields.take("3f3I") for _ in range(fields.count())]
+            assert fields.take("I") == 0
             fields.finish()
+        sixteenths = struct.unpack(f">{320 * 240}H", pictures[2])
+        on_mark = lambda point: abs(point[1] - 0.2 + 0.06) < 0.09 and abs(point[2] + 0.1) < 0.09 and point[0] < 4
+        depths = sorted(point[0] for point in points if on_mark(point))
+        assert len(points) == sum(value > 0 for value in sixteenths) > 1000 and len(depths) > 20, (len(points), len(depths))
+        assert abs(depths[len(depths) // 2] - 3.5) < 0.1, depths
+        assert all(max(point[3:]) <= 255 for point in points)
         # What is near is further left in the right picture: the blue ball at 2.6 m by 17 pixels.
         def middle(picture):
             blue = [i % 320 for i in range(320 * 240) if picture[3 * i + 2] > 60 and picture[3 * i + 2] > 2 * picture[3 * i]]
             return sum(blue) / len(blue)
         assert abs(middle(pictures[0]) - middle(pictures[1]) - 233.9 * 0.12 / 2.6) < 2, (middle(pictures[0]), middle(pictures[1]))
         client.refused(STEREO, 0, 1)
+
+
+# Two cameras that see different pictures of different size are no pair: nobody can subscribe, and a line says why.
+def stereo_of_no_pair():
+    with Rig() as rig:
+        with open(f"{rig.work}/ports.yaml", "w") as file:
+            file.write("ports:\n  - port: 0\n    devices: {'stereo:0': [mast::stereo::left, mast::camera], 'stereo:1': [mast::stereo::right, mast::stereo::left]}\n")
+        rig.sim(world=f"{source}/worlds/devices.sdf")
+        rig.gateway("--config", f"{rig.work}/ports.yaml", robots=1)
+        client = Client(rig.ports[0])
+        for index, line in enumerate(("stereo of mast::stereo::left and mast::camera: the images have 320 x 240 and 640 x 480 pixels; expected the same size",
+                                      "in the first one's frame; expected it to the right, at 0, -BASE, 0")):
+            assert not client.access(STEREO, index, OPEN)
+            await_("a line", lambda: line in rig.log(rig.process))
 
 
 # What a client says the others hear, and it does not hear itself; nonsense is no data.
@@ -247,4 +268,4 @@ def graphics():
         rig.is_alive()
 
 
-run(lines_of_the_map, maps_delay_nobody, planner, stereo, opaque, dio, graphics)
+run(lines_of_the_map, maps_delay_nobody, planner, stereo, stereo_of_no_pair, opaque, dio, graphics)

@@ -346,8 +346,11 @@ std::string encode(const PlannerState& state);
 std::string encode_waypoints(double length, const std::vector<Pose2d>& waypoints);
 
 // ---- stereo ----
-// Without disparity and points.
-std::string encode_stereo(const Image& left, const Image& right);
+struct ColoredPoint {
+  Point3d at;
+  std::array<std::uint8_t, 3> color{};  // red, green, blue
+};
+std::string encode_stereo(const Image& left, const Image& right, const Image& disparity, const std::vector<ColoredPoint>& points);
 
 // ---- opaque ----
 std::optional<std::string> decode_opaque(std::string_view payload);

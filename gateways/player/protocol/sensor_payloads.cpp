@@ -142,14 +142,19 @@ std::string encode(const Image& image) {
   });
 }
 
-std::string encode_stereo(const Image& left, const Image& right) {
+std::string encode_stereo(const Image& left, const Image& right, const Image& disparity, const std::vector<ColoredPoint>& points) {
+  constexpr std::size_t heads = 128, of_a_point = 24;  // [byte]
   return written([&](XdrWriter& out) {
-    out.bytes().reserve(120 + left.pixels.size() + right.pixels.size());
+    out.bytes().reserve(heads + left.pixels.size() + right.pixels.size() + disparity.pixels.size() + of_a_point * points.size());
     put(out, left);
     put(out, right);
-    put(out, Image{});  // disparity
-    out.count(0);       // points
-    out.u32(0);         // how the images are sent: each for itself
+    put(out, disparity);
+    out.count(points.size());
+    for (const ColoredPoint& point : points) {
+      for (const double value : {point.at.x, point.at.y, point.at.z}) out.f32(static_cast<float>(value));
+      for (const std::uint8_t value : point.color) out.u32(value);
+    }
+    out.u32(0);  // how the images are sent: each for itself
   });
 }
 
