@@ -1,7 +1,7 @@
 // What rtse and simctl can do has a button, in front of a stand-in of the server: act_flows.mjs BIN_DIR SOURCE_DIR. One browser, one page.
 import { component, demo_system } from './mock.mjs';
 import { asked, avoid, choose, detail, host, laser, set_up } from './mock_page.mjs';
-import { check, run, same, until } from './rig.mjs';
+import { becomes, check, drawn, run, same, until } from './rig.mjs';
 
 const flows = [
   ['a connection may have further ends, and an id', async ({ page, mock }) => {
@@ -20,8 +20,8 @@ const flows = [
   ['parameters have the widgets that they ask for', async ({ page, mock }) => {
     await choose(page, 'component', laser);
     await until('sets', async () => (await page.locator('.inspector .slider input[type=range]').count()) === 1);
-    same(await page.locator('.inspector .choices input').count(), 3, 'checkboxes');
-    same(await page.locator('.inspector select option').allTextContents(), ['left', 'right'], 'choice');
+    await becomes(() => page.locator('.inspector .choices input').count(), 3, 'checkboxes');
+    await becomes(() => page.locator('.inspector select option').allTextContents(), ['left', 'right'], 'choice');
     await page.locator('.inspector .slider input[type=number]').fill('75');
     await page.keyboard.press('Tab');
     await until('set', () => asked(mock, 'set_configuration').some((m) => m.args.values.max_turn === '75'));
@@ -54,7 +54,7 @@ const flows = [
     mock.answer = (message) => (message.name === 'set_configuration' && !message.args.force ? { error: 'parameter count cannot be 99, expected at most 9' } : usual(message));
     await choose(page, 'component', laser);
     await until('its details', () => page.evaluate((path) => window.studio.store.details.has(path), laser));
-    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));  // and they are drawn
+    await drawn(page);
     const field = page.locator('.inspector label:has-text("max_turn") + * input[type=number]');
     await field.fill('999');
     await page.keyboard.press('Tab');
@@ -87,7 +87,7 @@ const flows = [
     await until('odometry', () => asked(mock, 'reset_odometry').at(-1)?.args.iface === 'pioneer2dx::position2d');
   }],
   ['names whose components are gone are forgotten at once', async ({ page, mock }) => {
-    check(!(await page.locator('#forget-dead').isVisible()), 'nothing to forget');
+    await page.locator('#forget-dead').waitFor({ state: 'hidden' });
     mock.say({ ...demo_system(), components: demo_system().components.map((c) => ({ ...c, state: 'Unknown', problem: 'does not answer' })) });
     await page.locator('#forget-dead').click();
     await until('forgotten', () => asked(mock, 'forget_dead').length === 1);
@@ -148,16 +148,16 @@ const flows = [
     const table = page.locator('dialog[open] .campaign');
     const rows = () => table.locator('tbody tr').evaluateAll((all) => all.map((row) => row.cells[0].textContent));
     await until('its rows', async () => (await rows()).length === 3);
-    same(await page.locator('dialog[open] [role=status]').textContent(), '3 rows: 1 passed, 2 failed', 'summary');
+    await becomes(() => page.locator('dialog[open] [role=status]').textContent(), '3 rows: 1 passed, 2 failed', 'summary');
     same(await table.locator('thead th').allTextContents(), ['row', 'seed', 'Laser0/gain', 'problem', 'simulated_s', 'clearance'], 'columns');
     check((await table.locator('tbody tr').nth(1).textContent()).includes('path "a", too short'), 'the problem');
     await table.locator('th button', { hasText: 'clearance' }).click();
-    same(await rows(), ['✗ failed 2', '✗ failed 10', '✓ passed 1'], 'by numbers');
+    await becomes(rows, ['✗ failed 2', '✗ failed 10', '✓ passed 1'], 'by numbers');
     await page.locator('#campaign-failed').check();
-    same(await rows(), ['✗ failed 2', '✗ failed 10'], 'failed rows');
+    await becomes(rows, ['✗ failed 2', '✗ failed 10'], 'failed rows');
     await table.locator('button', { hasText: /^2$/ }).click();
     await until('opened', () => asked(mock, 'open_recording').at(-1)?.args.file === 'plan.runs/row-2-ab/run.mcap');
-    same(await page.locator('dialog[open]').count(), 0, 'dialogs');
+    await becomes(() => page.locator('dialog[open]').count(), 0, 'dialogs');
     mock.answer = usual;
   }],
   ['a refusal is one line that stays', async ({ page }) => {

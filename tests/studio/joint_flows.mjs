@@ -1,6 +1,6 @@
 // The joints of a selected model, in front of a stand-in of the server: joint_flows.mjs BIN_DIR SOURCE_DIR. One browser, one page.
 import { asked, choose, set_up } from './mock_page.mjs';
-import { check, run, same, until } from './rig.mjs';
+import { becomes, check, run, same, until } from './rig.mjs';
 
 const joint = (name, id, kind, lower, upper) => ({ name, id, kind, lower, upper, max_velocity: 2, max_effort: 200, rest: 0 });
 const joints = [joint('elbow', 0, 1, -1, 2), joint('lift', 1, 2, 0, 0.5), joint('wheel', 2, 1, null, null)];
@@ -42,11 +42,11 @@ const flows = [
   ['joints are shown with positions, limits and units: degrees for those that turn, metres for those that slide', async (shared) => {
     await begin(shared);
     const { page, mock } = shared;
-    same(await page.locator('.joint .actual').allTextContents(), ['30.0°', '0.250 m', '0.0°'], 'positions');
+    await becomes(() => page.locator('.joint .actual').allTextContents(), ['30.0°', '0.250 m', '0.0°'], 'positions');
     same(await page.locator('.joint .limits').allTextContents(), ['-57.3° … 114.6°', '0.000 m … 0.500 m', '-180.0° … 180.0°'], 'limits');
     sample(mock, [state(0.1, { target: 0.5, mode: 1, status: 1 }), state(0.25, { mode: 5, status: 2 }), state(0)]);
     await until('mode and target', async () => (await row(page, 'elbow').textContent()).includes('→ 28.6°, position, moving'));
-    check((await row(page, 'lift').textContent()).includes('brake, braked'), 'a brake');
+    await until('a brake', async () => (await row(page, 'lift').textContent()).includes('brake, braked'));
     await row(page, 'elbow').locator('button[title^="Plot"]').click();
     await until('a plot in degrees', async () => (await page.locator('.plot .legend').allTextContents()).some((text) => text.includes('joints[0].position [°]')));
     same(moves(mock).length, 0, 'commands of one who looks');
@@ -63,7 +63,7 @@ const flows = [
     check(asked(mock, 'release').length === 0, 'it is held');
     await page.mouse.up();
     await until('renewed until it arrives', async () => { const n = moves(mock).length; await new Promise((resolve) => setTimeout(resolve, 400)); return moves(mock).length > n; });
-    check((await page.locator('footer .act').textContent()).includes('Move elbow of pioneer2dx'), 'the status line');
+    await until('the status line', async () => (await page.locator('footer .act').textContent()).includes('Move elbow of pioneer2dx'));
     sample(mock, [state(wanted.value, { target: wanted.value, mode: 1 }), ...at_rest.slice(1)]);
     await until('released', () => asked(mock, 'release').at(-1)?.args.iface === 'pioneer2dx::joints');
     const count = moves(mock).length;
@@ -79,7 +79,7 @@ const flows = [
     await until('a velocity', () => moves(mock).at(-1)?.lift?.mode === 'velocity' && moves(mock).at(-1).lift.value > 1.5);
     await page.mouse.up();
     await until('released', () => asked(mock, 'release').length === before + 1);
-    same(await row(page, 'lift').locator('input[type=range]').inputValue(), '0', 'the slider');
+    await becomes(() => row(page, 'lift').locator('input[type=range]').inputValue(), '0', 'the slider');
     await page.locator('#joint-mode').selectOption('position');
   }],
   ['a joint is freed and braked; what is commanded ends when another model is selected', async (shared) => {
@@ -88,7 +88,7 @@ const flows = [
     const free = row(page, 'wheel').getByRole('button', { name: /^Free/ });
     await free.click();
     await until('free', () => moves(mock).at(-1)?.wheel?.mode === 'free');
-    same(await free.getAttribute('aria-pressed'), 'true', 'the button');
+    await becomes(() => free.getAttribute('aria-pressed'), 'true', 'the button');
     await row(page, 'lift').getByRole('button', { name: /^Brake/ }).click();
     await until('brake', () => moves(mock).some((one) => one.lift?.mode === 'brake'));
     check(moves(mock).at(-1).wheel?.mode === 'free' || (await free.getAttribute('aria-pressed')) === 'true', 'the other stays free');
@@ -112,8 +112,8 @@ const flows = [
     const { page, mock } = shared;
     mock.say({ op: 'hello', version: '0', read_only: true, name_server: 'localhost:2809', server_id: 0 });
     await begin(shared);
-    same(await page.locator('.joint button:not([title^="Plot"])').count(), 0, 'buttons');
-    check(await row(page, 'lift').locator('input[type=range]').isDisabled(), 'the slider');
+    await becomes(() => page.locator('.joint button:not([title^="Plot"])').count(), 0, 'buttons');
+    await until('the slider is disabled', () => row(page, 'lift').locator('input[type=range]').isDisabled());
     mock.say({ op: 'hello', version: '0', read_only: false, name_server: 'localhost:2809', server_id: 0 });
   }],
 ];

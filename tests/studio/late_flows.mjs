@@ -2,7 +2,7 @@
 // anew under a finger. The page alone, in front of a stand-in that holds its answers back: late_flows.mjs BIN_DIR SOURCE_DIR.
 import { join } from 'node:path';
 import { demo_system, hello, Mock, poses, time, world_of } from './mock.mjs';
-import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
+import { becomes, check, drawn, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
 const [bin, source] = process.argv.slice(2);
 const built = process.env.STUDIO_PAGE ?? join(bin, '../share/rtm-sim/studio');
@@ -25,7 +25,6 @@ function answer({ name, args }) {
 const asked = (mock, name) => mock.asked.filter((m) => m.name === name && !m.dry);
 const held = (mock, name, count = 1) => until(`${count} ${name} that wait`, () => mock.held.filter((h) => h.message.name === name).length >= count);
 const choose = (page, kind, id) => page.evaluate(([k, i]) => window.studio.select({ kind: k, id: i }), [kind, id]);
-const two_frames = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 
 async function with_page({ browser, events = [] }, work) {
   const mock = new Mock({ page: built, glb });
@@ -68,7 +67,7 @@ const flows = [
     const answered = page.waitForResponse((reply) => reply.url().endsWith('/access'));
     mock.release_all();
     await answered;
-    await two_frames(page);
+    await drawn(page);
     same(await page.evaluate(() => window.studio.wire.status), 'open', 'status');
   }),
   flow('an answer to an earlier question says nothing new of a component', async ({ mock, page }) => {
@@ -95,8 +94,8 @@ const flows = [
     const field = page.locator('.inspector label:has-text("max_turn") + *');
     await field.fill('75');
     mock.say({ op: 'states', revision: 1, states: { [avoid]: 'Error' }, rates: {} });
-    await two_frames(page);
-    same(await field.inputValue(), '75', 'what is typed');
+    await drawn(page);
+    same(await field.inputValue(), '75', 'what is typed'); // not the value before, also when all is drawn
     await page.keyboard.press('Enter');
     await until('set', () => asked(mock, 'set_configuration').some((m) => m.args.values.max_turn === '75'));
     mock.answer = (message) => (message.name === 'component' ? { result: detail(message.args.path, 75) } : answer(message));
@@ -108,7 +107,7 @@ const flows = [
     // What was said before is there and drawn: where things are is where they stay.
     const settled = async () => {
       await page.evaluate(() => window.studio.wire.request('models'));
-      await two_frames(page);
+      await drawn(page);
     };
     const press = async (locator, meanwhile) => {
       await locator.waitFor();
@@ -139,12 +138,14 @@ const flows = [
   flow('a box that is dragged goes where it is put, whatever comes meanwhile', async ({ mock, page }) => {
     await has_world(page);
     const box = page.locator(`[data-path="${laser}"] .band`);
+    await box.waitFor();
+    await drawn(page);
     const before = await box.boundingBox();
     await page.mouse.move(before.x + 30, before.y + 10);
     await page.mouse.down();
     await page.mouse.move(before.x + 30, before.y + 60, { steps: 3 });
     mock.say({ ...demo_system(), revision: 2, connections: [] });
-    await two_frames(page);
+    await drawn(page);
     await page.mouse.move(before.x + 30, before.y + 110, { steps: 3 });
     await page.mouse.up();
     await until('the system as it is now', async () => (await page.locator('.diagram .edge').count()) === 0);
@@ -330,8 +331,8 @@ const flows = [
     mock.release();
     await held(mock, 'look');
     same(asked(mock, 'look')[1].args, { time: 7, whole: true }, 'the newest, whole');
-    await two_frames(page);
-    same(await page.evaluate(() => document.querySelector('.scrub').value), '7', 'the slider stays in the hand');
+    await drawn(page);
+    await becomes(() => page.evaluate(() => document.querySelector('.scrub').value), '7', 'the slider stays in the hand');
     mock.release_all();
     await until('shown', async () => (await page.locator('.clock').textContent()) === '7.000 s');
   }, () => []),

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { component, demo_system, fleet, hello, many_components, Mock, poses, time, world_of } from './mock.mjs';
 import { answer, asked, avoid, built, choose, detail, glb, host, laser, set_up } from './mock_page.mjs';
-import { check, has_world, is_ready, open, run, same, until } from './rig.mjs';
+import { becomes, check, drawn, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
 const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 
@@ -22,7 +22,7 @@ const flows = [
   }],
   ['the world is seen with its laser fan and names', async ({ page }) => {
     await until('a scan', () => page.evaluate(() => [...window.studio.world.world.links].some((l) => { let n = 0; l.traverse((p) => { n += p.userData.overlay && p.geometry.getAttribute('position')?.count > 50 ? 1 : 0; }); return n > 0; })));
-    same(await page.locator('.labels span').allTextContents(), ['pioneer2dx'], 'names');
+    await becomes(() => page.locator('.labels span').allTextContents(), ['pioneer2dx'], 'names');
   }],
   ['poses move the robot', async ({ page, mock, world }) => {
     const index = await page.evaluate(() => window.studio.world.world.links.findIndex((l) => l.name === 'pioneer2dx::chassis'));
@@ -32,20 +32,20 @@ const flows = [
   }],
   ['a click on the robot selects it everywhere', async ({ page }) => {
     await page.evaluate(() => window.studio.world.follow('pioneer2dx'));
-    await page.waitForTimeout(100);
+    await drawn(page);
     await page.evaluate(() => window.studio.world.draw());
     const box = await page.locator('.world canvas').boundingBox();
     await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
     await until('selection', () => page.evaluate(() => window.studio.store.selection?.id === 'pioneer2dx'));
     await until('its component is marked in the system', async () => (await page.locator(`.box.related[data-path="${laser}"]`).count()) === 1);
-    check((await page.locator('.tree li.chosen').textContent()).includes('pioneer2dx'), 'the tree marks it');
-    check((await page.locator('.inspector h2').textContent()) === 'pioneer2dx', 'the inspector shows it');
-    check((await page.locator('.tree li.related').count()) >= 1, 'its signals are marked');
+    await until('the tree marks it', async () => (await page.locator('.tree li.chosen').textContent()).includes('pioneer2dx'));
+    await becomes(() => page.locator('.inspector h2').textContent(), 'pioneer2dx', 'the inspector shows it');
+    await until('its signals are marked', async () => (await page.locator('.tree li.related').count()) >= 1);
   }],
   ['all tools of the world are within its panel', async ({ page }) => {
     const bar = await page.locator('.world-panel > .bar').boundingBox();
-    const out = await page.locator('.world-panel > .bar > *').evaluateAll((all, box) => all.map((e) => [e.getAttribute('aria-label') ?? e.textContent, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0 && (r.right > box.x + box.width + 0.5 || r.bottom > box.y + box.height + 0.5)).map(([name]) => name), bar);
-    same(out, [], 'cut off');
+    const out = () => page.locator('.world-panel > .bar > *').evaluateAll((all, box) => all.map((e) => [e.getAttribute('aria-label') ?? e.textContent, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0 && (r.right > box.x + box.width + 0.5 || r.bottom > box.y + box.height + 0.5)).map(([name]) => name), bar);
+    await becomes(out, [], 'cut off');
     check(bar.height < 40, `one row: ${bar.height}`);
   }],
   ['eyes: from above, follow, all', async ({ page }) => {
@@ -73,7 +73,7 @@ const flows = [
     const links = await page.evaluate(() => window.studio.world.world.models.get('pioneer2dx').links.length);
     await until('the world and its links', () => page.evaluate((n) => window.studio.world.axes.count === n + 1, links));
     await until('names', async () => (await page.locator('.labels span.frame').count()) > 0);
-    same(await page.locator('button[aria-label^="Frames"]').getAttribute('aria-pressed'), 'true', 'the button');
+    await becomes(() => page.locator('button[aria-label^="Frames"]').getAttribute('aria-pressed'), 'true', 'the button');
     await page.keyboard.press('x');
     await until('none', async () => (await page.evaluate(() => window.studio.world.axes.count)) === 0 && (await page.locator('.labels span.frame').count()) === 0);
   }],
@@ -165,10 +165,10 @@ const flows = [
     await until('released', () => asked(mock, 'release').length === 1);
   }],
   ['components are boxes with states, ports and lines', async ({ page }) => {
-    same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'boxes');
-    same(await page.locator('.diagram .edge').count(), 2, 'lines');
-    same(await page.locator('.diagram .port.wired').count(), 4, 'wired ports');
-    same(await page.locator('.diagram .box.state-active').count(), 3, 'active');
+    await becomes(() => page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'boxes');
+    await becomes(() => page.locator('.diagram .edge').count(), 2, 'lines');
+    await becomes(() => page.locator('.diagram .port.wired').count(), 4, 'wired ports');
+    await becomes(() => page.locator('.diagram .box.state-active').count(), 3, 'active');
   }],
   ['a state changes its colour and shape', async ({ page, mock }) => {
     const shape = await page.locator(`[data-path="${laser}"] .shape`).getAttribute('d');
@@ -189,7 +189,7 @@ const flows = [
     await page.mouse.move(from.x + 4, from.y + 4);
     await page.mouse.down();
     await page.mouse.move(to.x - 30, to.y + 30, { steps: 4 });
-    check((await page.locator('.port.fits').count()) >= 1, 'what fits is shown');
+    await until('what fits is shown', async () => (await page.locator('.port.fits').count()) >= 1);
     await page.mouse.move(to.x + 4, to.y + 4, { steps: 3 });
     await page.mouse.up();
     await page.locator('dialog[open]').waitFor();
@@ -242,11 +242,11 @@ const flows = [
       return [middle.x, middle.y];
     });
     await page.mouse.click(x, y);
-    same(await page.evaluate(() => window.studio.store.selection), { kind: 'connection', id: 'b' }, 'what is selected');
+    await becomes(() => page.evaluate(() => window.studio.store.selection), { kind: 'connection', id: 'b' }, 'what is selected');
     await page.keyboard.press('Delete');
     await until('disconnect', () => asked(mock, 'disconnect').slice(count).some((m) => m.args.id === 'b'));
     await page.mouse.click(x + 3, y + 60);
-    same(await page.evaluate(() => window.studio.store.selection), null, 'a click beside all selects nothing');
+    await becomes(() => page.evaluate(() => window.studio.store.selection), null, 'a click beside all selects nothing');
   }],
   ['the world or the system alone fill the middle', async ({ page }) => {
     const width = (name) => page.locator(name).evaluate((element) => element.getBoundingClientRect().width);
@@ -255,7 +255,7 @@ const flows = [
       await page.keyboard.press('Escape');
       await page.locator('.world canvas').focus().catch(() => {});
       await page.keyboard.press(key);
-      check((await width(other)) > middle - 12, `${other}: ${await width(other)} of ${middle}`);
+      await until(`${other} is as wide as both`, async () => (await width(other)) > middle - 12);
       await page.keyboard.press(key);
     }
   }],
@@ -287,13 +287,14 @@ const flows = [
     await page.locator('.inspector button', { hasText: 'Set moving' }).click();
     await page.locator('#ask-text').fill('0 0 0 0 0 180');
     await page.keyboard.press('Enter');
-    const moved = await until('moving', () => asked(mock, 'set_velocity').pop());
+    const moved = await until('moving', () => asked(mock, 'set_velocity').at(-1));
     check(Math.abs(moved.args.angular[2] - Math.PI) < 1e-9, JSON.stringify(moved.args));
+    const before = asked(mock, 'spawn').length;
     await page.keyboard.press('Insert');
     await page.locator('#spawn-model').fill('box');
     await page.locator('#spawn-pose').fill('0 0 90');
     await page.locator('dialog button.main').click();
-    const spawned = await until('spawned', () => asked(mock, 'spawn').pop());
+    const spawned = await until('spawned', () => asked(mock, 'spawn')[before]);
     await until('answered', () => page.evaluate(() => window.studio.wire.open.size === 0 && window.studio.store.acts.at(-1).text.startsWith('Spawn')));
     check(Math.abs(spawned.args.pose[6] - Math.SQRT1_2) < 1e-9, JSON.stringify(spawned.args));
   }],
@@ -342,12 +343,12 @@ const flows = [
     await page.keyboard.press('ArrowUp');
     await page.keyboard.press('Enter');
     await until('cut', () => asked(mock, 'disconnect').length === count + 1);
-    check((await menu.count()) === 0, 'the menu is closed');
+    await menu.waitFor({ state: 'detached' });
   }],
   ['ports, components and models have context menus, and a press elsewhere closes them', async ({ page, mock }) => {
     const menu = page.locator('.menu[role=menu]');
     await page.locator(`[data-port="${avoid}:range"] > path`).click({ button: 'right' });
-    check((await menu.locator('button').allTextContents()).includes('Write …'), 'of an InPort');
+    await menu.locator('button', { hasText: 'Write …' }).waitFor();
     await page.locator(`[data-path="${laser}"] .name`).click({ button: 'right', force: true, position: { x: 3, y: 3 } });
     const count = asked(mock, 'deactivate').length;
     await page.locator('.menu[aria-label="Component RTCLaser0"] button', { hasText: 'Deactivate' }).click();
@@ -373,8 +374,8 @@ const flows = [
     await page.evaluate(() => { window.studio.dock.resize('inspector', 220); window.studio.store.details.clear(); });
     await choose(page, 'component', avoid);
     await until('its settings', async () => (await page.locator('.inspector').textContent()).includes('a_parameter_with'));
-    const wide = await page.evaluate(() => { const box = document.querySelector('.inspector').getBoundingClientRect(); return [...document.querySelectorAll('.inspector *')].filter((e) => { const { width, right } = e.getBoundingClientRect(); return width > 0 && right > box.right + 1; }).map((e) => `${e.tagName} ${e.className} ${e.id}`); });
-    same(wide, [], 'too wide');
+    const wide = () => page.evaluate(() => { const box = document.querySelector('.inspector').getBoundingClientRect(); return [...document.querySelectorAll('.inspector *')].filter((e) => { const { width, right } = e.getBoundingClientRect(); return width > 0 && right > box.right + 1; }).map((e) => `${e.tagName} ${e.className} ${e.id}`); });
+    await becomes(wide, [], 'too wide');
     await page.evaluate(() => { window.studio.dock.resize('inspector', 300); });
     mock.answer = was;
   }],
@@ -383,10 +384,10 @@ const flows = [
     await has_world(page);
     for (const panel of ['world', 'system']) {
       await page.locator(`.panel-tabs [data-panel=${panel}]`).click();
-      const rows = await page.locator(`.${panel}-panel > .bar`).evaluate((bar) => new Set([...bar.children].map((e) => e.getBoundingClientRect()).filter((r) => r.width > 0).map((r) => Math.round((r.top + r.bottom) / 16))).size);
-      same(rows, 1, `rows of the bar of ${panel}`);
+      const rows = () => page.locator(`.${panel}-panel > .bar`).evaluate((bar) => new Set([...bar.children].map((e) => e.getBoundingClientRect()).filter((r) => r.width > 0).map((r) => Math.round((r.top + r.bottom) / 16))).size);
+      await becomes(rows, 1, `rows of the bar of ${panel}`);
     }
-    same(await page.evaluate(() => [...document.querySelectorAll('.top > *')].filter((e) => e.getBoundingClientRect().width > 0 && e.getBoundingClientRect().bottom > 44).length), 0, 'rows of the top');
+    await becomes(() => page.evaluate(() => [...document.querySelectorAll('.top > *')].filter((e) => e.getBoundingClientRect().width > 0 && e.getBoundingClientRect().bottom > 44).length), 0, 'rows of the top');
     await page.context().close();
   }],
   ['the past of the time line stays when a model comes or goes, and not when another world comes', async ({ page, mock, world }) => {
@@ -435,10 +436,9 @@ const flows = [
       mock.say({ op: 'values', watch: fan, t: [seconds], value: { ranges: Array.from({ length: 60 }, () => (seconds - 200) / 2) } }, false);
       mock.say(time({ sim_time: seconds }), false);
       await until(`${seconds} s`, () => page.evaluate((t) => window.studio.store.time?.sim_time === t, seconds));
-      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // what is drawn has followed, also the first jump
+      await drawn(page); // what is drawn has followed, also the first jump
     }
-    const now = await seen();
-    check(Math.abs(now.first - 3) < 1e-5 && now.trail >= 6, JSON.stringify(now));
+    const now = await until('the newest scan and a trail', async () => { const is = await seen(); return Math.abs(is.first - 3) < 1e-5 && is.trail >= 6 && is; });
     await page.evaluate(() => window.studio.bottom.look(202.5));
     const then = await seen();
     check(then.visible && Math.abs(then.first - 1) < 1e-5, `the scan of then: ${JSON.stringify(then)}`);
@@ -549,7 +549,7 @@ const flows = [
     await until('it shows that it holds', async () => (await page.locator('.breaks .met').count()) === 1);
     mock.say({ op: 'values', watch: id, t: [5, 6], v: [[0.1], [0.8]] }, false);
     await until('paused again', () => pauses() === before + 2);
-    check((await page.locator('.status .act').textContent()).includes('data.vx > 0.5'), 'why');
+    await until('why', async () => (await page.locator('.status .act').textContent()).includes('data.vx > 0.5'));
     await page.locator('.breaks button').click();
     await until('no watch', () => asked(mock, 'unwatch').some((m) => m.args.watch === id));
     await choose(page, 'component', laser);
@@ -594,13 +594,13 @@ const flows = [
   ['panels are hidden by keys and sized by keys', async ({ page }) => {
     await page.locator('.world canvas').focus();
     await page.keyboard.press('1');
-    check(!(await page.locator('.tree-panel').isVisible()), 'hidden');
+    await page.locator('.tree-panel').waitFor({ state: 'hidden' });
     await page.keyboard.press('1');
-    check(await page.locator('.tree-panel').isVisible(), 'there again');
+    await page.locator('.tree-panel').waitFor();
     const before = (await page.locator('.tree-panel').boundingBox()).width;
     await page.locator('.of-tree').focus();
     await page.keyboard.press('ArrowRight');
-    check((await page.locator('.tree-panel').boundingBox()).width > before, 'wider');
+    await until('wider', async () => (await page.locator('.tree-panel').boundingBox()).width > before);
   }],
   ['a panel is dragged by its grip beside another, as a tab, and to an edge', async ({ page }) => {
     const box = (panel) => page.locator(`.${panel}-panel`).boundingBox();
@@ -609,21 +609,21 @@ const flows = [
       await page.mouse.move(grip.x + 6, grip.y + 6);
       await page.mouse.down();
       await page.mouse.move(x, y, { steps: 4 });
-      check(await page.locator('.drop').isVisible(), 'the place is shown');
+      await page.locator('.drop').waitFor();
       await page.mouse.up();
     };
     const tree = await box('tree');
     await drag('inspector', tree.x + tree.width / 2, tree.y + tree.height - 20);
-    const [above, below, world] = [await box('tree'), await box('inspector'), await box('world')];
-    check(below.y > above.y + above.height - 10 && Math.abs(below.x - above.x) < 2, 'the inspector is below the tree');
+    await until('the inspector is below the tree', async () => { const [above, below] = [await box('tree'), await box('inspector')]; return below.y > above.y + above.height - 10 && Math.abs(below.x - above.x) < 2; });
+    const world = await box('world');
     await drag('system', world.x + world.width / 2, world.y + world.height / 2);
-    check(await page.locator('.system-panel').isVisible() && !(await page.locator('.world-panel').isVisible()), 'the system is in front of the world');
+    await until('the system is in front of the world', async () => (await page.locator('.system-panel').isVisible()) && !(await page.locator('.world-panel').isVisible()));
     await page.locator('.leaf-tabs [data-panel=world]').click();
-    check(await page.locator('.world-panel').isVisible(), 'the world by its tab');
+    await page.locator('.world-panel').waitFor();
     await page.keyboard.press('3');
-    check(await page.locator('.system-panel').isVisible(), 'the system by its key');
+    await page.locator('.system-panel').waitFor();
     await drag('bottom', 3, 300);
-    check((await box('bottom')).x < 2 && (await box('bottom')).height > 600, 'time at the left edge');
+    await until('time at the left edge', async () => { const { x, height } = await box('bottom'); return x < 2 && height > 600; });
     await until('kept', () => page.evaluate(() => JSON.parse(localStorage.getItem('rtm-studio')).layout.root.parts[0].shown === 'bottom'));
   }],
   ['a layout is saved under a name, and comes back after another one and after a reload', async ({ page }) => {
@@ -633,7 +633,7 @@ const flows = [
     await page.locator('dialog[open] button.main').click();
     await until('kept', () => page.evaluate(() => 'tuning' in JSON.parse(localStorage.getItem('rtm-studio')).layouts));
     await entry('Usual layout');
-    check((await page.locator('.bottom-panel').boundingBox()).x < 2 && (await page.locator('.tree-panel').boundingBox()).y < 60 && (await page.locator('.bottom-panel').boundingBox()).y > 300, 'the usual one');
+    await until('the usual one', async () => (await page.locator('.bottom-panel').boundingBox()).x < 2 && (await page.locator('.tree-panel').boundingBox()).y < 60 && (await page.locator('.bottom-panel').boundingBox()).y > 300);
     await entry(/^tuning$/);
     await page.locator('#layouts').click();
     // A change is kept although the page is left in the same moment.
@@ -645,13 +645,13 @@ const flows = [
     await is_ready(page);
     await has_world(page);
     await entry(/^tuning$/);
-    check((await page.locator('.bottom-panel').boundingBox()).height > 600, 'the saved one');
+    await until('the saved one', async () => (await page.locator('.bottom-panel').boundingBox()).height > 600);
     await entry('Delete tuning');
     await entry('Usual layout');
     await page.locator('.inspector-panel .grip').focus();
     await page.keyboard.press('Enter');
     await page.locator('.menu button', { hasText: 'As a tab of Tree' }).click();
-    check(await page.locator('.inspector-panel').isVisible() && !(await page.locator('.tree-panel').isVisible()), 'by the keyboard, too');
+    await until('by the keyboard, too', async () => (await page.locator('.inspector-panel').isVisible()) && !(await page.locator('.tree-panel').isVisible()));
     await entry('Usual layout');
   }],
   ['a link holds the view', async ({ page, browser }) => {
@@ -665,7 +665,7 @@ const flows = [
     await without.context().close();
     const other = await open(browser, link);
     await has_world(other);
-    same(await other.evaluate(() => [window.studio.world.eye.mode, window.studio.store.selection.id]), ['top', 'pioneer2dx'], 'view');
+    await becomes(() => other.evaluate(() => [window.studio.world.eye.mode, window.studio.store.selection?.id]), ['top', 'pioneer2dx'], 'view');
     await other.context().close();
     await page.evaluate(() => window.studio.world.whole());
   }],
@@ -674,7 +674,7 @@ const flows = [
       await page.emulateMedia({ colorScheme: theme });
       for (const [kind, id] of [['model', 'pioneer2dx'], ['component', laser], ['connection', 'a']]) {
         await choose(page, kind, id);
-        await page.waitForTimeout(60);
+        await drawn(page);
         if (!(await page.evaluate(() => Boolean(window.axe)))) await page.addScriptTag({ path: axe });
         const result = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
         const bad = result.violations.filter((v) => v.impact === 'serious' || v.impact === 'critical');
@@ -689,9 +689,9 @@ const flows = [
     await choose(page, 'component', avoid); // the system is not seen yet
     for (const panel of ['tree', 'world', 'system', 'inspector', 'bottom']) {
       await page.locator(`.panel-tabs [data-panel=${panel}]`).click();
-      check(await page.locator(`.${panel}-panel`).isVisible(), panel);
-      check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${panel} is too wide`);
-      same(await page.evaluate(() => [...document.querySelectorAll('button, input, select')].filter((e) => { const { width, left, right } = e.getBoundingClientRect(); return width > 0 && (left < -1 || right > innerWidth + 1); }).map((e) => e.id || e.ariaLabel)), [], `out of reach in ${panel}`);
+      await page.locator(`.${panel}-panel`).waitFor();
+      await until(`${panel} is as wide as the screen`, () => page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      await becomes(() => page.evaluate(() => [...document.querySelectorAll('button, input, select')].filter((e) => { const { width, left, right } = e.getBoundingClientRect(); return width > 0 && (left < -1 || right > innerWidth + 1); }).map((e) => e.id || e.ariaLabel)), [], `out of reach in ${panel}`);
     }
     await page.locator('.panel-tabs [data-panel=system]').click();
     const left = () => page.evaluate(() => Math.min(...[...document.querySelectorAll('.diagram .box')].map((b) => b.getBoundingClientRect().left)));
@@ -706,11 +706,12 @@ const flows = [
     for (const event of [hello({ read_only: true }), demo_system(), await world_of(glb), time()]) mock.say(event);
     const page = await open(browser, await mock.start());
     await has_world(page);
-    check(await page.locator('#run').isDisabled(), 'run');
-    check(await page.locator('#activate-all').isDisabled(), 'activate all');
+    await until('no run', () => page.locator('#run').isDisabled());
+    await until('no activation of all', () => page.locator('#activate-all').isDisabled());
     await choose(page, 'component', laser);
+    await until('the inspector', async () => (await page.locator('.inspector h2').textContent()) === 'RTCLaser0');
     same(await page.locator('#act-deactivate').count(), 0, 'buttons');
-    check((await page.locator('footer').textContent()).includes('read-only'), 'says so');
+    await until('it says so', async () => (await page.locator('footer').textContent()).includes('read-only'));
     await page.keyboard.press('Space');
     same(asked(mock, 'run').length, 0, 'nothing was asked');
     await page.context().close();
@@ -723,8 +724,7 @@ const flows = [
     const url = await mock.start();
     const page = await open(browser, url);
     await until('world says', async () => (await page.locator('.world .card').textContent()).includes('bin/sim-server worlds/x.sdf'));
-    const card = await page.locator('.diagram .card').textContent();
-    check(card.includes('localhost:2999') && card.includes('bin/rtcd --with-naming Laser'), `the system says where it looks and what to start: ${card}`);
+    await until('the system says where it looks and what to start', async () => { const card = await page.locator('.diagram .card').textContent(); return card.includes('localhost:2999') && card.includes('bin/rtcd --with-naming Laser'); });
     mock.say(demo_system());
     await until('system comes', async () => (await page.locator('.diagram .box').count()) === 3);
     mock.say(await world_of(glb));
@@ -759,12 +759,12 @@ const flows = [
     await until('all', async () => (await page.locator('.diagram .box').count()) === 200);
     await page.getByRole('button', { name: 'Fold equal robots' }).click();
     await until('folded', async () => (await page.locator('.diagram .box').count()) === 4);
-    same(await page.locator('.diagram .box .name').allTextContents(), ['Dispatcher', 'Laser_r0', 'Avoid_r0', 'Avoid_r2'], 'boxes');
-    same(await page.locator('.diagram .box .count').allTextContents(), ['× 99', '× 99'], 'numbers');
-    same(await page.locator('.diagram .edge').count(), 3, 'lines');
+    await becomes(() => page.locator('.diagram .box .name').allTextContents(), ['Dispatcher', 'Laser_r0', 'Avoid_r0', 'Avoid_r2'], 'boxes');
+    await becomes(() => page.locator('.diagram .box .count').allTextContents(), ['× 99', '× 99'], 'numbers');
+    await becomes(() => page.locator('.diagram .edge').count(), 3, 'lines');
     mock.say({ op: 'states', revision: 2, states: { [`${host}/Laser_r77.rtc`]: 'Error' }, rates: {} });
     await until('error', async () => (await page.locator(`.box.state-error[data-path="${host}/Laser_r0.rtc"]`).count()) === 1);
-    check((await page.locator(`[data-path="${host}/Laser_r0.rtc"] > title`).textContent()).includes('98 active, 1 in error'), 'its title counts them');
+    await until('its title counts them', async () => (await page.locator(`[data-path="${host}/Laser_r0.rtc"] > title`).textContent()).includes('98 active, 1 in error'));
     await page.getByRole('button', { name: 'Fold equal robots' }).click();
     await until('all again', async () => (await page.locator('.diagram .box').count()) === 200);
     await page.context().close();
@@ -781,7 +781,7 @@ const flows = [
     await page.mouse.down();
     for (let i = 0; i < 10; ++i) await page.mouse.move(box.x + 8 + 9 * i, box.y + 8 + 3 * i);
     await page.mouse.up();
-    check((await page.evaluate(() => window.studio.diagram.frames)) > before, 'it moved');
+    await until('it moved', () => page.evaluate((frames) => window.studio.diagram.frames > frames, before));
     await page.locator('.tree input').fill('Part777');
     await until('found', async () => (await page.locator('.tree li[data-key$="Part777.rtc"]').count()) === 1);
     await page.context().close();
@@ -795,7 +795,8 @@ const flows = [
     await until('box', async () => (await page.locator('.diagram .box').count()) === 1);
     await choose(page, 'component', `${host}/${bad}.rtc`);
     await page.locator('#tab-logs').click();
-    await page.waitForTimeout(100);
+    await until('its log', async () => (await page.locator('.log > div').count()) === 1);
+    await page.evaluate(() => new Promise((fails) => { const image = new Image(); image.onerror = fails; image.src = 'y'; })); // after one of the page would have
     same(await page.evaluate(() => window.hurt), undefined, 'mischief');
     await page.context().close();
     mock.stop();

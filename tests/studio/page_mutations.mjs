@@ -2,7 +2,7 @@
 // rejected with a reason, and nothing fails elsewhere. page_mutations.mjs PAGE_HTML WEB_FOLDER [NUMBER [SEED]]; WEB_FOLDER has src and node_modules.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { deflateSync, inflateSync } from 'node:zlib';
 
 export function random(seed) {
@@ -57,7 +57,7 @@ export function mutated(text, json, pick) {
 }
 
 async function reader(web) {
-  const require = createRequire(join(web, 'package.json'));
+  const require = createRequire(resolve(web, 'package.json'));
   const { build } = require('esbuild');
   const { outputFiles } = await build({ entryPoints: [join(web, 'src/run_data.ts')], bundle: true, format: 'esm', write: false, logLevel: 'error' });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);

@@ -1,11 +1,11 @@
 // A recorded run in the page, whoever has its data: rtm-studio with the recording, or a page that rtse wrote. Each flow gets
 // { page, rig, file }, with `file` the recording (MCAP).
-import { check, same, until } from './rig.mjs';
+import { becomes, check, until } from './rig.mjs';
 
 export const moment = (page) => page.evaluate(() => window.studio.store.time?.sim_time ?? -1);
-export const robot = (page) => page.evaluate(() => window.studio.world.world.models.get('pioneer2dx').canonical.position.toArray());
+export const robot = (page) => until('the robot', () => page.evaluate(() => window.studio.world.world?.models.get('pioneer2dx').canonical.position.toArray()));
 export const choose = (page, kind, id) => page.evaluate(([k, i]) => window.studio.select({ kind: k, id: i }), [kind, id]);
-export const path_of = (page, instance) => page.evaluate((name) => window.studio.store.system.components.find((c) => c.instance === name).path, instance);
+export const path_of = (page, instance) => until(instance, () => page.evaluate((name) => window.studio.store.system.components.find((c) => c.instance === name)?.path, instance));
 
 // By the slider, as a hand does.
 export async function scrub(page, time) {
@@ -45,7 +45,7 @@ export const flows = [
     await page.locator('#run').click();
     await until('the end', async () => (await moment(page)) >= 11.999);
     await until('it stops', () => page.evaluate(() => !window.studio.playback.is_playing));
-    check(!near(await robot(page), before), 'the robot has moved');
+    await until('the robot has moved', async () => !near(await robot(page), before));
     await page.locator('#speed').fill('1');
     await page.keyboard.press('Enter');
     await page.locator('#run').click();
@@ -76,21 +76,19 @@ export const flows = [
   ['states are those of the moment, and a band over time', async ({ page }) => {
     const path = await path_of(page, 'RTCLaser0');
     await scrub(page, 6);
-    same(await page.evaluate((p) => window.studio.store.system.components.find((c) => c.path === p).state, path), 'Active', 'state');
-    check(await page.evaluate(() => { const band = document.querySelector('canvas.band'); return band.getContext('2d').getImageData(0, 0, band.width, band.height).data.some((v, i) => i % 4 === 3 && v > 0); }), 'the band is drawn');
+    await becomes(() => page.evaluate((p) => window.studio.store.system.components.find((c) => c.path === p).state, path), 'Active', 'state');
+    await until('the band is drawn', () => page.evaluate(() => { const band = document.querySelector('canvas.band'); return band.getContext('2d').getImageData(0, 0, band.width, band.height).data.some((v, i) => i % 4 === 3 && v > 0); }));
   }],
   ['parameters are shown and cannot be set', async ({ page }) => {
     await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
     await until('parameters', async () => (await page.locator('.inspector .grid input').count()) > 5);
-    check(await page.locator('.inspector .grid input').first().isDisabled(), 'disabled');
-    same(await page.locator('#act-activate').count(), 0, 'buttons');
+    await until('disabled', () => page.locator('.inspector .grid input').first().isDisabled());
+    await becomes(() => page.locator('#act-activate').count(), 0, 'buttons');
   }],
   ['a plot shows the whole recording, and a click on it chooses a moment', async ({ page }) => {
     await page.evaluate(() => window.studio.select({ kind: 'signal', id: '/LaserObstacleAvoid0/velocity' }));
     await page.locator('.inspector button[aria-label="Plot data.vx"]').click();
-    await until('its line', () => page.evaluate(() => window.studio.bottom.plots.plots[0].lines[0].times.length > 100));
-    const lines = await page.evaluate(() => { const { times } = window.studio.bottom.plots.plots[0].lines[0]; return [times[0], times.at(-1)]; });
-    check(lines[0] < 0.2 && lines[1] > 11.8, `from ${lines[0]} to ${lines[1]}`);
+    await until('its line, from the beginning to the end', () => page.evaluate(() => { const { times } = window.studio.bottom.plots.plots[0].lines[0]; return times.length > 100 && times[0] < 0.2 && times.at(-1) > 11.8; }));
     // Again where it is then: the panel may still take its size.
     await until('the middle', async () => {
       const box = await page.locator('.plot .u-over').boundingBox();

@@ -4,7 +4,7 @@ import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join, relative } from 'node:path';
 import { promisify } from 'node:util';
 import { choose, flows as recorded_flows, moment, near, path_of, robot, scrub } from './recorded_steps.mjs';
-import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+import { becomes, check, has_world, is_ready, open, Rig, run, same, until, watchdog } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const worlds = join(source, 'worlds');
@@ -24,19 +24,19 @@ async function set_up(browser) {
 
 const flows = [
   ['the page says what it shows, and for how long', async ({ page }) => {
-    check((await page.locator('.top .what').textContent()).includes('run.mcap, 12.0 s recorded'), 'head');
-    check((await page.locator('footer').textContent()).includes('recording: read-only'), 'foot');
-    check(await page.locator('#live').isHidden(), 'there is no now');
-    same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
-    same(await page.locator('.diagram .edge').count(), 2, 'connections');
-    check(await page.locator('#activate-all').isDisabled(), 'nothing can be done to it');
+    await until('head', async () => (await page.locator('.top .what').textContent()).includes('run.mcap, 12.0 s recorded'));
+    await until('foot', async () => (await page.locator('footer').textContent()).includes('recording: read-only'));
+    await page.locator('#live').waitFor({ state: 'hidden' });
+    await becomes(() => page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
+    await becomes(() => page.locator('.diagram .edge').count(), 2, 'connections');
+    await until('nothing can be done to it', () => page.locator('#activate-all').isDisabled());
   }],
   ['the time line is as long as the recording before the first frame is drawn', async ({ browser, url }) => {
     const page = await open(browser);
     await page.addInitScript(() => { window.requestAnimationFrame = () => 0; });
     await page.goto(url);
     await until('hello', () => page.evaluate(() => window.studio?.store.hello !== undefined));
-    const range = await page.locator('.scrub').evaluate((slider) => [Number(slider.min), Number(slider.max)]);
+    const range = await page.locator('.scrub').evaluate((slider) => [Number(slider.min), Number(slider.max)]); // at once: without a frame
     check(range[0] < 0.2 && range[1] > 11.8, `from ${range[0]} to ${range[1]}`);
     await page.context().close();
   }],
@@ -45,8 +45,8 @@ const flows = [
     await page.locator('#replay').click();
     await page.locator('#replayed', { hasText: 'equal' }).waitFor();
     await page.keyboard.press('Escape');
-    const command = await page.locator('.status .command').textContent();
-    same(command, `rtse replay ${file} --into LaserObstacleAvoid0 --compare`, 'the command');
+    const command = `rtse replay ${file} --into LaserObstacleAvoid0 --compare`;
+    await becomes(() => page.locator('.status .command').textContent(), command, 'the command');
     await rig.call(...command.split(' '), '--module-path', rig.lib);
   }],
   ['the next time at which a value becomes true of a comparison is gone to', async ({ page }) => {
@@ -65,7 +65,7 @@ const flows = [
     await scrub(page, 10);
     await scrub(other, 2);
     check(Math.abs((await moment(page)) - 10) < 1e-6, 'the first one stays');
-    check(!near(await robot(page), await robot(other)), 'two places');
+    await until('two places', async () => !near(await robot(page), await robot(other)));
     await other.context().close();
   }],
   ['a link holds the moment', async ({ browser, page }) => {
@@ -108,8 +108,8 @@ const flows = [
     }
     await scrub(page, 9);
     await scrub(other, 2);
-    check(!near(await robot(page), await robot(other)), 'two places');
-    same(await page.locator('footer .command').textContent(), 'rtm-studio run.mcap', 'the command');
+    await until('two places', async () => !near(await robot(page), await robot(other)));
+    await becomes(() => page.locator('footer .command').textContent(), 'rtm-studio run.mcap', 'the command');
     await page.keyboard.press('r');
     await page.locator('#close-recording').click();
     for (const one of [page, other]) {
@@ -141,7 +141,7 @@ const flows = [
     await page.locator('#open-recording').click();
     await page.locator('#campaigns button', { hasText: 'plan.db' }).click();
     await until('its rows', async () => (await page.locator('.campaign tbody tr').count()) === 2);
-    same(await page.locator('dialog[open] [role=status]').textContent(), '2 rows: 1 passed, 1 failed', 'summary');
+    await becomes(() => page.locator('dialog[open] [role=status]').textContent(), '2 rows: 1 passed, 1 failed', 'summary');
     await page.locator('.campaign td.failed button').click();
     await until('the recording', () => page.evaluate(() => window.studio.store.hello.recording?.file === 'run.mcap' && window.studio.store.system.components.length === 3));
     await choose(page, 'component', await path_of(page, 'LaserObstacleAvoid0'));
@@ -210,7 +210,7 @@ const flows = [
     for (const [time, wanted] of [[0.5, 'first'], [3.8, 'first late'], [6.8, 'late'], [0.6, 'first'], [3.9, 'first late']]) {
       await scrub(page, from + time);
       await until(`${wanted} at ${time} s`, async () => (await seen()) === wanted);
-      same(await page.evaluate(() => window.studio.store.world.models.map((m) => m.name).filter((n) => n === 'first' || n === 'late').sort().join(' ')), wanted, 'tree');
+      await becomes(() => page.evaluate(() => window.studio.store.world.models.map((m) => m.name).filter((n) => n === 'first' || n === 'late').sort().join(' ')), wanted, 'tree');
     }
     const [link] = await page.evaluate(() => window.studio.world.world.models.get('late').links.map((one) => one.name));
     await until('it falls to where it was', async () => { const [x, y, z] = await place(link); return Math.abs(x - 1) < 0.2 && Math.abs(y - 3) < 0.2 && z < 2; });
@@ -225,7 +225,7 @@ const flows = [
   ['files that are none, damaged or without a world', async ({ rig, file, browser }) => {
     const bad = join(rig.work, 'bad.mcap'), cut = join(rig.work, 'cut.mcap');
     writeFileSync(bad, 'hello');
-    const refused = async (...words) => promisify(execFile)(join(bin, 'rtm-studio'), [...words, '-p', '0'], { timeout: 60000 }).then(() => 'it took it', (error) => error.stderr);
+    const refused = async (...words) => promisify(execFile)(join(bin, 'rtm-studio'), [...words, '-p', '0'], { timeout: watchdog }).then(() => 'it took it', (error) => error.stderr);
     for (const line of [await refused(bad), await refused(file, '--world', join(worlds, 'empty.sdf')), await refused(join(worlds, 'systems/obstacle_avoidance.xml'))]) {
       check(line.startsWith('rtm-studio: ') && line.trim().split('\n').length === 1, line);
     }

@@ -35,6 +35,17 @@ export function same(got, wanted, what) {
   if (a !== b) throw new Error(`${what}: got ${a}, wanted ${b}`);
 }
 
+// Waits until what is read is what is wanted, and tells what was read last.
+export async function becomes(read, wanted, what) {
+  const text = JSON.stringify(wanted);
+  let got = 'nothing';
+  try {
+    await until(what, async () => (got = JSON.stringify(await read()) ?? 'undefined') === text);
+  } catch (error) {
+    throw new Error(`${error.message} got ${got}, wanted ${text}`);
+  }
+}
+
 export async function free_port() {
   const server = createServer();
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
@@ -154,14 +165,14 @@ export async function launch() {
   const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
   if (!executablePath) return null;
   // Signals are for run().
-  return chromium.launch({ executablePath, handleSIGINT: false, handleSIGTERM: false, handleSIGHUP: false, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'] });
+  return chromium.launch({ executablePath, timeout: watchdog, handleSIGINT: false, handleSIGTERM: false, handleSIGHUP: false, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'] });
 }
 
 // A page of its own, without anything remembered. Errors of the page fail the flow that runs.
 export async function open(browser, url, { width = 1280, height = 800, scheme = 'light', ...more } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: 'reduce', ...more });
+  context.setDefaultTimeout(watchdog); // of its other pages, too
   const page = await context.newPage();
-  page.setDefaultTimeout(watchdog);
   page.problems = [];
   page.on('pageerror', (error) => page.problems.push(error.message));
   page.on('console', (message) => { if (message.type() === 'error' && !/WebSocket connection|Failed to load resource|net::ERR/.test(message.text())) page.problems.push(message.text()); });
@@ -171,6 +182,9 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
 
 export const is_ready = (page) => page.waitForFunction(() => window.studio && window.studio.wire.status === 'open' && window.studio.store.hello);
 export const has_world = (page) => page.waitForFunction(() => window.studio && window.studio.world.frames > 0);
+
+// What the page has been told is drawn: two pictures have begun.
+export const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 
 // Of two images, URLs: the mean difference of a component, 0..255, and the share of pixels that differ by more than 32.
 export async function compared(page, one_url, other_url) {
@@ -203,10 +217,10 @@ async function end_early(browser, status) {
 }
 
 // Runs flows one after the other in one browser: [name, work]. Exit status 77 without a browser.
-export async function run(flows, set_up, take_down) {
-  const browser = await launch();
+export async function run(flows, set_up, take_down, how = { launch, missing: 'no chromium (scripts/setup installs it)' }) {
+  const browser = await how.launch();
   if (!browser) {
-    console.log('skipped: no chromium (scripts/setup installs it)');
+    console.log(`skipped: ${how.missing}`);
     process.exit(77);
   }
   for (const [signal, number] of [['SIGHUP', 1], ['SIGINT', 2], ['SIGTERM', 15]]) process.on(signal, () => end_early(browser, 128 + number));

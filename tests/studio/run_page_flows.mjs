@@ -7,7 +7,8 @@ import { deflateSync, inflateSync } from 'node:zlib';
 import { flows as recorded_flows, moment, near, recorded_place, robot, scrub } from './recorded_steps.mjs';
 import { mutate_in_page } from './mutate_in_page.mjs';
 import { blocks_of, json_of, mutated, random } from './page_mutations.mjs';
-import { check, compared, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+import { write_pages } from './run_pages.mjs';
+import { becomes, check, compared, has_world, is_ready, open, Rig, run, same, until, watchdog } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const worlds = join(source, 'worlds');
@@ -58,8 +59,8 @@ const flows = [
     check(/state[0-9a-f]{16}/.test(text), text);
   }],
   ['what needs a running system is not shown', async ({ page }) => {
-    for (const id of ['save', 'open', 'open-recording', 'copy-link', 'activate-all', 'deactivate-all', 'forget-dead']) check(await page.locator(`#${id}`).isHidden(), id);
-    same(await page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
+    for (const id of ['save', 'open', 'open-recording', 'copy-link', 'activate-all', 'deactivate-all', 'forget-dead']) await page.locator(`#${id}`).waitFor({ state: 'hidden' });
+    await becomes(() => page.locator('.diagram .box .name').allTextContents(), ['RTCLaser0', 'LaserObstacleAvoid0', 'RTCPosition2d0'], 'components');
   }],
   ['nothing but the file is loaded, and the file is small', async ({ page, html }) => {
     same(page.requests, [page.url().replace(/#.*/, '')], 'requests');
@@ -177,7 +178,7 @@ const flows = [
     check(text.includes('compared') && text.includes('other.mcap') && text.includes('first difference'), text);
     const [, time] = /at time ([0-9.]+) s/.exec(said);
     await until('the first difference', async () => Math.abs((await moment(page)) - Number(time)) < 1e-6);
-    same(await page.locator('.mark-lane .difference').count(), 1, 'marks');
+    await becomes(() => page.locator('.mark-lane .difference').count(), 1, 'marks');
     const ghost = () => page.evaluate(() => window.studio.world.ghosts.world?.models.get('pioneer2dx').canonical.position.toArray());
     for (const at of [11, 4]) {
       await scrub(page, at);
@@ -202,12 +203,7 @@ const flows = [
     await page.context().close();
   }],
   ['a farm with a camera, a leader with its follower, and a hundred robots have pages', async ({ rig, browser }) => {
-    const hundred = join(rig.work, 'hundred.xml');
-    writeFileSync(hundred, readFileSync(avoid, 'utf8').replaceAll('pioneer2dx', 'pioneer_0'));
-    const systems = join(worlds, 'systems');
-    for (const [name, system, world, robots] of [['farm', join(systems, 'farm.xml'), 'farm.sdf', 1], ['lead', join(systems, 'leader_follower.xml'), 'leader_follower.sdf', 2], ['hundred', hundred, 'hundred.sdf', 100]]) {
-      const html = join(rig.work, `${name}.html`);
-      await rig.call('rtse', 'run', system, '-w', join(worlds, world), '-d', '2', '--page', html, '--module-path', lib);
+    await write_pages(rig, lib, source, async ({ name, html, robots }) => {
       const page = await open_file(browser, html);
       await has_world(page);
       await scrub(page, 1.5);
@@ -220,7 +216,7 @@ const flows = [
       same(page.problems, [], name);
       console.log(`      ${name}: ${(statSync(html).size / 1e6).toFixed(2)} MB`);
       await page.context().close();
-    }
+    });
   }],
   ['the world is drawn as rtm-studio draws the recording', async ({ rig, browser, html, file }) => {
     const studio = rig.start('rtm-studio', [file, '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
@@ -254,16 +250,17 @@ const flows = [
     const page = await open_file(browser, html);
     await has_world(page);
     await until('a first time and picture', () => page.evaluate(() => window.studio.store.time && performance.getEntriesByName('first-picture').length > 0));
-    const { shown, drawn, seconds, first } = await page.evaluate(async () => {
+    const { shown, drawn, seconds, first } = await page.evaluate(async (limit) => {
       const { playback, store, world } = window.studio, times = new Set(), began = performance.now(), frames = world.frames;
-      for (let i = 1; i <= 150; ++i) {
+      const passed = () => performance.now() - began;
+      for (let i = 1; i <= 150 || (times.size <= 10 && passed() < limit); ++i) {
         playback.seek((11.9 * ((i * 37) % 150)) / 150);
         await new Promise((resolve) => setTimeout(resolve));
         times.add(store.time.sim_time);
       }
-      const seconds = (performance.now() - began) / 1000;
-      return { shown: times.size, drawn: world.frames - frames, seconds, first: performance.getEntriesByName('first-picture')[0].startTime };
-    });
+      playback.seek(0);
+      return { shown: times.size, drawn: world.frames - frames, seconds: passed() / 1000, first: performance.getEntriesByName('first-picture')[0].startTime };
+    }, watchdog);
     console.log(`      first picture after ${first.toFixed(0)} ms, ${(shown / seconds).toFixed(0)} times and ${(drawn / seconds).toFixed(0)} pictures a second`);
     await until('the last', async () => Math.abs((await moment(page)) - 0) < 1e-6);
     check(shown > 10, `${shown} times`);
@@ -281,7 +278,7 @@ const flows = [
   ['narrow and dark', async ({ browser, html }) => {
     const page = await open_file(browser, html, '', { width: 360, height: 700, scheme: 'dark' });
     await has_world(page);
-    check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'no sideways scrolling');
+    await until('no sideways scrolling', () => page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     if (process.env.STUDIO_PICTURES) await page.screenshot({ path: join(process.env.STUDIO_PICTURES, 'run_page_narrow.png') });
     same(page.problems, [], 'problems');
     await page.context().close();

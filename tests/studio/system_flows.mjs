@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
 import { promisify } from 'node:util';
-import { check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
+import { becomes, check, has_world, is_ready, open, Rig, run, same, until } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const robot = 'pioneer2dx';
@@ -146,10 +146,10 @@ const flows = [
     same(stdout.toString('utf8').split('\0').slice(0, -1), words, 'words');
   }],
   ['the world and the system are there', async ({ page }) => {
-    same((await page.locator('.diagram .box .name').allTextContents()).sort(), ['LaserObstacleAvoid0', 'RTCLaser0', 'RTCPosition2d0'], 'boxes');
+    await becomes(async () => (await page.locator('.diagram .box .name').allTextContents()).sort(), ['LaserObstacleAvoid0', 'RTCLaser0', 'RTCPosition2d0'], 'boxes');
     await in_state(page, 'inactive', 3);
-    check((await page.locator('.top .what').textContent()) === 'obstacle_course', 'name of the world');
-    check((await page.locator('.tree li[data-key="model:pioneer2dx"]').count()) === 1, 'robot in the tree');
+    await becomes(() => page.locator('.top .what').textContent(), 'obstacle_course', 'name of the world');
+    await becomes(() => page.locator('.tree li[data-key="model:pioneer2dx"]').count(), 1, 'robot in the tree');
   }],
   ['wired by mouse from nothing, the robot moves', async ({ page, rig }) => {
     await drag(page, 'RTCLaser0:range', 'LaserObstacleAvoid0:range');
@@ -186,7 +186,7 @@ const flows = [
     await until('runs', () => page.evaluate(() => !window.studio.store.time?.paused && window.studio.store.time.rtf_wanted === 3));
     await page.locator('#speed').fill('1');
     await page.keyboard.press('Enter');
-    await until('real time again', () => page.evaluate(() => window.studio.store.time.rtf_wanted === 1));
+    await until('real time again', () => page.evaluate(() => window.studio.store.time?.rtf_wanted === 1));
   }],
   ['what was done to all is undone for all, by a key too', async ({ page }) => {
     await page.locator('#deactivate-all').click();
@@ -213,7 +213,7 @@ const flows = [
     await in_state(page, 'active', 1);
   }],
   ['a connection is cut and comes back by undo', async ({ page, rig }) => {
-    const id = await page.evaluate(() => window.studio.store.system.connections[0].id);
+    const id = await until('a connection', () => page.evaluate(() => window.studio.store.system.connections[0]?.id));
     await page.evaluate((c) => window.studio.select({ kind: 'connection', id: c }), id);
     await page.locator('#disconnect').click();
     await edges(page, 1);
@@ -298,7 +298,7 @@ const flows = [
     await look(before + 1);
     await until('it is somewhere else', async () => (await far(other)) < 0.5);
     await in_state(page, 'inactive', 3);
-    check((await page.locator('#live').getAttribute('aria-pressed')) === 'false', 'not live');
+    await becomes(() => page.locator('#live').getAttribute('aria-pressed'), 'false', 'not live');
     await page.locator('#live').click();
     await until('now', async () => (await page.locator('#live').getAttribute('aria-pressed')) === 'true' && (await far(other)) < 0.5);
     await rig.simctl('pose', robot, '-4.5', '-4.5', '0.785');
@@ -577,7 +577,7 @@ const flows = [
     const page = await open(browser, studio.url);
     await is_ready(page);
     await has_world(page);
-    check(await page.locator('#run').isDisabled(), 'run is off');
+    await until('run is off', () => page.locator('#run').isDisabled());
     const error = await page.evaluate(() => window.studio.wire.request('run').then(() => 'done', (e) => e.message));
     check(error.includes('read-only'), error);
     await page.context().close();
