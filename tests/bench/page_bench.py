@@ -1,6 +1,7 @@
-# What the page of a run costs beside its recording: page_bench.py BIN_DIR LIB_DIR SOURCE_DIR [cost] [memories]. Runs of the obstacle course with --record, and with --record --page, in
-# turn: the ratio of their speeds in the simulated time, without what is written afterwards. Then the memory of rtse-page for runs with a camera. Exit 1 when a limit is missed.
+# What the page of a run costs beside its recording: page_bench.py BIN_DIR LIB_DIR SOURCE_DIR [cost] [memories]. Pairs of runs of the obstacle course with --record and with --record --page:
+# the median of the ratios of their processor times and speeds, without what is written afterwards. Then the memory of rtse-page for runs with a camera. Exit 1 when a limit is missed.
 import json
+import math
 import os
 import re
 import statistics
@@ -26,21 +27,73 @@ def run(system, world, *more):
     return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True, timeout=3600).stdout.splitlines()[0])
 
 
-# Simulated seconds a second.
-def speed(*more):
-    result = run("obstacle_avoidance", "obstacle_course", "--duration", seconds, *more)
-    return result["simulated"] / result["wall"]
+# Processor time [s] by the name of the program, of all processes below this one, as long as the simulator runs.
+def used_beside_run(pid):
+    ticks = os.sysconf("SC_CLK_TCK")
+    used, names, is_over = {}, {}, False
+
+    def below(parent):
+        try:
+            with open(f"/proc/{parent}/task/{parent}/children", encoding="ascii") as file:
+                children = [int(one) for one in file.read().split()]
+            return [parent, *(one for child in children for one in below(child))]
+        except OSError:
+            return []  # it has ended meanwhile
+
+    while not is_over:
+        for one in below(pid):
+            try:
+                with open(f"/proc/{one}/stat", encoding="utf8") as file:
+                    name, rest = re.match(r"\d+ \((.*)\) (.*)", file.read()).groups()
+            except OSError:
+                continue
+            is_over = is_over or (names.get(one) == "sim-server" and rest.startswith("Z"))
+            names[one] = name
+            used[one] = sum(int(value) for value in rest.split()[11:13]) / ticks
+        is_over = is_over or ("sim-server" in names.values() and not any(os.path.exists(f"/proc/{one}") for one, name in names.items() if name == "sim-server"))
+        is_over = is_over or not os.path.exists(f"/proc/{pid}/exe")
+        time.sleep(0.05)
+    of_page = sum(seconds for one, seconds in used.items() if names[one] == "rtse-page")
+    return sum(used.values()) - of_page, of_page
 
 
+# Of one run: simulated seconds a second, processor time [s] of its own processes and of rtse-page beside it, wall-clock time [s].
+def measured(*more):
+    words = [f"{bin_dir}/rtse", "--json", "run", f"{source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{source}/worlds/obstacle_course.sdf", "--module-path", lib_dir, "--duration", seconds, *more]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        own, page = used_beside_run(process.pid)
+        result = json.loads(process.communicate(timeout=3600)[0].splitlines()[0])
+    assert process.returncode == 0
+    return {"speed": result["simulated"] / result["wall"], "own": own, "page": page, "wall": result["wall"]}
+
+
+# A confidence interval of 90 % or more of the median: two of the sorted values.
+def interval(values):
+    values, n = sorted(values), len(values)
+    outside, k = 0.5**n, 0
+    while k + 1 < n / 2 and 2 * (outside + math.comb(n, k + 1) * 0.5**n) <= 0.1:
+        k += 1
+        outside += math.comb(n, k) * 0.5**n
+    return values[k], values[-1 - k]
+
+
+# Pairs of runs, each time in the other order, so that what grows or falls meanwhile is no difference. The speed is that of a machine on which
+# others work, too; the processor times are not.
 def cost(folder):
     record = ("--record", f"{folder}/run.mcap")
-    ratios = []
-    for _ in range(rounds):
-        before, with_page, after = speed(*record), speed(*record, "--page", f"{folder}/run.html"), speed(*record)
-        ratios.append(with_page / statistics.mean((before, after)))
-    ratio = 100 * statistics.median(ratios)
-    row(f"speed with --record --page, of that with --record, {rounds} rounds", f"{ratio:.1f} %", ">= 98 %", ratio >= 98)
-    print("  rounds " + ", ".join(f"{100 * one:.1f}" for one in ratios))
+    rows = {"speed": [], "own": [], "share": []}
+    for number in range(rounds):
+        pair = {}
+        for with_page in ((False, True), (True, False))[number % 2]:
+            pair[with_page] = measured(*record, *(("--page", f"{folder}/run.html") if with_page else ()))
+        for name in ("speed", "own"):
+            rows[name].append(100 * pair[True][name] / pair[False][name])
+        rows["share"].append(100 * pair[True]["page"] / pair[True]["wall"])
+        print(f"  pair {number}: speed {rows['speed'][-1]:.1f} %, processor time of the run {rows['own'][-1]:.1f} %, of rtse-page {rows['share'][-1]:.2f} % of one processor ({pair[True]['wall']:.0f} s)", flush=True)
+    for name, what, limit, is_good in (("share", "processor time of rtse-page beside the run, of one processor", "<= 2 %", lambda median: median <= 2), ("own", "processor time of the run with --record --page, of --record", "<= 102 %", lambda median: median <= 102), ("speed", "speed with --record --page, of that with --record", ">= 98 %", lambda median: median >= 98)):
+        median, (low, high) = statistics.median(rows[name]), interval(rows[name])
+        row(what, f"{median:.1f} %", limit, is_good(median))
+        print(f"  {rounds} pairs, 90 % interval of the median {low:.1f} to {high:.1f} %")
 
 
 # Of rtse-page at its most [MiB], without the simulator that makes the scene of the world before the first part.
