@@ -2,6 +2,7 @@
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { pose_of, type Model, type WorldScene } from './glb';
 import { Gizmo } from './gizmo';
+import type { Tip } from './tip';
 import type { Eye } from './orbit';
 import { act, changed, read_only, select, selected_model, wire } from './store';
 
@@ -21,6 +22,8 @@ export class Hands {
   menu: (event: MouseEvent, model: string) => void = () => {};
 
   readonly gizmo: Gizmo;
+  tip: Tip | null = null;
+  clicked: (model: string, link: string) => void = () => {};
 
   constructor(private readonly view: Reach, scene: Scene) {
     this.gizmo = new Gizmo(view, scene);
@@ -75,11 +78,17 @@ export class Hands {
     return ray;
   }
 
-  private hit(event: { clientX: number; clientY: number }): { model: string; point: Vector3 } | null {
+  private hit(event: { clientX: number; clientY: number }): { model: string; link: string; point: Vector3 } | null {
     if (!this.view.world) return null;
     const hits = this.ray(event).intersectObject(this.view.world.root, true);
     const found = hits.find(({ object }) => !object.userData.overlay && !object.userData.ground && object instanceof Mesh && model_name(object));
-    return found ? { model: model_name(found.object)!, point: found.point } : null;
+    return found ? { model: model_name(found.object)!, link: this.link_name(found.object), point: found.point } : null;
+  }
+
+  // Without the name of its model.
+  private link_name(object: Object3D | null): string {
+    if (!object) return '';
+    return this.view.world!.links.includes(object) ? object.name.slice(object.name.indexOf('::') + 2) : this.link_name(object.parent);
   }
 
   private on_plane(event: PointerEvent, z: number): Vector3 | null {
@@ -92,6 +101,7 @@ export class Hands {
       this.view.canvas.setPointerCapture(event.pointerId);
       return this.place(event);
     }
+    if (event.button === 0 && this.tip?.is_under_mouse()) return true;
     if (this.tool === 'look' || event.button !== 0 || read_only()) return false;
     if (this.gizmo.is_under_mouse()) return true;
     const hit = this.hit(event);
@@ -152,7 +162,9 @@ export class Hands {
   // Before each picture; `is_now`: not of the past.
   show_gizmo(is_now: boolean): void {
     const model = this.view.world?.models.get(selected_model() ?? '');
-    this.gizmo.show(this.tool === 'move' && is_now && model && !model.is_static && !read_only() && !this.drag ? model : null);
+    const moved = is_now && model && !read_only() && !this.drag ? model : null;
+    this.tip?.show(moved);
+    this.gizmo.show(this.tool === 'move' && !moved?.is_static ? moved : null);
   }
 
   set_tool(tool: Tool): void {
@@ -173,11 +185,12 @@ export class Hands {
     this.view.canvas.addEventListener('pointerup', (event) => {
       if (this.place(event)) return;
       if (this.drag) return this.go_on(event, true);
-      if (this.gizmo.is_under_mouse()) return;
+      if (this.gizmo.is_under_mouse() || this.tip?.is_under_mouse()) return;
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || event.button === 1) return;
       const hit = this.hit(event);
       if (event.button === 2) return void (hit && this.menu(event, hit.model)); // with a drag it moves the eye
       select(hit ? { kind: 'model', id: hit.model } : null);
+      if (hit) this.clicked(hit.model, hit.link);
     });
     this.view.canvas.addEventListener('pointercancel', () => {
       this.drag = null;

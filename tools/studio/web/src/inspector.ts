@@ -43,7 +43,7 @@ export class Inspector {
   private told = ''; // the model of the selection that the simulator has named
   private ask_again: (() => void) | null = null; // what was asked of a server that has gone, or was not there yet
 
-  private readonly joints: Joints;
+  readonly joints: Joints;
 
   constructor(private readonly parts: Parts) {
     this.joints = new Joints(parts.plot);

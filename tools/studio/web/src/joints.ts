@@ -1,13 +1,13 @@
 // The joints of a model: where they are, and sliders that move them. A command is renewed while its slider is held, and to a position until
 // the joint has arrived; then the joint is left to its brake, as `simctl joints` does.
 import { in_degrees } from './angles';
+import { Chain, turns, type Joint } from './arm';
 import { button, h, put } from './dom';
 import { act, iface_id, on, read_only, store, wire } from './store';
 import { fixed, format } from './values';
 import { watch } from './watches';
 import type { Iface } from './wire';
 
-interface Joint { name: string; id: number; kind: number; lower: number | null; upper: number | null; max_velocity: number; max_effort: number }
 interface State { position: number; velocity: number; effort: number; target: number; mode: number; status: number }
 interface Command { mode: string; value: number; is_held: boolean; is_known: boolean } // known: the simulator has it
 interface Row { joint: Joint; actual: HTMLElement; target: HTMLElement; slider: HTMLInputElement; number: HTMLInputElement; free: HTMLElement }
@@ -17,7 +17,6 @@ const statuses = ['idle', 'moving', 'braked', 'stalled'];
 const renewal = 150; // [ms]; the server releases after 500
 const moving = 1, position = 1;
 
-const turns = (joint: Joint): boolean => joint.kind === 1;
 const shown = (joint: Joint, mode: string, value: number): number => (turns(joint) && mode !== 'effort' ? in_degrees(value) : value);
 const unit_of = (joint: Joint, mode: string): string => (mode === 'effort' ? (turns(joint) ? ' N m' : ' N') : turns(joint) ? (mode === 'velocity' ? '°/s' : '°') : mode === 'velocity' ? ' m/s' : ' m');
 const text_of = (joint: Joint, mode: string, value: number): string => `${fixed(shown(joint, mode, value), turns(joint) ? 1 : 3)}${unit_of(joint, mode)}`;
@@ -43,6 +42,9 @@ export class Joints {
   private stop: (() => void) | null = null;
   private timer = 0;
   private is_asked = false;
+  private tip = ''; // the link whose arrows are shown
+  private pulled: Record<string, number> = {};
+  redraw = (): void => {};
 
   constructor(private readonly plot: (topic: string, member: string) => void) {
     on('status', () => { if (wire.status !== 'open') this.forget(); });
@@ -57,9 +59,12 @@ export class Joints {
     this.stop?.();
     this.stop = null;
     this.made_of = made_of;
+    if (iface?.name !== this.iface?.name) this.tip = '';
     this.iface = iface;
     this.states = [];
     this.make();
+    if (this.clicked?.model === model) this.choose_tip(this.clicked.link);
+    this.clicked = null;
     if (iface) this.stop = watch({ topic: iface_id(iface), hz: 10 }, ({ value, error }) => { if (!error) this.take((value as { joints?: State[] } | undefined)?.joints ?? []); });
   }
 
@@ -75,12 +80,42 @@ export class Joints {
       this.make();
       this.take(this.states);
     } }, ['position', 'velocity', 'effort'].map((mode) => h('option', { value: mode, selected: mode === this.mode }, mode)));
-    put(this.element, h('h3', null, 'Joints', read_only() ? null : select_mode), this.problem,
+    put(this.element, h('h3', null, 'Joints', read_only() ? null : select_mode, this.tip_button(joints)), this.problem,
       this.rows.map(({ joint, actual, target, slider, number, free }) => h('div', { class: 'joint' },
         h('div', { class: 'line' }, this.plot_button(joint), h('label', { for: slider.id }, joint.name), actual, target),
         h('span', { class: 'slider' }, slider, number),
         h('div', { class: 'line' }, h('span', { class: 'more limits' }, range_of(joint, this.mode).map((v) => text_of(joint, this.mode, v)).join(' … ')), read_only() ? null : [free,
           button(`Brake ${joint.name}`, { label: 'Brake', class: 'small' }, () => this.brake(joint))]))));
+  }
+
+  private tip_button(joints: Joint[]): HTMLElement | null {
+    const tip = Chain.tip_of(joints);
+    if (!tip?.link || read_only() || !Chain.to(tip, joints)) return null;
+    return button(`Arrows at the tip of the arm (${tip.link}): a drag moves the joints`, { id: 'joint-tip', label: 'Tip', class: 'small', pressed: this.tip !== '' }, () => this.choose_tip(this.tip ? '' : tip.link!));
+  }
+
+  // The link may be clicked on before its model is shown.
+  private clicked: { model: string; link: string } | null = null;
+  click(model: string, link: string): void {
+    if (this.iface?.model === model) this.choose_tip(link);
+    else this.clicked = { model, link };
+  }
+
+  // The last link of an arm has arrows; '': none has. Others change nothing.
+  private choose_tip(link: string): void {
+    const joints = (this.iface?.info?.joints ?? []) as Joint[];
+    const joint = joints.find((one) => one.link === link);
+    const is_last = joint && (joint === Chain.tip_of(joints) || !joints.some(({ parent }) => parent === joint.id + 1));
+    if (link && (!is_last || !Chain.to(joint, joints) || read_only())) return;
+    this.tip = link;
+    document.getElementById('joint-tip')?.setAttribute('aria-pressed', String(link !== ''));
+    this.redraw();
+  }
+
+  // What the arrows at its tip move. Null: there are none.
+  arm(): { tip: Joint; joints: Joint[]; positions: number[] } | null {
+    const joints = (this.iface?.info?.joints ?? []) as Joint[], tip = this.tip ? joints.find(({ link }) => link === this.tip) : undefined;
+    return tip && this.states.length > 0 ? { tip, joints, positions: this.states.map(({ position }) => position) } : null;
   }
 
   private plot_button(joint: Joint): HTMLElement | null {
@@ -125,6 +160,26 @@ export class Joints {
     act(`Move ${joint.name} of ${this.iface.model}`, 'move_joints', { iface: this.iface.name, joints: { [joint.name]: { mode: command.mode, value: command.value } } });
   }
 
+  // The tip is dragged: all of its joints are commanded at once, until it is let go and they have arrived.
+  pull(positions: Record<string, number>): void {
+    this.pulled = positions;
+    for (const [name, value] of Object.entries(positions)) {
+      this.brakes.delete(name);
+      this.commands.set(name, { mode: 'position', value, is_held: true, is_known: false });
+    }
+    this.go_on();
+  }
+
+  let_go_of_tip(): void {
+    if (!this.iface || Object.keys(this.pulled).length === 0) return;
+    for (const name of Object.keys(this.pulled)) {
+      const command = this.commands.get(name);
+      if (command) command.is_held = false;
+    }
+    act(`Move the tip of ${this.iface.model}`, 'move_joints', { iface: this.iface.name, joints: Object.fromEntries(Object.entries(this.pulled).map(([name, value]) => [name, { mode: 'position', value }])) });
+    this.pulled = {};
+  }
+
   private toggle_free(joint: Joint): void {
     if (this.commands.get(joint.name)?.mode === 'free') return this.end(joint);
     this.begin(joint, { mode: 'free', value: 0, is_held: true, is_known: false });
@@ -139,6 +194,10 @@ export class Joints {
   private begin(joint: Joint, command: Command): void {
     this.brakes.delete(joint.name);
     this.commands.set(joint.name, command);
+    this.go_on();
+  }
+
+  private go_on(): void {
     this.mark();
     if (!this.timer) this.timer = window.setInterval(() => this.send(), renewal);
     this.send();
@@ -193,6 +252,7 @@ export class Joints {
 
   private take(states: State[]): void {
     this.states = states;
+    if (this.tip) this.redraw();
     for (const { joint, actual, target, slider, number } of this.rows) {
       const state = states[joint.id];
       if (!state) continue;

@@ -51,6 +51,8 @@ const inspector = new Inspector({
   },
 });
 
+world.move_tips_of(inspector.joints);
+
 // ---- top ----
 
 const world_name = h('span', { class: 'what' });

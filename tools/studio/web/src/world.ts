@@ -14,7 +14,10 @@ import { Marker } from './marker';
 import { linear, place_lights } from './material';
 import { Eye, EyeState, to_ours } from './orbit';
 import { Pace } from './pace';
+import { has_run } from './run_data';
 import { Ranges } from './ranges';
+import { Tip } from './tip';
+import type { Joints } from './joints';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
 import { type Mover, Trails } from './trails';
@@ -68,7 +71,7 @@ export class WorldView {
       this.renderer.shadowMap.type = PCFSoftShadowMap;
       this.renderer.shadowMap.autoUpdate = false;
     } catch {
-      this.say('This browser has no WebGL 2, so the world is not drawn. Everything else works; `simctl screenshot` shows the world.');
+      this.say(`This browser has no WebGL 2, so the world is not drawn. Everything else works${has_run() ? '.' : '; `simctl screenshot` shows the world.'}`);
     }
     new ResizeObserver(() => this.resize()).observe(this.element);
     on(['world', 'status', 'hello'], () => this.follow_server());
@@ -89,6 +92,13 @@ export class WorldView {
       }
     };
     requestAnimationFrame(loop);
+  }
+
+  // Arrows at the tip of the arm whose joints are shown.
+  move_tips_of(joints: Joints): void {
+    this.hands.tip = new Tip(this, this.scene, joints);
+    this.hands.clicked = (model, link) => joints.click(model, link);
+    joints.redraw = () => this.redraw();
   }
 
   redraw(): void {
