@@ -66,18 +66,28 @@ async function reader(web) {
 // A request is lost if the reader has answered so many later ones meanwhile, however long they took.
 const later_ones = 200;
 let control; // unpacks a whole block on the way that all data take
-async function answered(what, promise) {
-  let is_done = false;
-  const marked = promise.finally(() => { is_done = true; });
-  marked.catch(() => {});
-  for (let i = 0; i < later_ones && !is_done; ++i) await control();
-  if (!is_done) throw new Error(`${what} is not answered`);
-  return marked;
+const waiting = new Set();
+let is_turning = false;
+async function turn() {
+  if (is_turning) return;
+  is_turning = true;
+  for (; waiting.size > 0; await control())
+    for (const one of waiting) if (++one.turns > later_ones) one.lost();
+  is_turning = false;
+}
+
+function answered(what, promise) {
+  return new Promise((resolve, reject) => {
+    const one = { turns: 0, lost: () => { waiting.delete(one); reject(new Error(`${what} is not answered`)); } };
+    waiting.add(one);
+    promise.then(resolve, reject).finally(() => waiting.delete(one));
+    turn();
+  });
 }
 
 // Opens the page and asks for everything once that needs this block. Returns whether anything was said about it.
 async function use(RunData, fetch_run, asked, block) {
-  const waiting = new Map();
+  const replies = new Map();
   let events = 0, rejected = 0, damage = 0;
   const take = (data) => {
     events += 1;
@@ -86,13 +96,13 @@ async function use(RunData, fetch_run, asked, block) {
     if (event?.op !== 'reply') return;
     if (event.error !== undefined && !event.error) throw new Error('an error without words');
     rejected += event.error !== undefined ? 1 : 0;
-    waiting.get(event.id)?.();
+    replies.get(event.id)?.();
   };
   const run = await answered('open', RunData.open(take, (why) => { if (!why) throw new Error('damage without words'); damage += 1; }));
   run.begin();
   const needs_world = block === 'world' || block === 'collisions';
   const requests = asked.filter(([name]) => !needs_world && (name === 'component') === (block === 'parameters')).map(([name, args], id) => {
-    const reply = new Promise((resolve) => waiting.set(id, resolve));
+    const reply = new Promise((resolve) => replies.set(id, resolve));
     run.send(JSON.stringify({ op: 'request', id, name, args }));
     return answered(`${name} ${JSON.stringify(args)}`, reply);
   });
@@ -135,6 +145,7 @@ async function main([html_file, web, number = '3000', seed = '1']) {
     }
     if (unhandled) throw new Error(`page ${i}, block ${id}: nobody has taken: ${unhandled.stack ?? unhandled}`);
     shown.set(id, blocks.get(id));
+    if (process.env.STUDIO_LOGS && (i + 1) % 1000 === 0) console.log(i + 1, refused, said);
   }
   console.log(`${number} pages: ${refused} not opened, ${said} opened with a message, ${number - refused - said} without`);
 }
