@@ -112,6 +112,10 @@ def pages():
     assert page["passed"] is False and 0 < page["at"] < 1 and page["select"] == "pioneer2dx", page
     assert [(mark["kind"], mark["time"]) for mark in page["marks"] if mark["kind"] == "event"] == [("event", 0.2), ("event", 0.4)], page
     assert page["command"] == f"rtse sweep {p} --row 1" and not (row / "run.mcap").exists(), page
+    said = rtse("sweep", p, "--page", code=1).stderr
+    assert "  page: " in said and f"plan.runs/{row.name}/run.html\n" in said, said
+    rtse("results", folder / "plan.db", "--junit", folder / "rows.xml")
+    assert f"<system-out>[[ATTACHMENT|{row / 'run.html'}]]</system-out>" in (folder / "rows.xml").read_text(), row
     rtse("sweep", p, "--row", 1, "--keep", folder / "alone", "--page", "--record", code=1)
     assert page_of(folder / "alone/run.html")["at"] == page["at"] and (folder / "alone/run.mcap").exists()
     hunt = plan("expect: [{path_length: {model: pioneer2dx, max: 0.05}}]\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n", "hunt.yaml")

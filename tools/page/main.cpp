@@ -2,7 +2,6 @@
 #include <signal.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <new>
 
@@ -20,7 +19,7 @@ constexpr double bytes_per_mib = 1 << 20;
 struct Settings {
   page::PageOptions page;
   double limit_mib = 64;
-  std::string summary;
+  bool has_summary = false;
   double share = 0;  // of a processor for a recording that is followed; 0: it is complete
 };
 
@@ -35,7 +34,7 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("--page-limit", settings.limit_mib, "Maximum size of the page [MiB]")
       ->check(base::number_between(1.0, largest_page))
       ->capture_default_str();
-  app.add_option("--summary", settings.summary, "JSON file with the result of the run (from rtse)")->check(base::existing_file());
+  app.add_flag("--summary", settings.has_summary, "Read the result of the run from the standard input, JSON (from rtse)");
   app.add_option(
          "--follow", settings.share,
          "Follow a recording that is being written, with this share of a processor; its result comes by the standard input when it is "
@@ -51,10 +50,9 @@ int fail(const base::Error& error) {
 
 int write_page(Settings& settings) {
   settings.page.limit = static_cast<std::uint64_t>(settings.limit_mib * bytes_per_mib);
-  if (!settings.summary.empty()) {
-    std::ifstream in(settings.summary);
-    settings.page.summary = studio::Json::parse(in, nullptr, false);
-    if (!settings.page.summary.is_object()) return fail({settings.summary + ": expected a JSON object"});
+  if (settings.has_summary) {
+    settings.page.summary = studio::Json::parse(std::cin, nullptr, false);
+    if (!settings.page.summary.is_object()) return fail({"the result of the run is not a JSON object"});
   }
   std::error_code ignored;
   if (settings.share == 0 && !std::filesystem::is_regular_file(settings.page.recording, ignored))

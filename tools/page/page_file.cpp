@@ -54,11 +54,21 @@ void PageFile::put(std::string_view text) {
   size_ += text.size();
 }
 
-bool PageFile::put_data(const std::string& id, std::string_view bytes, bool is_needed) {
-  const std::string text = "<script type=\"text/plain\" id=\"run-" + id + "\">" + base::to_base64(packed(bytes)) + "</script>\n";
-  if (!is_needed && size_ + text.size() > limit_) return false;
+bool PageFile::put_data(std::initializer_list<Block> blocks) {
+  std::string text;
+  for (const auto& [id, bytes] : blocks)
+    text += "<script type=\"text/plain\" id=\"run-" + id + "\">" + base::to_base64(packed(bytes)) + "</script>\n";
+  if (size_ + text.size() + reserved_ > limit_) return false;
   put(text);
   return true;
+}
+
+Result<void> PageFile::cut(std::uint64_t size) {
+  const auto end = static_cast<off_t>(size);
+  if (std::fflush(out_.get()) != 0 || ::ftruncate(::fileno(out_.get()), end) != 0 || ::fseeko(out_.get(), end, SEEK_SET) != 0)
+    return fail(errno);
+  size_ = size;
+  return {};
 }
 
 Result<void> PageFile::finish() {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -23,9 +24,17 @@ class PageFile {
   base::Result<void> open();
   // finish() tells of what could not be written.
   void put(std::string_view text);
-  // Zlib data in base64, in an element with this id. False: the page would exceed its limit, and nothing was written.
-  bool put_data(const std::string& id, std::string_view bytes, bool is_needed = false);
+  // put() will write so much more, for which put_data() leaves room.
+  void reserve(std::uint64_t bytes) { reserved_ = bytes; }
+  struct Block {
+    std::string id;
+    std::string_view bytes;
+  };
+  // Zlib data in base64, in an element for each id. False: the page would exceed its limit, and none was written.
+  bool put_data(std::initializer_list<Block> blocks);
   std::uint64_t size() const { return size_; }
+  // Removes what was written beyond this size.
+  base::Result<void> cut(std::uint64_t size);
   base::Result<void> finish();
 
  private:
@@ -33,6 +42,7 @@ class PageFile {
 
   const std::string path_;
   const std::uint64_t limit_;
+  std::uint64_t reserved_ = 0;
   std::string part_path_;  // empty: it has no name
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_{nullptr, std::fclose};
   std::uint64_t size_ = 0;

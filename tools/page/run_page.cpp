@@ -40,9 +40,11 @@ constexpr std::size_t most_changes = 1000;  // of the parameters of one componen
 Result<std::string> file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (!in) return Error{path + ": cannot be read; the page of rtm-studio is needed (built with node and npm)"};
+  if (!in) return Error{"the viewer is missing: " + path + "; it is in the package rtm-studio, and is built if there are node and npm"};
   return text;
 }
+
+std::string in_mib(std::uint64_t bytes) { return base::format_number(static_cast<double>(bytes) / (1U << 20U)) + " MiB"; }
 
 class RunPage {
  public:
@@ -54,12 +56,14 @@ class RunPage {
     const auto at = viewer->find(marker);
     if (at == std::string::npos) return Error{options_.viewer + ": has no place for data"};
     if (const auto opened = file_.open(); !opened) return opened.error();
+    const auto end = std::string_view(*viewer).substr(at + marker.size());
     file_.put(std::string_view(*viewer).substr(0, at));
+    file_.reserve(end.size());
     if (const auto done = follow(); !done) return done.error();
     if (const auto done = put_all(); !done) return done.error();
-    file_.put(std::string_view(*viewer).substr(at + marker.size()));
+    file_.put(end);
     if (const auto done = file_.finish(); !done) return done.error();
-    return PageReport{file_.size(), left_out_};
+    return PageReport{file_.size(), left_out()};
   }
 
  private:
@@ -84,7 +88,7 @@ class RunPage {
       wanted = static_cast<std::uintmax_t>(static_cast<double>(size) * growth_share);
       if (const auto done = put_settled(); !done) return done;
     }
-    return recorded_ == Recorded::given_up ? Error{options_.recording + ": the run ended without a result"} : Result<void>();
+    return recorded_ == Recorded::given_up ? Error{"the run ended without a result"} : Result<void>();
   }
 
   // Waits until there is time for more work.
@@ -121,8 +125,20 @@ class RunPage {
     auto reader = mcap::Reader::open(facts_->file);
     if (!reader) return reader.error();
     if (const auto& damage = reader->damage()) left_out_.push_back("what is damaged in the recording: " + *damage);
-    if (const auto done = put_parameters(*reader); !done) return done;
-    put_index();
+    return put_rest(*reader);
+  }
+
+  // Parameters and index. The last parts make room for them, but for the first, which a viewer needs.
+  Result<void> put_rest(mcap::Reader& reader) {
+    const auto parameters = parameters_text(reader);
+    if (!parameters) return parameters.error();
+    while (parts_.empty() || !file_.put_data({{"parameters", *parameters}, {"index", index_text()}})) {
+      if (parts_.size() < 2) return Error{"the page needs more than its limit of " + in_mib(options_.limit) + " (--page-limit)"};
+      until_ = written_.back().from;
+      if (const auto done = file_.cut(written_.back().begin); !done) return done;
+      written_.pop_back();
+      parts_.erase(parts_.size() - 1);
+    }
     return {};
   }
 
@@ -144,14 +160,14 @@ class RunPage {
       return;
     }
     has_written_scene_ = true;
-    if (!file_.put_data("world", *(*scene)->glb.octets)) {
+    if (!file_.put_data({{"world", *(*scene)->glb.octets}})) {
       scene_problem_ = "the world is larger than the limit of the page";
       left_out_.push_back(scene_problem_);
       return;
     }
     scene_ = *scene;
     playhead_->set_scene(scene_);
-    (void)file_.put_data("collisions", *scene_->glb_with_collisions.octets);
+    (void)file_.put_data({{"collisions", *scene_->glb_with_collisions.octets}});
   }
 
   // The parts up to this time; `is_end`: of the recording, else no part that is longer.
@@ -179,12 +195,13 @@ class RunPage {
     if (!part) return part.error();
     if (const auto posed = add_poses(*part, *facts_, *playhead_, from, to); !posed) return posed;
     if (const auto added = add_other(*part, from, to); !added) return added;
+    const auto begin = file_.size();
     const auto size = put_text(*part);
     if (!size) {
-      left_out_.push_back("everything after " + std::to_string(facts_->seconds(from)) + " s: the page has reached its limit");
       until_ = from;
       return {};
     }
+    written_.push_back({from, begin});
     parts_.push_back(Json::array({facts_->seconds(from), facts_->seconds(to)}));
     length_ = std::clamp(length_ * static_cast<std::int64_t>(part_size) / static_cast<std::int64_t>(*size),
                          std::max(shortest_part, length_ / growth), std::min(longest_part, length_ * growth));
@@ -197,9 +214,9 @@ class RunPage {
   std::optional<std::size_t> put_text(Json& part) {
     const auto id = std::to_string(parts_.size());
     const auto text = studio::to_text(part);
-    if (file_.put_data(id, text)) return text.size();
+    if (file_.put_data({{id, text}})) return text.size();
     part.erase("images");
-    if (!file_.put_data(id, studio::to_text(part))) return std::nullopt;
+    if (!file_.put_data({{id, studio::to_text(part)}})) return std::nullopt;
     are_images_left_out_ = true;
     return text.size();
   }
@@ -247,7 +264,7 @@ class RunPage {
   }
 
   // {PATH:[[s, reply to "component"]]}, one for each time at which parameters changed.
-  Result<void> put_parameters(mcap::Reader& reader) {
+  Result<std::string> parameters_text(mcap::Reader& reader) {
     Json all = Json::object();
     for (const auto& component : facts_->components) {
       const auto path = component.value("path", "");
@@ -259,8 +276,7 @@ class RunPage {
         if (changes.empty() || changes.back()[1] != *details) changes.push_back(Json::array({facts_->seconds(time), std::move(*details)}));
       }
     }
-    (void)file_.put_data("parameters", studio::to_text(all), true);
-    return {};
+    return studio::to_text(all);
   }
 
   std::vector<nanoseconds> times_of_changes(mcap::Reader& reader, const std::string& instance) const {
@@ -277,7 +293,7 @@ class RunPage {
     return times;
   }
 
-  void put_index() {
+  std::string index_text() {
     Json hello = studio::recorded_hello(*facts_);
     Json world = studio::recorded_world(*facts_, scene_.get(), scene_ ? "" : scene_problem_);
     // A temporary recording is gone when the page is opened.
@@ -287,17 +303,25 @@ class RunPage {
       world["file"] = "";
     }
     hello["recording"]["to"] = facts_->seconds(until_.value_or(to_));
-    Json& summary = summary_;
+    Json summary = summary_;
     mark_failures(summary, *facts_, scene_ ? scene_->models : Json::array());
     if (other_) summary["other"] = std::filesystem::path(other_->file).filename().string();
-    summary["left_out"] = left_out_;
+    summary["left_out"] = left_out();
     hello["page"] = std::move(summary);
     const Json index{{"hello", std::move(hello)},
                      {"system", studio::recorded_system(*facts_)},
                      {"signals", {{"op", "signals"}, {"signals", facts_->signals}}},
                      {"world", std::move(world)},
                      {"parts", parts_}};
-    (void)file_.put_data("index", studio::to_text(index), true);
+    return studio::to_text(index);
+  }
+
+  std::vector<std::string> left_out() const {
+    auto lines = left_out_;
+    if (until_)
+      lines.insert(lines.begin(),
+                   "everything after " + base::format_number(facts_->seconds(*until_)) + " s: the page has reached its limit");
+    return lines;
   }
 
   const PageOptions& options_;
@@ -312,7 +336,12 @@ class RunPage {
   std::shared_ptr<const studio::RecordedScene> scene_;
   std::string scene_problem_;
   bool is_scene_tried_ = false, has_written_scene_ = false;
+  struct Written {
+    nanoseconds from;
+    std::uint64_t begin;  // [bytes] in the page
+  };
   Json parts_ = Json::array();
+  std::vector<Written> written_;                // the same parts
   nanoseconds at_{0}, length_ = shortest_part;  // of the part that comes next
   std::optional<nanoseconds> until_;
   bool are_images_left_out_ = false;

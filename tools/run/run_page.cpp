@@ -1,13 +1,13 @@
 #include "run/run_page.h"
 
 #include <sys/socket.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
 #include "base/text.h"
-#include "base/whole_file.h"
+#include "run/run_options.h"
 
 namespace tools {
 namespace {
@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::chrono::minutes longest_writing{30};
 constexpr std::chrono::seconds given_up_limit{5};
 constexpr std::string_view share_beside_run = "0.015";  // of a processor, so that the run loses less than 2 %
-constexpr std::string_view program_name = "rtse-page: ";
+constexpr int killed_by = 128;                          // exit codes above it: the signal
 
 Error about(const std::string& page, const std::string& what) { return {"page " + base::in_quotes(page) + ": " + what}; }
 
@@ -42,17 +42,35 @@ std::vector<std::string> words_of(const PageCall& call) {
 
 std::string text_of(const Json& summary) { return summary.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+std::string without(std::string text, const std::string& prefix) { return text.starts_with(prefix) ? text.substr(prefix.size()) : text; }
+
 // What it printed, once it has ended.
-Result<std::string> answer_of(ChildProcess& child, const std::string& page) {
+Result<std::string> answer_of(ChildProcess& child, const PageCall& call) {
   const auto ending = child.wait_or_interrupt(longest_writing);
-  if (ending == Ending::interrupted) return about(page, "not written, since the run was interrupted");
+  if (ending == Ending::interrupted) return about(call.file, "not written, since the run was interrupted");
   if (ending == Ending::ended && child.exit_code() == 0) return child.said();
   const auto said = base::split_list(child.said(), '\n');
-  if (said.empty()) return about(page, "rtse-page " + child.how_it_ended());
-  return about(page, said.back().substr(said.back().starts_with(program_name) ? program_name.size() : 0));
+  if (said.empty()) return about(call.file, "rtse-page " + child.how_it_ended());
+  auto text = without(without(said.back(), "rtse-page: "), call.file + ": ");
+  for (const auto& name : {base::in_quotes(call.recording), call.recording}) {
+    const auto at = call.is_temporary ? text.find(name) : std::string::npos;
+    if (at != std::string::npos) text.replace(at, name.size(), "the recording of the run");
+  }
+  return about(call.file, text);
 }
 
 }  // namespace
+
+void add_page_options(base::Command& command, PageCall& call) {
+  const auto add = [&](std::string_view name, double& value) {
+    const auto* row = std::ranges::find(run_option_rows, name, &RunOptionRow::name);
+    command.add_option("--" + std::string(name), value, std::string(row->help))
+        ->check(base::number_between(row->low, row->high))
+        ->capture_default_str();
+  };
+  add("page-camera-rate", call.camera_rate);
+  add("page-limit", call.limit_mib);
+}
 
 Json page_summary(const RunResult& result, const std::string& command) {
   Json summary{{"passed", result.is_passed()}, {"why", Json::array()},      {"failures", Json::array()}, {"marks", Json::array()},
@@ -78,25 +96,23 @@ Result<std::string> write_run_page(const PageCall& call, const Json& summary) {
     if (!recording.empty() && std::filesystem::equivalent(call.file, recording, none))
       return about(call.file, "is the recording; expected another file");
   }
-  const std::string file = call.file + "." + std::to_string(::getpid()) + ".json";
-  const auto written = base::write_whole_file(file, text_of(summary));
-  if (!written) return written.error();
   auto words = words_of(call);
-  words.insert(words.end(), {"--summary", file});
+  words.emplace_back("--summary");
   if (!call.other.empty()) words.insert(words.end(), {"--other", call.other});
-  auto child = ChildProcess::start({.words = words, .environment = {}});
-  auto answer = child ? answer_of(*child, call.file) : about(call.file, child.error().message);
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  return answer;
+  auto page = PageBesideRun::start(call, words);
+  return page ? page->written(summary) : page.error();
 }
 
 Result<PageBesideRun> PageBesideRun::start(const PageCall& call) {
+  auto words = words_of(call);
+  words.insert(words.end(), {"--follow", std::string(share_beside_run)});
+  return start(call, words);
+}
+
+Result<PageBesideRun> PageBesideRun::start(const PageCall& call, const std::vector<std::string>& words) {
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return about(call.file, "no socket for rtse-page");
   base::FileHandle ours(ends[0]), theirs(ends[1]);
-  auto words = words_of(call);
-  words.insert(words.end(), {"--follow", std::string(share_beside_run)});
   auto child = ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
   if (!child) return about(call.file, child.error().message);
   return PageBesideRun(call, std::move(*child), std::move(ours));
@@ -109,6 +125,12 @@ PageBesideRun::~PageBesideRun() {
 }
 
 Result<std::string> PageBesideRun::finish(const Json& summary) {
+  auto answer = written(summary);
+  const bool was_killed = !answer && !process_.is_running() && process_.exit_code() > killed_by;
+  return was_killed ? write_run_page(call_, summary) : answer;
+}
+
+Result<std::string> PageBesideRun::written(const Json& summary) {
   const base::FileHandle line = std::exchange(line_, base::FileHandle());
   const auto text = text_of(summary);
   for (std::string_view rest = text; !rest.empty() && process_.is_running();) {
@@ -117,7 +139,7 @@ Result<std::string> PageBesideRun::finish(const Json& summary) {
     rest.remove_prefix(static_cast<std::size_t>(sent));
   }
   ::shutdown(line.get(), SHUT_RDWR);
-  return answer_of(process_, call_.file);
+  return answer_of(process_, call_);
 }
 
 }  // namespace tools

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/child_process.h"
+#include "base/command.h"
 #include "base/file_handle.h"
 #include "run/run_system.h"
 
@@ -16,9 +17,12 @@ struct PageCall {
   std::string file;       // the page
   double camera_rate = 1;
   double limit_mib = 64;
-  std::string other = {};  // a second recording to compare with; empty: none
+  std::string other = {};     // a second recording to compare with; empty: none
+  bool is_temporary = false;  // the recording: messages do not name it
 };
 
+// --page-camera-rate and --page-limit of a command that writes a page.
+void add_page_options(base::Command& command, PageCall& call);
 // What the page says about a run: passed, why, failures, marks, seed, hash, command, simulated. `command` repeats the run.
 nlohmann::ordered_json page_summary(const RunResult& result, const std::string& command);
 // Runs rtse-page and returns what it printed. `summary`: as above, or other members that rtse-page reads. An error names the page.
@@ -34,10 +38,13 @@ class PageBesideRun {
   PageBesideRun& operator=(PageBesideRun&&) noexcept = delete;
   ~PageBesideRun();
 
-  // The recording is whole.
+  // The recording is whole. If rtse-page was killed meanwhile, the page is written anew.
   Result<std::string> finish(const nlohmann::ordered_json& summary);
 
  private:
+  friend Result<std::string> write_run_page(const PageCall& call, const nlohmann::ordered_json& summary);
+  static Result<PageBesideRun> start(const PageCall& call, const std::vector<std::string>& words);
+  Result<std::string> written(const nlohmann::ordered_json& summary);
   PageBesideRun(PageCall call, ChildProcess process, base::FileHandle line)
       : call_(std::move(call)), process_(std::move(process)), line_(std::move(line)) {}
 

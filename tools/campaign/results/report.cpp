@@ -1,6 +1,7 @@
 #include "campaign/results/report.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 
 #include "base/shell_word.h"
@@ -62,6 +63,14 @@ void print_groups(std::ostream& out, const Results& results, const std::string& 
   for (const auto& group : all) print_rate(out, group.name, width, group.passed, group.rows.size());
 }
 
+// The results name the folder, so only its last part is used. Empty: there is none.
+std::string page_of_row(const std::string& runs, const ResultRow& row) {
+  const auto folder = std::filesystem::path(row.run->folder).filename();
+  const auto page = std::filesystem::path(runs) / folder / "run.html";
+  std::error_code ignored;
+  return !row.run->is_passed && !folder.empty() && std::filesystem::is_regular_file(page, ignored) ? page.string() : "";
+}
+
 }  // namespace
 
 std::string command_again(const Results& results, const ResultRow& row) {
@@ -115,7 +124,7 @@ void print_csv(std::ostream& out, const Results& results) {
   }
 }
 
-Result<void> write_junit(const Results& results, const std::string& file) {
+Result<void> write_junit(const Results& results, const std::string& file, const std::string& runs) {
   using Outcome = tools::JunitCase::Outcome;
   std::vector<tools::JunitCase> cases;
   for (const auto& row : results.rows) {
@@ -128,7 +137,8 @@ Result<void> write_junit(const Results& results, const std::string& file) {
                      .name = name,
                      .wall_s = row.run->wall_s,
                      .problem = row.run->problem,
-                     .details = command_again(results, row)});
+                     .details = command_again(results, row),
+                     .attachment = page_of_row(runs, row)});
   }
   return tools::write_junit_suite(file, results.plan_file, cases);
 }

@@ -23,7 +23,7 @@ void write_page(const RowRunOptions& options, tools::RunResult& run) {
   std::error_code ignored;
   if (!run.is_passed() && fs::exists(recording_of(options), ignored)) {
     const auto written = tools::write_run_page({recording_of(options), options.page}, tools::page_summary(run, options.command));
-    if (!written) run.notes.push_back(written.error().message);
+    if (!written) return run.notes.push_back(written.error().message + "; the recording is kept: " + recording_of(options));
   }
   if (!options.records) fs::remove(recording_of(options), ignored);
 }

@@ -38,6 +38,7 @@ struct Progress {
 struct FailedRow {
   std::size_t number = 0;
   std::string problem;
+  std::string folder;  // of its files; empty: there are none
 };
 
 struct SweepResult {

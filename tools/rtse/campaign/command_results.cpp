@@ -53,7 +53,7 @@ void show_results(Console& console, const ResultsCall& call) {
     print_tables(std::cout, *results, call.by);
   }
   if (!call.junit.empty()) {
-    if (const auto written = write_junit(*results, call.junit); !written) console.fail(written.error());
+    if (const auto written = write_junit(*results, call.junit, runs_of(call)); !written) console.fail(written.error());
   }
   if (!call.html.empty()) {
     if (const auto written = write_html(*results, call.html, runs_of(call)); !written) console.fail(written.error());

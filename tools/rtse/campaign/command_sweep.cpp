@@ -151,6 +151,8 @@ void tell(Console& console, const SweepResult& result, const SweepCall& call) {
     const auto number = std::to_string(result.failed[i].number);
     console.warn("row " + number + ": " + result.failed[i].problem);
     console.warn("  again: " + again(call.plan, result.failed[i].number));
+    const auto page = result.failed[i].folder + "/run.html";
+    if (std::error_code none; call.pages && std::filesystem::is_regular_file(page, none)) console.warn("  page: " + page);
   }
   if (p.failed > enough)
     console.warn("and " + std::to_string(p.failed - enough) + " more; " +

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <variant>
 
+#include "base/interrupt.h"
 #include "base/shell_word.h"
 #include "base/text.h"
 
@@ -68,8 +69,12 @@ void WrittenPage::end(Console& console, const RunResult& result) {
   }
   const auto summary = page_summary(result, repeating_command(given_));
   const auto written = beside_ ? beside_->finish(summary) : write_run_page(call(), summary);
-  if (given_.record.empty()) std::filesystem::remove(made_.record, error);
-  if (!written) return console.fail(written.error());
+  const bool is_kept = !written && !is_interrupted();
+  if (given_.record.empty() && !is_kept) std::filesystem::remove(made_.record, error);
+  if (!written) {
+    const bool names_it = given_.record.empty() && is_kept;
+    return console.fail({written.error().message + (names_it ? "; the recording is kept: " + made_.record : "")});
+  }
   if (!console.json()) std::cout << "page " << *written;
 }
 

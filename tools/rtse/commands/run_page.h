@@ -21,11 +21,18 @@ class WrittenPage {
 
   // The recording has begun.
   void begin();
-  // Ends the page and removes a temporary recording. Problems go to `console`. A run that left no recording leaves an older page as it is.
+  // Ends the page. A temporary recording is removed, unless the page failed. Problems go to `console`. A run that left no recording leaves
+  // an older page as it is.
   void end(Console& console, const RunResult& result);
 
  private:
-  PageCall call() const { return {made_.record, given_.page, given_.page_camera_rate, given_.page_limit_mib}; }
+  PageCall call() const {
+    return {.recording = made_.record,
+            .file = given_.page,
+            .camera_rate = given_.page_camera_rate,
+            .limit_mib = given_.page_limit_mib,
+            .is_temporary = given_.record.empty()};
+  }
 
   const RunOptions& given_;
   const RunOptions& made_;

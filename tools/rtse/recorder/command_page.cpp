@@ -45,14 +45,16 @@ nlohmann::ordered_json summary_of(const Comparison& comparison) {
   return summary;
 }
 
-void write_page(Console& console, const CompareOptions& options, const std::string& page) {
+void write_page(Console& console, const CompareOptions& options, tools::PageCall page) {
   nlohmann::ordered_json summary = nlohmann::ordered_json::object();
   if (!options.second.empty()) {
     const auto comparison = compare(options, console);
     if (!comparison) return console.fail(comparison.error());
     summary = summary_of(*comparison);
   }
-  const auto written = tools::write_run_page({.recording = options.first, .file = page, .other = options.second}, summary);
+  page.recording = options.first;
+  page.other = options.second;
+  const auto written = tools::write_run_page(page, summary);
   if (!written) return console.fail(written.error());
   if (!console.json()) std::cout << *written;
 }
@@ -62,10 +64,11 @@ void write_page(Console& console, const CompareOptions& options, const std::stri
 void add_page(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("page", "Write a recording, or two to compare, as one HTML page for any browser");
   auto options = std::make_shared<CompareOptions>();
-  auto page = std::make_shared<std::string>();
+  auto page = std::make_shared<tools::PageCall>();
   command->add_option("A", options->first, "Recording")->required();
   command->add_option("B", options->second, "Recording to compare with; its models are shown as ghosts");
-  command->add_option("-o,--output", *page, "HTML file to write")->required();
+  command->add_option("-o,--output", page->file, "HTML file to write")->required();
+  tools::add_page_options(*command, *page);
   command->add_option("--ignore", options->tolerated.ignored, "Members to ignore, e.g. tm")->allow_extra_args(false);
   command->callback([&chosen, options, page] {
     chosen.needs_orb = false;

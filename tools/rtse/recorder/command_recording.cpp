@@ -253,8 +253,9 @@ void export_samples(Console& console, const ExportOptions& options) {
   if (!console.json()) std::cout << exported->files << (options.png ? " pictures in " : " tables in ") << options.folder << '\n';
 }
 
-void export_page(Console& console, const Selection& selection, const std::string& page) {
-  const auto written = tools::write_run_page({.recording = selection.file, .file = page}, nlohmann::ordered_json::object());
+void export_page(Console& console, const Selection& selection, tools::PageCall page) {
+  page.recording = selection.file;
+  const auto written = tools::write_run_page(page, nlohmann::ordered_json::object());
   if (!written) return console.fail(written.error());
   if (!console.json()) std::cout << *written;
 }
@@ -372,13 +373,14 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
   auto* export_command = recording->add_subcommand("export", "Write a CSV table per channel, the camera images, or one HTML page");
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
-  auto page = std::make_shared<std::string>();
+  auto page = std::make_shared<tools::PageCall>();
   export_command->add_option("-o,--output", exported->folder, "Output folder");
   export_command->add_flag("--png", exported->png, "Write the camera images as PNG files instead of tables");
-  export_command->add_option("--html", *page, "Write the whole recording as this HTML page for any browser");
+  export_command->add_option("--html", page->file, "Write the whole recording as this HTML page for any browser");
+  tools::add_page_options(*export_command, *page);
   choose(export_command, [exported, page](const Session&, Console& console) {
-    if (page->empty() == exported->folder.empty()) return console.fail({"export: expected either --output FOLDER or --html FILE"});
-    page->empty() ? export_samples(console, *exported) : export_page(console, exported->selection, *page);
+    if (page->file.empty() == exported->folder.empty()) return console.fail({"export: expected either --output FOLDER or --html FILE"});
+    page->file.empty() ? export_samples(console, *exported) : export_page(console, exported->selection, *page);
   });
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");

@@ -232,8 +232,10 @@ base::Result<void> write_page(Console& console, const Options& options, const Re
   tools::RunResult run;
   for (const auto& output : result.outputs) {
     if (output.first.empty()) continue;
+    const auto difference = "first difference at " + output.first;
     run.verdicts.push_back({.expectation = "output " + output.topic + " is as recorded",
-                            .problem = "first difference at " + output.first,
+                            .problem = difference,
+                            .failure = "output " + output.topic + " differs from the recording: " + difference,
                             .time = output.first_s,
                             .subject = options.component});
   }

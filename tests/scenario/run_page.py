@@ -1,0 +1,152 @@
+# The page of a run that has a limit, or whose programs are ended: run_page.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import base64
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+case, bin_dir, lib_dir, source = sys.argv[1:]
+watchdog = 240  # [s]; a bound on hanging
+mib = 1 << 20
+
+
+def until(what, ready):
+    end = time.monotonic() + watchdog
+    while True:
+        answer = ready()
+        if answer:
+            return answer
+        assert time.monotonic() < end, what
+        time.sleep(0.02)
+
+
+def run_words(seconds, *more):
+    return [f"{bin_dir}/rtse", "run", f"{source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{source}/worlds/obstacle_course.sdf", "--duration", str(seconds), "--module-path", lib_dir, *more]
+
+
+def done(*words, code=0):
+    ended = subprocess.run(words, timeout=watchdog, capture_output=True, text=True, check=False)
+    assert ended.returncode == code, (ended.returncode, ended.stdout, ended.stderr)
+    return ended.stdout if code == 0 else ended.stderr
+
+
+def blocks(page):
+    with open(page, encoding="utf8") as file:
+        return dict(re.findall(r'id="run-([^"]+)">([^<]*)</script>', file.read()))
+
+
+def index_of(page):
+    return json.loads(zlib.decompress(base64.b64decode(blocks(page)["index"])))
+
+
+# Of the process: the child rtse-page, once it is that.
+def writer_of(process):
+    def find():
+        assert process.poll() is None, "it ended before its page"
+        with open(f"/proc/{process.pid}/task/{process.pid}/children", encoding="ascii") as file:
+            children = file.read().split()
+        for child in children:
+            try:
+                with open(f"/proc/{child}/comm", encoding="utf8") as file:
+                    if file.read().strip() == "rtse-page":
+                        return int(child)
+            except OSError:
+                pass  # it has ended meanwhile
+        return None
+
+    return until("rtse-page", find)
+
+
+# No page is larger than its limit: it ends early and says so. One that cannot be so small is not written.
+def limit(folder):
+    recording, page, viewer = (os.path.join(folder, name) for name in ("run.mcap", "run.html", "viewer.html"))
+    done(*run_words(45, "--record", recording))
+    done(f"{bin_dir}/rtse", "page", recording, "-o", page)
+    assert os.path.getsize(page) > 1.3 * mib, os.path.getsize(page)
+    text = done(f"{bin_dir}/rtse", "page", recording, "-o", page, "--page-limit", "1")
+    size = os.path.getsize(page)
+    assert 0.85 * mib < size <= mib, size
+    index = index_of(page)
+    end = index["hello"]["recording"]["to"]
+    left_out = [line for line in index["hello"]["page"]["left_out"] if line.startswith("everything after")]
+    assert left_out == [f"everything after {end:g} s: the page has reached its limit"], (left_out, end)
+    assert left_out[0] in text, text
+    assert 1 < end < 44 and abs(index["parts"][-1][1] - end) < 1e-6, (end, index["parts"])
+    parts = sorted(int(name) for name in blocks(page) if name.isdigit())
+    assert parts == list(range(len(index["parts"]))), parts
+    # Parts that were written make room for the index.
+    with open(viewer, "w", encoding="utf8") as file:
+        file.write("<!--run-->" + " " * (mib - 60_000))
+    done(f"{bin_dir}/rtse-page", recording, "-o", page, "--page-limit", "1", "--viewer", viewer)
+    assert os.path.getsize(page) <= mib, os.path.getsize(page)
+    # Nothing fits.
+    with open(viewer, "a", encoding="utf8") as file:
+        file.write(" " * 60_000)
+    before = os.path.getsize(page)
+    problem = done(f"{bin_dir}/rtse-page", recording, "-o", page, "--page-limit", "1", "--viewer", viewer, code=1)
+    assert problem == "rtse-page: the page needs more than its limit of 1 MiB (--page-limit)\n", problem
+    assert os.path.getsize(page) == before and sorted(os.listdir(folder)) == ["run.html", "run.mcap", "viewer.html"], os.listdir(folder)
+
+
+# The page is written after the run if the program that wrote it beside the run was killed.
+def writer_killed(folder):
+    page = os.path.join(folder, "run.html")
+    with subprocess.Popen(run_words(60, "--page", page), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        os.kill(writer_of(process), signal.SIGKILL)
+        out, problems = process.communicate(timeout=watchdog)
+    assert process.returncode == 0, (out, problems)
+    assert index_of(page)["hello"]["page"]["passed"] is True
+    assert os.listdir(folder) == ["run.html"], os.listdir(folder)
+
+
+# A page that cannot be written costs nobody the recording.
+def page_fails(folder):
+    page = os.path.join(folder, "run.html")
+    with subprocess.Popen(run_words(60, "--page", page), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        writer_of(process)
+        os.mkdir(page)
+        problems = process.communicate(timeout=watchdog)[1]
+    recording = f"{page}.{process.pid}.mcap"
+    assert process.returncode == 1 and problems == f'rtse: page "{page}": Is a directory; the recording is kept: {recording}\n', problems
+    assert sorted(os.listdir(folder)) == ["run.html", os.path.basename(recording)], os.listdir(folder)
+    os.rmdir(page)
+    done(f"{bin_dir}/rtse", "page", recording, "-o", page)
+    assert index_of(page)["parts"]
+
+
+# Programs that are told to end leave no file.
+def ended(folder):
+    recording, page = (os.path.join(folder, name) for name in ("run.mcap", "run.html"))
+    done(*run_words(100, "--record", recording))
+    for number in (signal.SIGTERM, signal.SIGKILL, signal.SIGINT):
+        with subprocess.Popen([f"{bin_dir}/rtse", "page", recording, "-o", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            writer = writer_of(process)
+            process.send_signal(number)
+            process.wait(watchdog)
+        until("the end of rtse-page", lambda gone=writer: not os.path.exists(f"/proc/{gone}/exe"))
+        assert os.listdir(folder) == ["run.mcap"], (number, os.listdir(folder))
+
+
+# What a user did not name is in no message.
+def messages(folder):
+    page, bad = (os.path.join(folder, name) for name in ("run.html", "bad.mcap"))
+    with open(bad, "w", encoding="utf8") as file:
+        file.write("hello")
+    rtse = f"{bin_dir}/rtse"
+    nowhere = os.path.join(folder, "none/run.html")
+    assert done(rtse, "page", bad, "-o", nowhere, code=1) == f'rtse: page "{nowhere}": No such file or directory\n'
+    assert done(rtse, "page", bad, "-o", page, code=1) == f'rtse: page "{page}": "{bad}": is not an MCAP file: it does not start with the magic bytes\n'
+    assert done(rtse, "page", bad, "-o", bad, code=1) == f'rtse: page "{bad}": is the recording; expected another file\n'
+    assert done(*run_words(1, "--page", nowhere), code=1) == f'rtse: file "{nowhere}": there is no folder {os.path.dirname(nowhere)}\n'
+    viewer = done(f"{bin_dir}/rtse-page", bad, "-o", page, "--viewer", nowhere, code=1)
+    assert viewer.startswith(f"rtse-page: the viewer is missing: {nowhere}; "), viewer
+    assert sorted(os.listdir(folder)) == ["bad.mcap"], os.listdir(folder)
+
+
+with tempfile.TemporaryDirectory() as place:
+    {one.__name__: one for one in (limit, writer_killed, page_fails, ended, messages)}[case](place)
