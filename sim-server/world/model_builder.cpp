@@ -137,6 +137,20 @@ class ModelBuilder {
     for (pugi::xml_node plugin : node.children("plugin")) add_grasp_fix(plugin, scope, model_, context_.complaints);
   }
 
+  // Why its limits keep a joint from ever following its leader: the stops of both would fight against the follower's row.
+  static std::string why_out_of_reach(const JointDef& follower, const JointDef& leader) {
+    const AxisDef &own = follower.axes[0], &other = leader.axes[0];
+    const MimicDef& mimic = *follower.mimic;
+    const auto goal = [&](double position) {
+      return mimic.multiplier == 0 ? mimic.offset : mimic.multiplier * (position - mimic.reference) + mimic.offset;
+    };
+    const auto [low, high] = std::minmax({goal(other.lower), goal(other.upper)});
+    const double slack = 1e-9 * (1 + std::abs(own.lower) + std::abs(own.upper));
+    if (own.lower > own.upper || other.lower > other.upper || (high >= own.lower - slack && low <= own.upper + slack)) return {};
+    const auto text = [](double a, double b) { return base::format_number(a) + " to " + base::format_number(b); };
+    return "it would have to be at " + text(low, high) + ", beyond its limits " + text(own.lower, own.upper);
+  }
+
   // Joints that follow one that is not there, themselves, or in a ring: these would hold each other, and none could be commanded.
   void check_mimics() {
     const auto find = [&](const std::string& name) -> JointDef* {
@@ -150,10 +164,11 @@ class ModelBuilder {
       const bool leads = next != nullptr && next->axes.size() == 1;
       for (std::size_t i = 0; leads && next != nullptr && next != &joint && next->mimic && i < model_.joints.size(); ++i)
         next = find(next->mimic->leader);
-      if (leads && next != &joint) continue;
-      context_.complaints.warn(node, describe_in_context(node) + " does not mimic joint " + base::in_quotes(leader) + ": " +
-                                         (leads ? "it would follow itself" : "there is no such joint with one axis") +
-                                         "; it moves on its own");
+      std::string why = !leads ? "there is no such joint with one axis" : next == &joint ? "it would follow itself" : "";
+      if (why.empty()) why = why_out_of_reach(joint, *find(leader));
+      if (why.empty()) continue;
+      context_.complaints.warn(
+          node, describe_in_context(node) + " does not mimic joint " + base::in_quotes(leader) + ": " + why + "; it moves on its own");
       joint.mimic.reset();
     }
   }
