@@ -75,9 +75,9 @@ base::Result<pugi::xml_document> ModelFiles::open_text(const std::string& text, 
   if (!parsed) return parsed;
   pugi::xml_node sdf = parsed->child("sdf");
   if (!sdf && parsed->child("robot")) {
-    const pugi::xml_node written = parsed->child("robot");
-    mend_urdf(written);
-    base::Result<pugi::xml_document> robot = library_.translate_urdf(to_xml(written, false));
+    pugi::xml_node written = parsed->child("robot");
+    written.append_attribute(file_mark) = complaints_.add_file(file_name);
+    base::Result<pugi::xml_document> robot = library_.translate_urdf(urdf_for_library(written, complaints_));
     if (!robot) {
       const auto fault = fault_of_urdf(written);
       return base::Error{file_name + ": " + (fault ? "the URDF robot cannot be read: " + *fault : robot.error().message)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -9,6 +10,8 @@
 
 #include "base/text.h"
 #include "world/repairs.h"
+#include "world/xml_file.h"
+#include "world/xml_values.h"
 
 namespace sim {
 namespace {
@@ -83,25 +86,156 @@ Fault wrong_tree(pugi::xml_node robot) {
   return {};
 }
 
-Fault without_mass(pugi::xml_node robot) {
-  const auto links = robot.children("link");
-  if (std::none_of(links.begin(), links.end(), [](pugi::xml_node link) { return link.select_node("inertial/mass[@value > 0]"); }))
-    return "no link has a mass";
+// Attributes that are numbers, by their element.
+struct NumberAttributes {
+  std::string_view element;
+  std::size_t count;
+  std::vector<const char*> names;
+};
+
+Fault wrong_number(pugi::xml_node node, const std::string& who) {
+  static const std::array<NumberAttributes, 12> known = {{
+      {"origin", 3, {"xyz", "rpy"}},
+      {"axis", 3, {"xyz"}},
+      {"mass", 1, {"value"}},
+      {"inertia", 1, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
+      {"limit", 1, {"lower", "upper", "effort", "velocity"}},
+      {"dynamics", 1, {"damping", "friction"}},
+      {"safety_controller", 1, {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}},
+      {"calibration", 1, {"rising", "falling"}},
+      {"box", 3, {"size"}},
+      {"cylinder", 1, {"radius", "length"}},
+      {"sphere", 1, {"radius"}},
+      {"mesh", 3, {"scale"}},
+  }};
+  for (const NumberAttributes& row : known) {
+    if (row.element != node.name()) continue;
+    for (const char* name : row.names) {
+      const pugi::xml_attribute attribute = node.attribute(name);
+      const std::vector<std::string> words = base::split_list(attribute.value(), ' ');
+      const bool are_numbers = std::ranges::all_of(words, [](const std::string& word) { return base::parse_number(word).has_value(); });
+      if (!attribute || (are_numbers && words.size() == row.count)) continue;
+      return std::string(name) + " of <" + node.name() + "> of " + who + " must be " + (row.count == 1 ? "a number" : "three numbers") +
+             ", got " + base::in_quotes(attribute.value());
+    }
+  }
+  for (const pugi::xml_node child : node.children()) {
+    if (Fault fault = wrong_number(child, who)) return fault;
+  }
   return {};
+}
+
+// --- what the library translates wrongly
+
+using Nodes = std::map<std::string, pugi::xml_node, std::less<>>;
+
+std::string_view parent_of(pugi::xml_node joint) { return joint.child("parent").attribute("link").value(); }
+std::string_view child_of(pugi::xml_node joint) { return joint.child("child").attribute("link").value(); }
+bool is_fixed(pugi::xml_node joint) { return std::string_view(joint.attribute("type").value()) == "fixed"; }
+
+bool is_massless(pugi::xml_node link) {
+  const pugi::xml_attribute mass = link.child("inertial").child("mass").attribute("value");
+  return !link.child("inertial") || base::parse_number(mass.value()) == 0.0;
+}
+
+Eigen::Isometry3d origin_of(pugi::xml_node joint) {
+  const pugi::xml_node origin = joint.child("origin");
+  pugi::xml_document scratch;
+  pugi::xml_node pose = scratch.append_child("pose");
+  const auto words = [&](const char* key) { return std::string(origin.attribute(key) ? origin.attribute(key).value() : "0 0 0"); };
+  pose.text() = (words("xyz") + " " + words("rpy")).c_str();
+  return parse_pose(pose).value_or(Eigen::Isometry3d::Identity());
+}
+
+void set_origin(pugi::xml_node joint, const Eigen::Isometry3d& pose) {
+  const std::vector<std::string> words = base::split_list(pose_text(pose), ' ');
+  pugi::xml_node origin = joint.child("origin") ? joint.child("origin") : joint.append_child("origin");
+  for (const char* key : {"xyz", "rpy"}) origin.remove_attribute(key);
+  origin.append_attribute("xyz") = (words[0] + " " + words[1] + " " + words[2]).c_str();
+  origin.append_attribute("rpy") = (words[3] + " " + words[4] + " " + words[5]).c_str();
+}
+
+// Joints that move a link hang on what holds a massless link: the library leaves out such a link with everything on it. `holders`: joints,
+// by the link that is their child.
+void hang_below_frames(pugi::xml_node robot, const Nodes& links, const Nodes& holders) {
+  for (pugi::xml_node joint : robot.children("joint")) {
+    if (is_fixed(joint)) continue;
+    for (std::size_t hops = 0; hops < holders.size(); ++hops) {
+      const auto holder = holders.find(parent_of(joint)), link = links.find(parent_of(joint));
+      if (holder == holders.end() || link == links.end() || !is_fixed(holder->second) || !is_massless(link->second)) break;
+      set_origin(joint, origin_of(holder->second) * origin_of(joint));
+      joint.child("parent").attribute("link") = std::string(parent_of(holder->second)).c_str();
+    }
+  }
+}
+
+// With what fixed joints hold on them.
+std::set<std::string, std::less<>> links_with_mass(pugi::xml_node robot) {
+  std::set<std::string, std::less<>> heavy;
+  for (const pugi::xml_node link : robot.children("link")) {
+    if (!is_massless(link)) heavy.emplace(urdf_name(link));
+  }
+  for (bool has_grown = true; has_grown;) {
+    has_grown = false;
+    for (const pugi::xml_node joint : robot.children("joint")) {
+      if (is_fixed(joint) && heavy.contains(child_of(joint))) has_grown = heavy.emplace(parent_of(joint)).second || has_grown;
+    }
+  }
+  return heavy;
+}
+
+// Links that move and weigh nothing get the mass of a small ball: the library leaves them out with everything on them.
+void give_mass(pugi::xml_node robot, const Nodes& holders, Complaints& complaints) {
+  const auto heavy = links_with_mass(robot);
+  std::vector<pugi::xml_node> given;
+  for (pugi::xml_node link : robot.children("link")) {
+    const auto holder = holders.find(urdf_name(link));
+    const bool moves = holder == holders.end() ? urdf_name(link) != "world" : !is_fixed(holder->second);
+    if (!moves || heavy.contains(urdf_name(link))) continue;
+    link.remove_child("inertial");
+    pugi::xml_node inertial = link.append_child("inertial"), inertia = inertial.append_child("inertia");
+    inertial.append_child("mass").append_attribute("value") = "0.1";
+    for (const char* key : {"ixx", "iyy", "izz"}) inertia.append_attribute(key) = "1e-4";
+    for (const char* key : {"ixy", "ixz", "iyz"}) inertia.append_attribute(key) = "0";
+    given.push_back(link);
+  }
+  if (given.empty()) return;
+  const std::size_t more = given.size() - 1;
+  const std::string others = more == 0   ? " has"
+                             : more == 1 ? " and another link have"
+                                         : " and " + std::to_string(more) + " other links have";
+  complaints.warn(given.front(), "link " + base::in_quotes(urdf_name(given.front())) + others + " no mass; 0.1 kg is taken" +
+                                     (more > 0 ? " for each" : ""));
+}
+
+// The library reads no infinities.
+void bound_limits(pugi::xml_node robot) {
+  for (const pugi::xml_node joint : robot.children("joint")) {
+    for (pugi::xml_attribute attribute : joint.child("limit").attributes()) {
+      const auto value = parse_numbers(attribute.value());
+      if (value && value->size() == 1 && std::isinf(value->front())) attribute = value->front() > 0 ? "1e16" : "-1e16";
+    }
+  }
 }
 
 }  // namespace
 
-void mend_urdf(pugi::xml_node robot) {
-  std::set<std::string_view> welded;
-  for (const pugi::xml_node joint : robot.children("joint")) {
-    if (std::string_view(joint.attribute("type").value()) == "fixed") welded.insert(joint.child("child").attribute("link").value());
+std::string urdf_for_library(pugi::xml_node written, Complaints& complaints) {
+  pugi::xml_document document;
+  const pugi::xml_node robot = document.append_copy(written);
+  Nodes links, holders;
+  for (const pugi::xml_node link : robot.children("link")) links.emplace(urdf_name(link), link);
+  for (const pugi::xml_node joint : robot.children("joint")) holders.emplace(child_of(joint), joint);
+  hang_below_frames(robot, links, holders);
+  give_mass(robot, holders, complaints);
+  bound_limits(robot);
+  for (pugi::xml_node joint : robot.children("joint")) {
+    joint.remove_child("mimic");  // carry_mimics() reads what was written
+    // The library divides by the mass of such a link and what it hangs on.
+    const auto link = links.find(child_of(joint));
+    if (is_fixed(joint) && link != links.end() && is_massless(link->second)) link->second.remove_child("inertial");
   }
-  for (pugi::xml_node link : robot.children("link")) {
-    const pugi::xml_node mass = link.child("inertial").child("mass");
-    const std::optional<double> value = base::parse_number(mass.attribute("value").value());
-    if (value && *value == 0 && welded.contains(urdf_name(link))) link.remove_child("inertial");
-  }
+  return to_xml(robot, false);
 }
 
 void carry_mimics(pugi::xml_node robot, pugi::xml_node sdf, Complaints& complaints) {
@@ -137,7 +271,12 @@ std::optional<std::string> fault_of_urdf(pugi::xml_node robot) {
     if (Fault fault = wrong_joint(robot, joint)) return fault;
   }
   if (Fault fault = wrong_tree(robot)) return fault;
-  return without_mass(robot);
+  for (const pugi::xml_node node : robot.children()) {
+    const std::string_view kind = node.name();
+    if (kind != "link" && kind != "joint") continue;
+    if (Fault fault = wrong_number(node, std::string(kind) + " " + base::in_quotes(urdf_name(node)))) return fault;
+  }
+  return {};
 }
 
 }  // namespace sim

@@ -10,9 +10,10 @@
 
 namespace sim {
 
-// Removes the <inertial> of links without mass that a fixed joint holds. The library divides by the mass of such a link and what it hangs
-// on.
-void mend_urdf(pugi::xml_node robot);
+// The robot as the library gets it. Joints on a massless link that a fixed joint holds hang on what holds it; links that move and have no
+// mass get 0.1 kg, with a finding; infinite limits are 1e16. The library would leave out such links with everything on them, and refuse the
+// others.
+std::string urdf_for_library(pugi::xml_node robot, Complaints& complaints);
 
 // Puts the <mimic> of joints, which the library leaves out in silence, into its translation. A finding for each that means nothing.
 void carry_mimics(pugi::xml_node robot, pugi::xml_node sdf, Complaints& complaints);

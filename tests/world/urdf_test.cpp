@@ -1,6 +1,8 @@
 // URDF robots that people bring: what is wrong in one is said, and what the library would lose is kept.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "world/world_loader.h"
 
 namespace sim {
@@ -34,6 +36,13 @@ TEST(Urdf, that_is_refused_has_the_reason) {
            Case{two, "links \"a\" and \"b\" have no parent; one root is allowed"},
            Case{link("a") + link("a") + joint("fixed", ends), "link \"a\" appears twice"},
            Case{two + joint("hinge", ends), "joint \"j\" has the unknown type \"hinge\""},
+           Case{two + joint("revolute", ends + "<limit effort='28,0' velocity='1'/>"),
+                "effort of <limit> of joint \"j\" must be a number, got \"28,0\""},
+           Case{two + joint("revolute", ends + "<limit effort='nan' velocity='1'/>"),
+                "effort of <limit> of joint \"j\" must be a number, got \"nan\""},
+           Case{two + joint("fixed", ends + "<origin xyz='0 0'/>"), "xyz of <origin> of joint \"j\" must be three numbers, got \"0 0\""},
+           Case{link("a", "<inertial><mass value='1kg'/></inertial>") + link("b") + joint("fixed", ends),
+                "value of <mass> of link \"a\" must be a number, got \"1kg\""},
        }) {
     const auto loaded = load(each.content, each.attributes);
     ASSERT_FALSE(loaded) << each.reason;
@@ -57,6 +66,78 @@ TEST(Urdf, frames_without_mass_on_frames_without_mass_add_nothing) {
     EXPECT_LT(loaded->model.link("arm")->center_of_mass.norm(), 1e-9);
     EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
   }
+}
+
+// As in Baxter, whose arms hang on mounts without mass.
+TEST(Urdf, joints_on_frames_without_mass_hang_on_what_holds_the_frame) {
+  const std::string limit = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+  const auto loaded = load(link("torso") + link("mount", "") + link("plate", no_mass) + link("arm") +
+                           "<joint name='m' type='fixed'><parent link='torso'/><child link='mount'/><origin xyz='0 0.2 0.3' rpy='0 0 "
+                           "1.5707963267948966'/></joint><joint name='p' type='fixed'><parent link='mount'/><child link='plate'/><origin "
+                           "xyz='0.1 0 0'/></joint><joint name='j' type='revolute'><parent link='plate'/><child link='arm'/><origin "
+                           "xyz='0.1 0 0' rpy='0.5 0 0'/><axis xyz='1 0 0'/>" +
+                           limit + "</joint>");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
+  const LinkDef* arm = loaded->model.link("arm");
+  ASSERT_TRUE(arm != nullptr && loaded->model.joint("j") != nullptr);
+  EXPECT_LT((arm->pose.translation() - Eigen::Vector3d(0, 0.4, 0.3)).norm(), 1e-9) << arm->pose.translation().transpose();
+  EXPECT_LT((arm->pose.linear() * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(std::sin(0.5), 0, std::cos(0.5))).norm(), 1e-9);
+  EXPECT_EQ(loaded->model.joint("j")->parent, "torso");
+}
+
+TEST(Urdf, links_that_move_and_have_no_mass_get_one_with_a_line) {
+  const std::string limit = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>";
+  const auto chain = [&](const std::string& content) {
+    return link("world", "") + link("base", content) + link("a", content) + link("b", content) +
+           "<joint name='w' type='fixed'><parent link='world'/><child link='base'/></joint><joint name='one' "
+           "type='revolute'><parent link='base'/><child link='a'/>" +
+           limit + "<joint name='two' type='revolute'><parent link='a'/><child link='b'/>" + limit;
+  };
+  for (const std::string& content : {std::string(), no_mass}) {
+    const auto loaded = load(chain(content));
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->findings.size(), 1U);
+    EXPECT_NE(loaded->findings[0].text().find("link \"a\" and another link have no mass; 0.1 kg is taken for each"), std::string::npos)
+        << loaded->findings[0].text();
+    ASSERT_TRUE(loaded->model.link("a") != nullptr && loaded->model.link("b") != nullptr);
+    EXPECT_NEAR(loaded->model.link("b")->mass, 0.1, 1e-12);
+    EXPECT_EQ(loaded->model.joint("one")->parent, "");
+    EXPECT_EQ(loaded->model.joint("two")->parent, "a");
+  }
+}
+
+TEST(Urdf, infinite_limits_are_none) {
+  const auto loaded =
+      load(link("a") + link("b") + joint("revolute", ends + "<limit lower='-inf' upper='inf' effort='inf' velocity='inf'/>"));
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
+  EXPECT_GE(loaded->model.joint("j")->axes[0].upper, 1e15);
+}
+
+TEST(Urdf, impossible_numbers_of_a_mimic_have_a_line_and_the_robot_stays) {
+  const auto load_with = [](const std::string& numbers) {
+    return load(link("palm") + link("left") + link("right") +
+                "<joint name='one' type='prismatic'><parent link='palm'/><child link='left'/><axis xyz='0 0 1'/><limit lower='0' upper='1' "
+                "effort='1' velocity='1'/></joint><joint name='other' type='prismatic'><parent link='palm'/><child link='right'/><axis "
+                "xyz='0 0 -1'/><limit lower='0' upper='1' effort='1' velocity='1'/><mimic joint='one' " +
+                numbers + "/></joint>");
+  };
+  struct Case {
+    std::string numbers, line;
+    bool follows = true;
+  };
+  for (const Case& each :
+       {Case{"multiplier='one'", "the multiplier of the <mimic> of joint \"other\" must be a number up to 1e6, got \"one\"; 1 is taken"},
+        Case{"offset='nan'", "the offset of the <mimic> of joint \"other\" must be a number up to 1e6, got \"nan\"; 0 is taken"},
+        Case{"offset='3'", "joint \"one\": it would have to be at 3 to 4, beyond its limits 0 to 1; it moves on its own", false}}) {
+    const auto loaded = load_with(each.numbers);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->findings.size(), 1U) << each.numbers;
+    EXPECT_NE(loaded->findings[0].text().find(each.line), std::string::npos) << loaded->findings[0].text();
+    EXPECT_EQ(loaded->model.joint("other")->mimic.has_value(), each.follows);
+  }
+  EXPECT_TRUE(load_with("multiplier=''")->findings.empty());
 }
 
 TEST(Urdf, joints_mimic_others) {
