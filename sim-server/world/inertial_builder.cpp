@@ -32,9 +32,10 @@ Eigen::Matrix3d mended_inertia(const Eigen::Matrix3d& inertia, double mass, std:
     why = "is not positive definite";
     return small_ball;
   }
-  const double floor = std::max(1e-6 * moments(2), 1e-12);
+  // A body with a smaller radius of gyration than 0.03 mm is turned too fast by any force beside its middle.
+  const double smallest = std::max(1e-9 * mass, 1e-12), floor = std::max(1e-6 * moments(2), smallest);
   if (moments(0) < floor) {
-    why = "is not positive definite";
+    why = moments(0) > 1e-6 * moments(2) ? "is too small for its mass" : "is not positive definite";
     moments = moments.cwiseMax(floor);
   }
   const double excess = moments(2) - moments(0) - moments(1);

@@ -22,13 +22,13 @@ TEST(WorldInertia, is_turned_into_the_link_and_checked) {
 
 TEST(WorldInertia, impossible_ones_are_mended_with_a_line) {
   const WorldFiles files;
-  for (const char* moments :
-       {"<ixx>0</ixx><iyy>0</iyy><izz>0</izz>", "<ixx>-1</ixx><iyy>1</iyy><izz>1</izz>", "<ixx>1</ixx><iyy>1</iyy><izz>10</izz>",
-        "<ixx>nan</ixx><iyy>1</iyy><izz>1</izz>", "<ixx>1</ixx><iyy>1</iyy><izz>1</izz><ixy>5</ixy>"}) {
+  for (const char* moments : {"<ixx>0</ixx><iyy>0</iyy><izz>0</izz>", "<ixx>-1</ixx><iyy>1</iyy><izz>1</izz>",
+                              "<ixx>1</ixx><iyy>1</iyy><izz>10</izz>", "<ixx>nan</ixx><iyy>1</iyy><izz>1</izz>",
+                              "<ixx>1</ixx><iyy>1</iyy><izz>1</izz><ixy>5</ixy>", "<ixx>1e-12</ixx><iyy>1e-12</iyy><izz>1e-12</izz>"}) {
     const LoadResult result = files.load(model_of("<inertial><mass>1</mass><inertia>" + std::string(moments) + "</inertia></inertial>"));
     ASSERT_EQ(result.world.models.size(), 1U) << moments;
     const Eigen::Matrix3d inertia = result.world.models[0].links[0].inertia;
-    EXPECT_GT(inertia.eigenvalues().real().minCoeff(), 0) << moments;
+    EXPECT_GT(inertia.eigenvalues().real().minCoeff(), 0.9e-9) << moments;
     EXPECT_TRUE(inertia.allFinite());
     EXPECT_GE(findings_with(result, "w.sdf:3: "), 1) << moments << "\n" << all_findings(result);
     EXPECT_FALSE(result.dropped);
