@@ -141,7 +141,7 @@ base::Result<void> add_named_gains(const std::vector<std::string>& files, sim::W
     for (auto& one : *gains) one.is_named = true;
     std::size_t count = 0;
     for (auto& model : world.models) count += sim::add_gains(*gains, model);
-    if (count == 0) return base::Error{"gains " + base::in_quotes(file) + ": they are of no joint of the world"};
+    if (count == 0) return base::Error{"gains " + base::in_quotes(file) + ": " + sim::why_no_gains(*gains, left_out, "the world")};
   }
   return {};
 }

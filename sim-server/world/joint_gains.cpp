@@ -147,7 +147,13 @@ base::Result<void> add_named_gains(const std::string& text, ModelDef& model, std
   if (!gains) return gains.error();
   for (auto& one : *gains) one.is_named = true;
   if (add_gains(*gains, model) > 0) return {};
-  return base::Error{"gains: they are of no joint of model " + model.name};
+  const std::string first = left_out.empty() ? "" : "; " + left_out.front();
+  return base::Error{"gains: " + why_no_gains(*gains, left_out, "model " + model.name) + first};
+}
+
+std::string why_no_gains(const std::vector<GainsDef>& gains, const std::vector<std::string>& left_out, const std::string& where) {
+  if (!gains.empty()) return "they are of no joint of " + where;
+  return left_out.empty() ? "the file has no gains of joints" : "none of them can be used";
 }
 
 base::Result<void> set_initial_positions(const std::string& lines, ModelDef& model) {

@@ -28,6 +28,9 @@ base::Result<std::vector<GainsDef>> read_gains_text(const std::string& text, con
 // Those of the model's joints; how many there are. Gains that a joint has already from the same kind of source stay.
 std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model);
 
+// Why a file whose gains add_gains() has put nowhere has none for `where`, "the world".
+std::string why_no_gains(const std::vector<GainsDef>& gains, const std::vector<std::string>& left_out, const std::string& where);
+
 // Those of the files that the model's ros_control and ros2_control plugins name in <parameters>. A file that is not there is a line.
 void add_plugin_gains(const ModelPath& model_path, ModelDef& model, Complaints& complaints);
 

@@ -125,6 +125,9 @@ TEST_F(JointGains, and_positions_can_be_given_to_a_model_that_is_spawned) {
   EXPECT_EQ(loaded.model.gains[0].source, "--gains:6");
   EXPECT_EQ(add_named_gains("pid_gains: {nose: {p: 1}}", loaded.model, left_out).error().message,
             "gains: they are of no joint of model arm");
+  EXPECT_EQ(add_named_gains("arm: {type: x}", loaded.model, left_out).error().message, "gains: the file has no gains of joints");
+  EXPECT_EQ(add_named_gains("pid_gains: {elbow: {p: fast}}", loaded.model, left_out).error().message,
+            "gains: none of them can be used; --gains:1: gain p of joint \"elbow\" must be a number, got \"fast\"; its gains are left out");
   EXPECT_NE(add_named_gains("a: [1, 2", loaded.model, left_out).error().message.find("is no YAML: line"), std::string::npos);
   ASSERT_TRUE(set_initial_positions("elbow=0.5\nwaist=-1", loaded.model));
   EXPECT_EQ(loaded.model.joint("elbow")->axes[0].initial_position, 0.5);
