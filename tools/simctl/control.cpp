@@ -41,12 +41,15 @@ void Control::fail(const std::string& message) {
 
 void Control::print(const Json& value) const { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << '\n'; }
 
-std::optional<shm::Reply> Control::ask(const shm::Request& request, std::chrono::seconds limit) {
+std::optional<shm::Reply> Control::ask(const shm::Request& request, std::chrono::seconds limit, const std::string& command) {
   auto requester = shm::Requester::open(server_id_);
   if (!requester) return fail(requester.error().message), std::nullopt;
   auto reply = shm::ask_for(*requester, request, limit);
-  if (!reply) return fail(reply.error().message), std::nullopt;
-  return std::move(*reply);
+  if (reply) return std::move(*reply);
+  const std::string& message = reply.error().message;
+  const std::string own = std::string(shm::request_name(request)) + ": ";
+  fail(command.empty() || !message.starts_with(own) ? message : command + ": " + message.substr(own.size()));
+  return std::nullopt;
 }
 
 std::optional<shm::Iface> Control::open(shm::IfaceType type, const std::string& name) {
@@ -222,7 +225,8 @@ void spawn(Control& control, const SpawnOptions& options) {
 }
 
 void attach(Control& control, const std::string& name, bool is_on) {
-  if (!name.empty()) return static_cast<void>(control.ask(shm::SetMotorsRequest{name, is_on}));
+  constexpr std::chrono::seconds limit(10);
+  if (!name.empty()) return static_cast<void>(control.ask(shm::SetMotorsRequest{name, is_on}, limit, is_on ? "attach" : "detach"));
   const auto reply = control.ask(shm::ListRequest{});
   if (!reply) return;
   const auto json = Json::parse(reply->text, nullptr, false);
