@@ -192,6 +192,24 @@ TEST(Joints, two_clients_command_each_its_own_joint_in_the_same_step) {
   for (std::size_t j = 0; j < 6; ++j) EXPECT_NEAR(rig.state(j).position, wanted[j], tenth_of_a_degree);
 }
 
+TEST(Joints, that_two_clients_take_from_each_other_again_and_again_have_one_line) {
+  Rig rig(arm_world(arm_model(ur5()), 0.001));
+  auto other = rig.f.open(shm::IfaceType::joints, "arm::joints");
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 10; ++i) {
+    rig.command(0, RTMSIM_JOINT_POSITION, 0.1);
+    rig.f.run(0.01);
+    ASSERT_TRUE(other.command(shm::CommandKind::joints, std::vector<double>{RTMSIM_JOINT_POSITION, 0.2, 0, 0}));
+    rig.f.run(0.01);
+  }
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr("joint joint1: "));
+  EXPECT_THAT(log, HasSubstr(" takes it from "));
+  EXPECT_EQ(log.find("takes it from"), log.rfind("takes it from")) << log;
+  rig.f.run(3);
+  EXPECT_NEAR(rig.state(0).position, 0.2, tenth_of_a_degree) << "the later command counts";
+}
+
 TEST(Joints, a_target_outside_of_the_limits_is_one_line_and_nothing_else_moves) {
   Rig rig(arm_world(arm_model(ur5()), 0.001));
   testing::internal::CaptureStderr();

@@ -113,7 +113,8 @@ void JointsDevice::order(Axis& axis, std::uint64_t owner, const JointOrder& orde
                        name_of(axes_[static_cast<std::size_t>(axis.listed.leader)])));
     return;
   }
-  if (axis.owner != 0 && axis.owner != owner && iface().holds_lease(axis.owner)) {
+  const std::pair<std::uint64_t, std::uint64_t> rivals = std::minmax({axis.owner, owner});
+  if (axis.owner != 0 && axis.owner != owner && iface().holds_lease(axis.owner) && std::exchange(axis.rivals, rivals) != rivals) {
     warn(fmt::format("joint {}: {} takes it from {}, which commanded it", name, iface().client_name(owner),
                      iface().client_name(axis.owner)));
   }

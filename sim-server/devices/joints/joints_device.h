@@ -51,7 +51,8 @@ class JointsDevice final : public Sensor {
     double strength = 1;      // of a fault
     bool was_within = true;   // of the limits, the last command; said once
     bool is_halted = false;
-    std::optional<Told> told{};  // while it was halted
+    std::optional<Told> told{};                        // while it was halted
+    std::pair<std::uint64_t, std::uint64_t> rivals{};  // two clients that took it from each other; said once
     std::optional<std::size_t> propeller{};
   };
   void measure(const Moment& moment) const override;
