@@ -16,6 +16,7 @@ void JointComponent::bindJoints() {
 }
 
 void JointComponent::attached(const Device&) {
+  refusals_.clear();
   choose(false);
   shared_.lock()->is_active = true;
 }
@@ -48,7 +49,15 @@ void JointComponent::choose(bool has_sample) {
 }
 
 void JointComponent::note(const base::Result<void>& done) {
-  if (!done) RTC_WARN(("%s", done.error().message.c_str()));
+  constexpr std::int64_t quiet_ns = 1'000'000'000;
+  constexpr std::size_t most = 256;
+  if (done) return;
+  const std::string& message = done.error().message;
+  const std::string about = message.substr(0, message.find(", got "));
+  if (refusals_.size() >= most) refusals_.clear();
+  const auto [found, is_new] = refusals_.try_emplace(about, now_ns_);
+  const std::int64_t since = now_ns_ - std::exchange(found->second, now_ns_);
+  if (is_new || since < 0 || since > quiet_ns) RTC_WARN(("%s", message.c_str()));
 }
 
 bool JointComponent::post(const std::string& what, std::function<void()> work) {
@@ -72,6 +81,7 @@ RTC::ReturnCode_t JointComponent::onExecute(RTC::UniqueId) {
   if (iface == nullptr) return RTC::RTC_OK;
   if (chosen_attachment_ != link().attachments() || chosen_names_ != all_names(names_)) choose(true);
   part_.read(*iface);
+  now_ns_ = iface->sample<shm::Stamp>().sim_time_ns;
   const auto works = std::exchange(shared_.lock()->works, {});
   for (const auto& work : works) work();
   read_ports();

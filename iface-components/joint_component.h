@@ -6,7 +6,9 @@
 #include <base/guarded.h>
 #include <shm/joint_part.h>
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "iface_component.h"
@@ -32,7 +34,8 @@ class JointComponent : public IfaceComponent {
   void detaching() override;
   JointPart& part() { return part_; }
   const JointPart& part() const { return part_; }
-  // A line for the log when something was refused.
+  // A line for the log when something was refused. What is refused again and again has no second line, whatever its value, until it has
+  // not been refused for a second of simulated time.
   void note(const base::Result<void>& done);
 
   // The parameter `joints`, and what a component adds to it.
@@ -53,6 +56,8 @@ class JointComponent : public IfaceComponent {
   std::string names_, chosen_names_;
   JointPart part_;
   std::uint64_t chosen_attachment_ = 0;
+  std::int64_t now_ns_ = 0;                                    // of the last sample
+  std::map<std::string, std::int64_t, std::less<>> refusals_;  // when they came last
   base::Guarded<Shared, base::Rank::details> shared_;
 };
 

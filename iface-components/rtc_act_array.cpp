@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "conversions.h"
 
@@ -85,7 +86,8 @@ RTC::ReturnCode_t RTCActArray::onInitialize() {
 
 void RTCActArray::for_joint(std::uint16_t index, const std::function<base::Result<void>(std::size_t)>& work) {
   if (index != all_joints && index >= part().size()) {
-    RTC_WARN(("there is no joint %u, only 0 to %zu; the command is ignored", index, part().size() - 1));
+    const std::string known = part().size() > 0 ? "only 0 to " + std::to_string(part().size() - 1) : "nor any other";
+    note(base::Error{"there is no joint " + std::to_string(index) + ", " + known + "; the command is ignored"});
     return;
   }
   for (std::size_t i = index == all_joints ? 0 : index; i < part().size() && (index == all_joints || i == index); ++i) note(work(i));
@@ -93,7 +95,7 @@ void RTCActArray::for_joint(std::uint16_t index, const std::function<base::Resul
 
 bool RTCActArray::may_move() {
   if (is_powered_ && !has_brakes_on_) return true;
-  RTC_WARN(("%s; the command is ignored", is_powered_ ? "the brakes are on" : "the power is off"));
+  note(base::Error{std::string(is_powered_ ? "the brakes are on" : "the power is off") + "; the command is ignored"});
   return false;
 }
 

@@ -327,14 +327,28 @@ void RTCRobotHardware::command(std::size_t i, bool has_q, bool has_dq, bool has_
   const bool is_torque = mode == Service::TORQUE || (!mode && !positions_.has_come && !velocities_.has_come);
   const bool is_velocity = mode == Service::VELOCITY || (!mode && !positions_.has_come && velocities_.has_come);
   if (is_free) return;
+  const shm::Joint& joint = part().joint(i);
+  const auto effort = [&] { return limited(efforts_, i, -joint.max_effort, joint.max_effort); };
+  const auto velocity = [&] { return limited(velocities_, i, -joint.max_velocity, joint.max_velocity); };
   if (is_torque) {
-    if (has_tau) note(part().push(i, value(efforts_, i)));
+    if (const auto wanted = has_tau ? effort() : std::nullopt) note(part().push(i, *wanted));
   } else if (is_velocity) {
-    if (has_dq) note(part().turn(i, value(velocities_, i)));
+    if (const auto wanted = has_dq ? velocity() : std::nullopt) note(part().turn(i, *wanted));
   } else if (positions_.has_come && (has_q || has_dq || (has_tau && !is_position))) {
-    const double effort = is_position ? 0 : value(efforts_, i);
-    note(part().follow(i, value(positions_, i), value(velocities_, i), effort));
+    const auto position = limited(positions_, i, joint.lower, joint.upper);
+    if (position) note(part().follow(i, *position, velocity().value_or(0), is_position ? 0 : effort().value_or(0)));
   }
+}
+
+std::optional<double> RTCRobotHardware::limited(const Reference& reference, std::size_t i, double low, double high) {
+  const double wanted = value(reference, i);
+  const bool is_number = std::isfinite(wanted);
+  if (is_number && wanted >= low && wanted <= high) return wanted;
+  const std::string what = std::string(reference.name) + " of joint " + name_of(part().joint(i));
+  const std::string limits = base::format_number(low) + " and " + base::format_number(high);
+  note(base::Error{what + " must be within " + limits + ", got " + (is_number ? base::format_number(wanted) : "no number") + "; " +
+                   (is_number ? "the nearest limit counts" : "it is ignored")});
+  return is_number ? std::optional(std::clamp(wanted, low, high)) : std::nullopt;
 }
 
 void RTCRobotHardware::step() {

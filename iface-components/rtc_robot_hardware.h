@@ -104,6 +104,8 @@ class RTCRobotHardware : public iface::JointComponent {
   bool read(Reference& reference);
   void command(std::size_t i, bool has_q, bool has_dq, bool has_tau);
   double value(const Reference& reference, std::size_t i) const;
+  // Of two limits the nearest counts, as a motor saturates; nothing when the value is no number. One line for either.
+  std::optional<double> limited(const Reference& reference, std::size_t i, double low, double high);
   void fit();
   void apply(std::size_t i);
 

@@ -85,7 +85,8 @@ def gains():
     now = joints()
     assert (now["elbow"]["gains"]["p"], now["elbow"]["gains"]["d"]) == (900, 30) and now["elbow"]["gains"]["from"].endswith("named.yaml:4"), now["elbow"]
     assert "derived" in now["waist"]["gains"]["from"] and "named.yaml:4" in rig.simctl("joints", "arm")
-    for path, line in ((file("other.yaml", "gazebo_ros_control/pid_gains: {nose: {p: 1}}\n"), "they are of no joint of the world"), (file("bad.yaml", "a: [\n"), "is no YAML: line"),
+    for path, line in ((file("other.yaml", "gazebo_ros_control/pid_gains: {nose: {p: 1}}\n"), "they are of no joint of the world"),
+                       (file("wrong.yaml", "pid_gains: {elbow: {p: fast}}\n"), "none of them can be used"), (file("bad.yaml", "a: [\n"), "is no YAML: line"),
                        (f"{rig.work}/none.yaml", "no such file")):
         done = subprocess.run([f"{rig.bin_dir}/sim-server", f"{rig.source}/worlds/arm.sdf", "--check", "-v", "0", "--gains", path], capture_output=True, text=True, timeout=60)
         assert done.returncode == 1 and line in done.stderr and done.stderr.count("sim-server: gains ") == 1, (path, done.stderr)
@@ -224,6 +225,11 @@ def robot_hardware():
     call("torque_mode")
     reference("tauRef", 0, 0, 0, 0, 0, 0.02)
     await_("a pushed twist", lambda: joints()["twist"]["mode"] == "effort" and joints()["shoulder"]["mode"] == "position")
+    # A controller that asks for more than the motor has gets what it has, and one line.
+    for effort in (500, 501, 502):
+        reference("tauRef", 0, 0, 0, 0, 0, effort)
+    await_("a motor at its limit", lambda: abs(joints()["twist"]["effort"]) > 19.9)
+    assert log().count("tauRef of joint twist must be within -20 and 20, got 500; the nearest limit counts") == 1 and log().count("tauRef of joint twist") <= 3, log()
     call("free_mode")
     await_("a free twist", lambda: joints()["twist"]["mode"] == "free")
     call("position_mode")
@@ -276,8 +282,8 @@ def attach():
     assert float(rig.simctl("pose", "green_box").split()[2]) > 0.85
     rig.simctl("detach", "arm::gripper")
     assert shown() == [{"name": "arm::gripper", "on": False, "holds": ""}], shown()
-    refused("arm::gripper", "attach", "arm::griper")
-    refused("no iface nobody", "detach", "nobody")
+    refused("simctl: attach: no iface, gripper or detachable joint arm::griper", "attach", "arm::griper")
+    refused("simctl: detach: no iface nobody", "detach", "nobody")
 
     with open(f"{rig.work}/gains.yaml", "w") as out:
         out.write("pid_gains:\n  elbow: {p: 700, d: 20}\n")
