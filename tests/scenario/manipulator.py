@@ -2,6 +2,7 @@
 import json
 import math
 import re
+import subprocess
 import sys
 
 from rig import Rig, await_
@@ -259,6 +260,9 @@ def low_level():
     await_("the position", lambda: abs(joints()["waist"]["position"] - 0.3) < 0.002 and all(one["status"] == "idle" for one in joints().values()))
     command(1, 2)
     await_("a refusal", lambda: "command: expected 6 joints, got 2; it is ignored" in log())
+    # The arm takes its joint back from another client, which says so.
+    done = subprocess.run([f"{rig.bin_dir}/simctl", "-s", str(rig.server_id), "joints", "arm", "waist=1.5"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and "joint waist: has mode position and target 0.3, not position 1.5: another client commands it" in done.stderr, done.stderr
     near(ok("getFeedbackPosJoint"), (0.3, *start[1:]))
     assert state() == servo
 

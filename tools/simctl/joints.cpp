@@ -104,14 +104,32 @@ std::optional<std::vector<double>> commands_of(Control& control, const shm::Ifac
   return values;
 }
 
-// All that were commanded to a position stand there, or push against something.
+// All that were commanded to a position stand there, or push against something. Those that have another mode now take no command (they
+// follow another joint), or are commanded by somebody else.
 bool have_arrived(const shm::Iface& iface, const std::vector<double>& values) {
   const auto states = states_of(iface);
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (values[RTMSIM_JOINT_VALUES * i] == 0) continue;
-    if (states[i].mode != RTMSIM_JOINT_POSITION || states[i].status == RTMSIM_JOINT_MOVING) return false;
+    if (values[RTMSIM_JOINT_VALUES * i] != 0 && states[i].mode == RTMSIM_JOINT_POSITION && states[i].status == RTMSIM_JOINT_MOVING)
+      return false;
   }
   return true;
+}
+
+// A joint that has another target than it was given, in words; empty: none.
+std::string foreign_target(const shm::Iface& iface, const std::vector<double>& values) {
+  constexpr double nearly = 0.01;  // [rad or m]
+  const auto joints = joints_of(iface);
+  const auto states = states_of(iface);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (values[RTMSIM_JOINT_VALUES * i] == 0 || states[i].mode == RTMSIM_JOINT_NONE) continue;
+    const double wanted = std::max(joints[i].lower, std::min(values[RTMSIM_JOINT_VALUES * i + 1], joints[i].upper));
+    const bool is_own = states[i].mode == RTMSIM_JOINT_POSITION && std::abs(states[i].target - wanted) < nearly;
+    if (is_own) continue;
+    return "joint " + name_of(joints[i]) + ": has mode " + word_of(modes, states[i].mode) + " and target " +
+           base::format_number(states[i].target) + ", not position " + base::format_number(wanted) +
+           ": another client commands it, or a fault halts it";
+  }
+  return {};
 }
 
 // The simulator has taken the command to brake: a sample shows it. A command of a client that leaves before that is dropped.
@@ -146,7 +164,10 @@ void command(Control& control, shm::Iface& iface, const JointOptions& options) {
     if (iface.status() != shm::Status::live)
       return control.fail("iface " + iface.name() + ": its model was deleted, which ends the command");
   }
-  if (iface.read()) show(control, iface);
+  if (!iface.read()) return;
+  show(control, iface);
+  if (options.mode != "position" || options.seconds > 0 || is_interrupted()) return;
+  if (const std::string lost = foreign_target(iface, *values); !lost.empty()) control.fail(lost);
 }
 
 }  // namespace
