@@ -3,17 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <thread>
 #include <vector>
 
 #include "base/guarded.h"
-#include "shm/segment.h"
+#include "common/watched_ifaces.h"
 
 namespace gateway {
-
-using SharedSegment = std::shared_ptr<const shm::Segment>;
 
 class Alarm {
  public:
@@ -30,12 +27,7 @@ class Alarm {
   void clear();
 
  private:
-  struct Watched {
-    SharedSegment segment;
-    std::uint32_t seen;  // value of the wake word that the loop has been told of
-  };
   void run();
-  void sleep(const std::vector<Watched>& watched, std::uint32_t control) const;
 
   int descriptor_ = -1;
   std::uint32_t control_ = 0;  // [atomic] futex of this process: changes when `next_` does

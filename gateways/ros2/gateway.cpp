@@ -1,12 +1,10 @@
 #include "gateway.h"
 
 #include <signal.h>
-#include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <set>
 
@@ -19,11 +17,9 @@
 namespace ros2 {
 namespace {
 
-enum Event : std::uint64_t { signal_event, dds_event, alarm_event, errand_event, turn_event };
-
 constexpr std::chrono::milliseconds look_period{200}, resend_period{50}, tend_period{10};
 constexpr std::chrono::seconds report_period{5}, paused_clock_period{1};
-constexpr int idle_wait = 20;  // [ms]
+constexpr std::chrono::milliseconds idle_wait{20};
 
 std::set<std::string> robots_in(const Listed& listed) {
   std::set<std::string> robots;
@@ -39,7 +35,6 @@ std::set<std::string> robots_in(const Listed& listed) {
 
 Gateway::Gateway(Options options)
     : options_(std::move(options)),
-      epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       errands_(options_.server_id),
       world_(
           options_.server_id, errands_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
@@ -53,7 +48,6 @@ Gateway::~Gateway() {
   graph_.reset();
   participant_.reset();
   if (signals_ >= 0) ::close(signals_);
-  if (epoll_ >= 0) ::close(epoll_);
 }
 
 base::Result<void> Gateway::open() {
@@ -63,6 +57,7 @@ base::Result<void> Gateway::open() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  options_.dds.on_news = [this] { bell_.ring(); };
   auto participant = Participant::open(options_.dds);
   if (!participant) return participant.error();
   participant_ = std::move(*participant);
@@ -79,19 +74,10 @@ base::Result<void> Gateway::open() {
                                             [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
   if (options_.is_lockstep) {
     const double rate = options_.clock_rate > 0 ? options_.clock_rate : 1000;
-    turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)));
+    turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)),
+                                     [this] { bell_.ring(); });
   }
-  const std::array<std::pair<int, Event>, 5> watched = {{{signals_, signal_event},
-                                                         {participant_->descriptor(), dds_event},
-                                                         {alarm_.descriptor(), alarm_event},
-                                                         {errands_.descriptor(), errand_event},
-                                                         {turns_ ? turns_->descriptor() : -1, turn_event}}};
-  for (const auto& [descriptor, event] : watched) {
-    epoll_event one{};
-    one.events = EPOLLIN;
-    one.data.u64 = event;
-    if (descriptor >= 0 && ::epoll_ctl(epoll_, EPOLL_CTL_ADD, descriptor, &one) != 0) return base::Error{"no file descriptors left"};
-  }
+  if (!bell_.ring_for(signals_) || !bell_.ring_for(errands_.descriptor())) return base::Error{"no file descriptors left"};
   return {};
 }
 
@@ -106,19 +92,21 @@ base::Result<void> Gateway::run() {
 }
 
 void Gateway::turn_loop() {
-  std::array<epoll_event, 8> events;
-  const int count = ::epoll_wait(epoll_, events.data(), events.size(), idle_wait);
-  for (int i = 0; i < count; ++i) handle(events[static_cast<std::size_t>(i)].data.u64);
+  const std::uint32_t rings = bell_.rings();
+  if (ifaces_.take_news()) take_samples();
+  if (rings != answered_) answer_bell();
+  answered_ = rings;
   const auto now = std::chrono::steady_clock::now();
   if (now >= next_tend_) tend(now);
   if (are_sources_due_) choose_sources();
   tend_tick(now);
+  bell_.sleep(ifaces_, rings, idle_wait);
 }
 
 void Gateway::tend(Time now) {
   next_tend_ = now + tend_period;
-  node_->tend();
-  for (const auto& robot : robots_) robot->node().tend();
+  node_->tend(now);
+  for (const auto& robot : robots_) robot->node().tend(now);
   graph_->tend(now);
   if (now >= next_look_) {
     next_look_ = now + look_period;
@@ -138,7 +126,7 @@ void Gateway::choose_sources() {
   bool has_changed = false;
   for (const auto& robot : robots_) has_changed = robot->choose_sources() || has_changed;
   std::vector<SharedSegment> watched;
-  if (world_.clock()) watched.push_back(world_.clock()->segment());
+  if (world_.clock() && clock_ != nullptr && !clock_->readers().empty()) watched.push_back(world_.clock()->segment());
   for (const auto& source : world_.sources()) {
     if (source->is_read()) watched.push_back(source->segment());
   }
@@ -146,8 +134,8 @@ void Gateway::choose_sources() {
   if (turns_) watched.clear();  // the ticks say when there is something new
   if (has_changed && !turns_ && is_paused()) errands_.post(shm::ShowRequest{}, [](const base::Result<shm::Reply>&) {});
   if (!has_changed && watched == watched_) return;
-  watched_ = watched;
-  alarm_.watch(std::move(watched));
+  ifaces_.replace(watched);
+  watched_ = std::move(watched);
 }
 
 bool Gateway::is_paused() const {
@@ -166,22 +154,13 @@ void Gateway::watch_other_clocks() {
   is_clock_foreign_ = is_foreign;
 }
 
-void Gateway::handle(std::uint64_t what) {
-  switch (what) {
-    case signal_event:
-      is_over_ = true;
-      return;
-    case dds_event:
-      are_sources_due_ = true;
-      return participant_->deliver();
-    case alarm_event:
-      alarm_.clear();
-      return take_samples();
-    case errand_event:
-      return errands_.deliver();
-    case turn_event:
-      if (const auto tick = turns_->tick(); tick && !tick_) begin_tick(*tick);
-  }
+void Gateway::answer_bell() {
+  signalfd_siginfo signal{};
+  if (::read(signals_, &signal, sizeof signal) == sizeof signal) is_over_ = true;
+  if (participant_->deliver()) are_sources_due_ = true;
+  errands_.deliver();
+  if (!turns_ || tick_) return;
+  if (const auto tick = turns_->tick()) begin_tick(*tick);
 }
 
 // ---- the world ----
@@ -304,17 +283,37 @@ void Gateway::tend_tick(Time now) {
 void Gateway::report_losses() {
   std::vector<const Node*> nodes = {node_.get()};
   for (const auto& robot : robots_) nodes.push_back(&robot->node());
+  std::map<std::string, std::uint64_t> damaged;  // robots may share a node
   for (const Node* node : nodes) {
-    for (const auto& writer : node->writers()) {
-      auto& reported = lost_[writer->settings().topic];
-      if (writer->lost() <= reported) continue;
-      std::vector<std::string> readers;
-      for (const Guid& reader : writer->readers()) readers.push_back(graph_->node_of(reader));
-      base::log(base::Level::warn, "ros2-gateway", "{}: {} samples were not confirmed in time by every reader ({})",
-                writer->settings().topic.substr(2), writer->lost() - reported, base::join(readers, ", "));
-      reported = writer->lost();
-    }
+    for (const auto& writer : node->writers()) report_lost(*writer);
+    damaged[node->name().full()] += node->damaged();
   }
+  for (const auto& [node, count] : damaged) {
+    if (const auto more = growth(node, count); more > 0)
+      base::log(base::Level::warn, "ros2-gateway",
+                "node {}: {} messages or requests could not be read: they are no plain CDR of their types", node, more);
+  }
+  if (const auto more = growth("", participant_->refused()); more > 0)
+    base::log(base::Level::warn, "ros2-gateway", "{} received samples were thrown away: too many came at once", more);
+}
+
+void Gateway::report_lost(const Writer& writer) {
+  const auto more = growth(writer.settings().topic, writer.lost());
+  if (more == 0) return;
+  std::set<std::string> readers;
+  for (const Guid& reader : writer.readers()) readers.insert(graph_->node_of(reader));
+  base::log(base::Level::warn, "ros2-gateway",
+            "{}: {} samples were not confirmed in time by every reader ({}). The longest write took {:.2f} ms",
+            writer.settings().topic.substr(2), more, base::join({readers.begin(), readers.end()}, ", "),
+            std::chrono::duration<double, std::milli>(writer.longest_write()).count());
+}
+
+// Of a count since the last report. A robot that is made again counts from 0.
+std::uint64_t Gateway::growth(const std::string& what, std::uint64_t count) {
+  auto& before = reported_[what];
+  const std::uint64_t more = count >= before ? count - before : count;
+  before = count;
+  return more;
 }
 
 }  // namespace ros2

@@ -1,4 +1,4 @@
-// The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, common/alarm.h,
+// The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, bell.h,
 // common/errands.h and turns.h.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "common/alarm.h"
+#include "bell.h"
 #include "graph.h"
 #include "naming.h"
 #include "robot.h"
@@ -52,7 +52,7 @@ class Gateway {
 
   base::Result<void> open();
   void turn_loop();
-  void handle(std::uint64_t what);
+  void answer_bell();
   void arrange(const Listed& listed);
   void lose();
   void send_static_transforms();
@@ -61,6 +61,8 @@ class Gateway {
   void begin_tick(const shm::Tick& tick);
   void tend_tick(Time now);
   void report_losses();
+  void report_lost(const Writer& writer);
+  std::uint64_t growth(const std::string& what, std::uint64_t count);
   void tend(Time now);
   void choose_sources();
   void watch_other_clocks();
@@ -68,9 +70,10 @@ class Gateway {
   std::vector<std::string> command_topics() const;
 
   Options options_;
-  int epoll_ = -1, signals_ = -1;
+  int signals_ = -1;
   Errands errands_;
-  gateway::Alarm alarm_;
+  Bell bell_;
+  gateway::WatchedIfaces ifaces_;
   World world_;
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Graph> graph_;
@@ -87,10 +90,11 @@ class Gateway {
   std::optional<shm::Tick> tick_;
   Time tick_start_{}, clock_sent_{};
   std::int64_t clock_ns_ = -1;
+  std::uint32_t answered_ = 0;  // rings of the bell
   std::uint32_t resets_ = 0;
   bool are_sources_due_ = false;
   bool is_clock_foreign_ = false;
-  std::map<std::string, std::uint64_t> lost_;  // by topic: as reported
+  std::map<std::string, std::uint64_t> reported_;  // by topic or node: samples that were lost or could not be read
   Time next_look_{}, next_report_{}, next_tend_{};
   bool is_over_ = false;
   std::optional<base::Error> failed_;

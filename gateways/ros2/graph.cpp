@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* graph_topic = "ros_discovery_info";
 constexpr std::chrono::milliseconds between_messages{50};
-constexpr std::chrono::seconds name_wait{1};  // until a peer has told of its nodes
-constexpr std::size_t max_peers = 100'000;
+constexpr std::chrono::seconds name_wait{1};                     // until a peer has told of its nodes
+constexpr std::size_t max_peers = 100'000, max_names = 200'000;  // of endpoints, of all participants
 
 ros::Gid gid16(const Guid& guid) { return {guid}; }
 ros::HumbleGid gid24(const Guid& guid) {
@@ -31,9 +31,11 @@ Guid first_16(const auto& data) {
   return guid;
 }
 
+// At most so many.
 template <class Message>
-void add_names(const Message& message, std::map<Guid, std::string>& names) {
+void add_names(const Message& message, std::size_t most, std::map<Guid, std::string>& names) {
   for (const auto& node : message.node_entities_info_seq) {
+    if (names.size() + node.reader_gid_seq.size() + node.writer_gid_seq.size() > most) return;
     const std::string name = NodeName{node.node_namespace, node.node_name}.full();
     for (const auto& gid : node.reader_gid_seq) names[first_16(gid.data)] = name;
     for (const auto& gid : node.writer_gid_seq) names[first_16(gid.data)] = name;
@@ -141,6 +143,11 @@ const Peer* Graph::peer(const Guid& endpoint) const {
   return found == peers_.end() ? nullptr : &found->second;
 }
 
+bool Graph::is_reliable(const Guid& writer) const {
+  const Peer* from = peer(writer);
+  return from != nullptr && from->is_reliable;
+}
+
 std::vector<const Peer*> Graph::peers_of(const std::string& topic) const {
   std::vector<const Peer*> found;
   for (const auto& [guid, peer] : peers_) {
@@ -216,15 +223,35 @@ void Graph::judge_fit(const Peer& peer) {
 }
 
 void Graph::learn(const Received& message) {
+  named_.erase(message.identity.writer);
+  std::size_t room = max_names;
+  for (const auto& [writer, names] : named_) room -= std::min(room, names.size());
   std::map<Guid, std::string> names;
   const Peer* from = peer(message.identity.writer);
   const bool is_humble = from != nullptr ? !value_in(from->user_data, "typehash") : family_ == Family::humble;
   if (is_humble) {
-    if (const auto info = ros::decode<ros::HumbleParticipantEntitiesInfo>(message.bytes)) add_names(*info, names);
+    if (const auto info = ros::decode<ros::HumbleParticipantEntitiesInfo>(message.bytes)) add_names(*info, room, names);
   } else if (const auto info = ros::decode<ros::ParticipantEntitiesInfo>(message.bytes)) {
-    add_names(*info, names);
+    add_names(*info, room, names);
   }
-  named_[message.identity.writer] = std::move(names);
+  if (!names.empty()) named_[message.identity.writer] = std::move(names);
+}
+
+base::Result<std::vector<std::unique_ptr<Reader>>> make_two_readers(Participant& participant, Graph& graph, const NodeName& node,
+                                                                    EndpointSettings topic,
+                                                                    const std::function<void(Received&)>& on_sample) {
+  std::vector<std::unique_ptr<Reader>> readers;
+  for (const bool is_reliable : {true, false}) {
+    topic.is_reliable = is_reliable;
+    auto made = participant.make_reader(topic, [&graph, on_sample, is_reliable](Received& received) {
+      if (is_reliable || !graph.is_reliable(received.identity.writer)) on_sample(received);
+    });
+    if (!made) return made.error();
+    readers.push_back(std::move(*made));
+  }
+  // Without the other one, the reliable reader would be reported as one that does not fit.
+  for (const std::size_t i : {1, 0}) graph.add_endpoint(node, readers[i]->guid(), readers[i]->settings(), false);
+  return readers;
 }
 
 }  // namespace ros2

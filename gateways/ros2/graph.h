@@ -52,6 +52,8 @@ class Graph {
   // "/slam_toolbox" of an endpoint; "an unknown node" where nobody says.
   std::string node_of(const Guid& endpoint) const;
   const Peer* peer(const Guid& endpoint) const;
+  // Of a writer, as it says itself.
+  bool is_reliable(const Guid& writer) const;
   // Peers' endpoints of a topic, as on the wire.
   std::vector<const Peer*> peers_of(const std::string& topic) const;
 
@@ -93,5 +95,11 @@ class Graph {
   bool has_changed_ = true;
   Time told_{};
 };
+
+// A reliable reader, and one of best effort that receives what the reliable one does not: so the topic is heard from all writers. The
+// reliable one is first in the discovery data, so that a peer that sends as soon as it has a reader has that one.
+base::Result<std::vector<std::unique_ptr<Reader>>> make_two_readers(Participant& participant, Graph& graph, const NodeName& node,
+                                                                    EndpointSettings topic,
+                                                                    const std::function<void(Received&)>& on_sample);
 
 }  // namespace ros2

@@ -1,5 +1,7 @@
 #include "node.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/log.h"
@@ -28,15 +30,10 @@ Writer* Node::add_writer(EndpointSettings settings, std::function<void()> on_mat
   return writers_.back().get();
 }
 
-Reader* Node::add_reader(EndpointSettings settings, std::function<void(Received&)> on_sample) {
-  auto reader = participant_.make_reader(std::move(settings), std::move(on_sample));
-  if (!reader) {
-    base::log(base::Level::error, participant_.settings().log_name, "{}", reader.error().message);
-    return nullptr;
-  }
-  graph_.add_endpoint(name_, (*reader)->guid(), (*reader)->settings(), false);
-  readers_.push_back(std::move(*reader));
-  return readers_.back().get();
+void Node::add_readers(EndpointSettings settings, const std::function<void(const Received&)>& take) {
+  auto readers = make_two_readers(participant_, graph_, name_, std::move(settings), [take](Received& received) { take(received); });
+  if (!readers) return base::log(base::Level::error, participant_.settings().log_name, "{}", readers.error().message);
+  std::ranges::move(*readers, std::back_inserter(readers_));
 }
 
 void Node::add_service(const std::string& name, ServiceTypes types, OnRequest on_request) {
@@ -48,8 +45,8 @@ void Node::add_service(const std::string& name, ServiceTypes types, OnRequest on
   services_.push_back(std::move(*service));
 }
 
-void Node::tend() {
-  for (const auto& service : services_) service->tend();
+void Node::tend(std::chrono::steady_clock::time_point now) {
+  for (const auto& service : services_) service->tend(now);
 }
 
 std::uint64_t Node::damaged() const {

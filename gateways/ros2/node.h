@@ -2,6 +2,7 @@
 // endpoint is left out. One thread at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -45,17 +46,17 @@ class Node {
     return add_writer({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>(), qos.is_transient, qos.depth, is_large},
                       std::move(on_match));
   }
-  // Messages that cannot be read are counted and left out.
+  // From reliable and from best effort writers. Messages that cannot be read are counted and left out.
   template <ros::Message T>
-  Reader* subscribe(const std::string& topic, std::function<void(const T&)> on_message) {
-    EndpointSettings settings{topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>()};
-    return add_reader(std::move(settings), [this, on_message = std::move(on_message)](const Received& received) {
+  void subscribe(const std::string& topic, std::function<void(const T&)> on_message) {
+    const auto take = [this, on_message = std::move(on_message)](const Received& received) {
       if (const auto message = ros::decode<T>(received.bytes)) {
         on_message(*message);
       } else {
         ++damaged_;
       }
-    });
+    };
+    add_readers({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>()}, take);
   }
   // `Request2`: what newer clients send under the same name; told apart by the type hash of the client. `on_request` receives either, and
   // the function that sends the reply, now or later.
@@ -103,7 +104,7 @@ class Node {
                 });
   }
   // To be called some times a second while a service is called: sends replies whose client was not matched.
-  void tend();
+  void tend(std::chrono::steady_clock::time_point now);
   // Messages and requests that could not be read.
   std::uint64_t damaged() const;
   const std::vector<std::unique_ptr<Writer>>& writers() const { return writers_; }
@@ -118,7 +119,7 @@ class Node {
     return {type_on_wire(Request::name), type_on_wire(Response::name), ros::TypeHash::of<Request>(), ros::TypeHash::of<Response>()};
   }
   Writer* add_writer(EndpointSettings settings, std::function<void()> on_match);
-  Reader* add_reader(EndpointSettings settings, std::function<void(Received&)> on_sample);
+  void add_readers(EndpointSettings settings, const std::function<void(const Received&)>& take);
   void add_service(const std::string& service, ServiceTypes types, OnRequest on_request);
 
   Participant& participant_;

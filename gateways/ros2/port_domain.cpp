@@ -72,15 +72,18 @@ class PortDomain {
     if (writer) graph_->add_endpoint(node_, (*writer)->guid(), topic, true);
     return writer;
   }
-  // Beside a reliable reader, one that is not leaves out what the reliable one receives.
-  base::Result<std::unique_ptr<Reader>> add_reader(const EndpointSettings& topic, std::shared_ptr<Sink> sink, bool is_beside) {
+  // Of the topic as it is, or of all its writers.
+  base::Result<std::vector<std::unique_ptr<Reader>>> add_readers(const EndpointSettings& topic, bool takes_all,
+                                                                 const std::shared_ptr<Sink>& sink) {
     const auto mine = turn_.take();
-    auto reader = participant_->make_reader(topic, [this, sink = std::move(sink), is_beside](Received& received) {
-      const Peer* from = is_beside ? graph_->peer(received.identity.writer) : nullptr;
-      if (from == nullptr || !from->is_reliable) arrived_.emplace_back(sink, std::move(received.bytes));
-    });
-    if (reader) graph_->add_endpoint(node_, (*reader)->guid(), topic, false);
-    return reader;
+    const auto on_sample = [this, sink](Received& received) { arrived_.emplace_back(sink, std::move(received.bytes)); };
+    if (takes_all) return make_two_readers(*participant_, *graph_, node_, topic, on_sample);
+    auto reader = participant_->make_reader(topic, on_sample);
+    if (!reader) return reader.error();
+    graph_->add_endpoint(node_, (*reader)->guid(), topic, false);
+    std::vector<std::unique_ptr<Reader>> readers;
+    readers.push_back(std::move(*reader));
+    return readers;
   }
   template <class End>
   void remove(std::unique_ptr<End> end) {
@@ -162,16 +165,11 @@ class PortPublication final : public Publication {
 
 class PortSubscription final : public Subscription {
  public:
-  PortSubscription(std::shared_ptr<PortDomain> domain, std::shared_ptr<Sink> sink) : domain_(std::move(domain)), sink_(std::move(sink)) {}
+  PortSubscription(std::shared_ptr<PortDomain> domain, std::shared_ptr<Sink> sink, std::vector<std::unique_ptr<Reader>> readers)
+      : domain_(std::move(domain)), readers_(std::move(readers)), sink_(std::move(sink)) {}
   ~PortSubscription() override {
     for (auto& reader : readers_) domain_->remove(std::move(reader));
     sink_->close();
-  }
-  base::Result<void> add(const EndpointSettings& topic, bool is_beside) {
-    auto reader = domain_->add_reader(topic, sink_, is_beside);
-    if (!reader) return reader.error();
-    readers_.push_back(std::move(*reader));
-    return {};
   }
 
  private:
@@ -194,15 +192,10 @@ base::Result<std::unique_ptr<Subscription>> subscribe_port(const PortDomainSetti
                                                            bool takes_all, OnBytes receiver) {
   auto domain = PortDomain::of(settings);
   if (!domain) return domain.error();
-  auto made = std::make_unique<PortSubscription>(*domain, std::make_shared<Sink>(std::move(receiver)));
-  // The one of best effort comes first: the reliable one would be reported as one that does not fit.
-  if (takes_all) {
-    EndpointSettings other = topic;
-    other.is_reliable = false;
-    if (auto done = made->add(other, true); !done) return done.error();
-  }
-  if (auto done = made->add(topic, false); !done) return done.error();
-  return std::unique_ptr<Subscription>(std::move(made));
+  auto sink = std::make_shared<Sink>(std::move(receiver));
+  auto readers = (*domain)->add_readers(topic, takes_all, sink);
+  if (!readers) return readers.error();
+  return std::unique_ptr<Subscription>(std::make_unique<PortSubscription>(*domain, std::move(sink), std::move(*readers)));
 }
 
 }  // namespace ros2

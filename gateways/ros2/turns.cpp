@@ -1,8 +1,6 @@
 #include "turns.h"
 
-#include <errno.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
+#include <utility>
 
 #include "base/log.h"
 
@@ -11,24 +9,15 @@ namespace {
 constexpr std::chrono::milliseconds wait_slice{100};
 }
 
-Turns::Turns(std::uint32_t server_id, std::chrono::nanoseconds period)
-    : server_id_(server_id),
-      period_(period),
-      descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+Turns::Turns(std::uint32_t server_id, std::chrono::nanoseconds period, std::function<void()> on_tick)
+    : server_id_(server_id), period_(period), on_tick_(std::move(on_tick)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Turns::~Turns() {
   thread_.request_stop();
   thread_.join();
-  ::close(descriptor_);
 }
 
-std::optional<shm::Tick> Turns::tick() {
-  std::uint64_t count = 0;
-  while (::read(descriptor_, &count, sizeof count) < 0 && errno == EINTR) {
-  }
-  return state_.lock()->tick;
-}
+std::optional<shm::Tick> Turns::tick() { return state_.lock()->tick; }
 
 void Turns::finish() {
   state_.lock()->tick.reset();
@@ -37,9 +26,7 @@ void Turns::finish() {
 
 void Turns::hand_over(const shm::Tick& tick, const std::stop_token& stop) {
   state_.lock()->tick = tick;
-  const std::uint64_t one = 1;
-  while (::write(descriptor_, &one, sizeof one) < 0 && errno == EINTR) {
-  }
+  on_tick_();
   auto state = state_.lock();
   state.wait(changed_, stop, [&] { return !state->tick; });
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <thread>
 
@@ -15,13 +16,12 @@ namespace ros2 {
 
 class Turns {
  public:
-  Turns(std::uint32_t server_id, std::chrono::nanoseconds period);
+  // `on_tick` is called by the thread when a tick begins.
+  Turns(std::uint32_t server_id, std::chrono::nanoseconds period, std::function<void()> on_tick);
   ~Turns();
   Turns(const Turns&) = delete;
   Turns& operator=(const Turns&) = delete;
 
-  // Readable when a tick begins; an eventfd.
-  int descriptor() const { return descriptor_; }
   // The tick that runs and waits for finish(); nothing between ticks.
   std::optional<shm::Tick> tick();
   void finish();
@@ -35,7 +35,7 @@ class Turns {
 
   const std::uint32_t server_id_;
   const std::chrono::nanoseconds period_;
-  int descriptor_ = -1;
+  const std::function<void()> on_tick_;
   base::Guarded<State, base::Rank::worker> state_;
   std::condition_variable_any changed_;
   std::jthread thread_;  // last: it uses the others

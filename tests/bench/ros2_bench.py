@@ -7,6 +7,7 @@ usage: ros2_bench.py [ROW...] [--seconds N] [--steps N] [--build DIR]
 import argparse
 import os
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -34,14 +35,20 @@ def row(what, value, unit, limit=""):
 
 
 def cpu(*pids):
-    fields = [pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split() for pid in pids]
-    return sum(int(one[11]) + int(one[12]) for one in fields) / os.sysconf("SC_CLK_TCK")
+    threads = [thread for pid in pids for thread in pathlib.Path(f"/proc/{pid}/task").iterdir()]
+    return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads) / 1e9
 
 
 # The process that serves, not the one that starts it again.
 def server_of(rig):
     pid = rig.process.pid
     return int(pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+
+
+# How often the event loop has gone to sleep.
+def switches(pid):
+    status = pathlib.Path(f"/proc/{pid}/task/{pid}/status").read_text()
+    return int(re.search(r"^voluntary_ctxt_switches:\s+(\d+)", status, re.M).group(1))
 
 
 # Processor time per second, and messages, while `count` goes on.
@@ -53,17 +60,21 @@ def used(rig, count):
     return (cpu(pid) - began) / (time.perf_counter() - seconds), (count() - messages) / (time.perf_counter() - seconds)
 
 
-# A busy machine steps in bursts, and the clock shows the last step of each: what counts is the price of a message.
+# A busy machine steps in bursts, and the clock shows the last step of each: what counts is the price of a message beside that of doing nothing.
 def clock():
     for kind, words in (("real time", ()), ("lock step", ("--lockstep",))):
         with Rig() as rig:
             rig.sim(two, *words)
             rig.gateway("--clock-rate", "1000", *words, robots=2)
+            idle, _ = used(rig, lambda: 0)
             peer = rig.peer()
             peer.subscribe("/clock", "rosgraph_msgs/Clock", "best_effort")
             peer.message("/clock", "rosgraph_msgs/Clock")
             share, messages = used(rig, lambda: len(peer.samples["/clock"]))
-            row(f"/clock in {kind}, {messages:.0f} a second: processor time of 1000 messages / one second", 1000 * share / messages, "", "" if words else "0.03")
+            # In lock step the gateway is called for each tick, whether somebody hears the clock or not.
+            price = share * 1000 / messages if words else idle + (share - idle) * 1000 / messages
+            row(f"/clock in {kind}: processor time of a gateway that nobody hears", idle, "")
+            row(f"/clock in {kind}, {messages:.0f} a second: that of 1000 messages a second", price, "", "" if words else "0.03")
 
 
 def images():
@@ -98,10 +109,10 @@ def scans():
 
 
 def suspended():
-    times = {True: [], False: []}
+    times, sleeps = {True: [], False: []}, {True: [], False: []}
     with Rig() as rig:
         rig.sim(two, "--lockstep", "--paused", "--rtf", "0")
-        rig.gateway("--lockstep", "--clock-rate", "100", robots=2)
+        rig.gateway("--lockstep", "--clock-rate", "1000", robots=2)
         peer, slow = rig.peer(), rig.peer()
         for one in (peer, slow):
             for topic, kind in (("/leader/odom", "nav_msgs/Odometry"), ("/leader/scan", "sensor_msgs/LaserScan"), ("/clock", "rosgraph_msgs/Clock")):
@@ -112,14 +123,20 @@ def suspended():
         for is_suspended in (False, True) * 7:
             if is_suspended:
                 os.kill(slow.process.pid, signal.SIGSTOP)
-            began = time.perf_counter()
+            began, slept = time.perf_counter(), switches(server_of(rig))
             rig.simctl("step", str(options.steps))
             times[is_suspended].append(time.perf_counter() - began)
+            sleeps[is_suspended].append((switches(server_of(rig)) - slept) / options.steps)
             if is_suspended:
                 os.kill(slow.process.pid, signal.SIGCONT)
+        await_("the report of losses", lambda: "The longest write took" in rig.log(rig.process))
+        longest = max(float(one) for one in re.findall(r"The longest write took (\S+) ms", rig.log(rig.process)))
     print(" ".join(f"{one:.2f}" for one in times[False]), "|", " ".join(f"{one:.2f}" for one in times[True]))
     ratio = min(times[True]) / min(times[False])
     row(f"{options.steps} steps in lock step, one subscriber suspended / all running", ratio, "", "1.10")
+    for is_suspended, words in ((False, "all running"), (True, "one suspended")):
+        row(f"times that the event loop sleeps in a tick, {words}: one between ticks, none in a write", max(sleeps[is_suspended]), "", "1.1")
+    row("longest write of a topic whose subscriber was suspended", longest, "ms")
 
 
 for name in options.rows or ("clock", "images", "scans", "suspended"):

@@ -1,7 +1,6 @@
 #include "dds/participant.h"
 
 #include <arpa/inet.h>
-#include <errno.h>
 #include <fastdds/rtps/RTPSDomain.h>
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
 #include <fastdds/rtps/attributes/ReaderAttributes.h>
@@ -22,18 +21,15 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/interfaces/IReaderDataFilter.hpp>
 
 #include <algorithm>
 #include <map>
 #include <utility>
-#include <variant>
 
-#include "base/guarded.h"
 #include "base/log.h"
+#include "dds/inbox.h"
 
 namespace ros2 {
 namespace {
@@ -41,7 +37,6 @@ namespace {
 namespace rtps = eprosima::fastrtps::rtps;
 namespace dds = eprosima::fastdds::dds;
 
-constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20, max_waiting = 20000;
 constexpr std::uint32_t max_payload = std::uint32_t{1} << 30;
 
 Guid to_guid(const rtps::GUID_t& from) {
@@ -63,67 +58,6 @@ rtps::SequenceNumber_t to_sequence(std::int64_t number) {
 }
 
 std::int64_t from_sequence(const rtps::SequenceNumber_t& number) { return std::int64_t{number.high} << 32 | number.low; }
-
-// ---- what Fast DDS's threads leave for ours ----
-
-struct Matched {
-  std::uint64_t endpoint;
-  Guid peer;
-  bool is_matched;
-};
-struct Sampled {
-  std::uint64_t endpoint;
-  Received sample;
-};
-
-class Inbox {
- public:
-  Inbox() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
-  ~Inbox() { ::close(descriptor_); }
-  Inbox(const Inbox&) = delete;
-  Inbox& operator=(const Inbox&) = delete;
-
-  using Event = std::variant<Matched, Sampled, Peer>;
-  struct Content {
-    std::vector<Event> events;
-    std::size_t bytes = 0;
-    std::uint64_t refused = 0;
-  };
-
-  void put(Event event) {
-    {
-      auto content = content_.lock();
-      if (const auto* sampled = std::get_if<Sampled>(&event)) {
-        const std::size_t size = sampled->sample.bytes.size();
-        if (content->events.size() >= max_waiting || content->bytes + size > max_waiting_bytes) {
-          ++content->refused;
-          return;
-        }
-        content->bytes += size;
-      }
-      content->events.push_back(std::move(event));
-    }
-    const std::uint64_t one = 1;
-    while (::write(descriptor_, &one, sizeof one) < 0 && errno == EINTR) {
-    }
-  }
-  std::vector<Event> take() {
-    std::uint64_t count = 0;
-    while (::read(descriptor_, &count, sizeof count) < 0 && errno == EINTR) {
-    }
-    std::vector<Event> events;
-    auto content = content_.lock();
-    content->bytes = 0;
-    content->events.swap(events);
-    return events;
-  }
-  int descriptor() const { return descriptor_; }
-  std::uint64_t refused() const { return content_.lock()->refused; }
-
- private:
-  int descriptor_;
-  base::Guarded<Content, base::Rank::queue> content_;
-};
 
 // ---- endpoints ----
 
@@ -191,13 +125,26 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
   const std::vector<Guid>& readers() const override { return endpoint_.peers; }
   std::uint64_t lost() const override { return lost_; }
 
+  std::chrono::nanoseconds longest_write() const override { return longest_write_; }
+
   bool write(std::size_t size, const std::function<void(std::span<char>)>& fill, const std::optional<SampleIdentity>& related) override {
-    if (size > max_payload) return count_lost();
+    if (!settings_.is_transient && endpoint_.peers.empty()) return true;
+    const auto begin = std::chrono::steady_clock::now();
+    const bool is_written = add(size, fill, related);
+    longest_write_ = std::max<std::chrono::nanoseconds>(longest_write_, std::chrono::steady_clock::now() - begin);
+    return is_written || count_lost();
+  }
+
+  void separate_by_vendor() override { writer_->reader_data_filter(this); }
+
+ private:
+  bool add(std::size_t size, const std::function<void(std::span<char>)>& fill, const std::optional<SampleIdentity>& related) {
+    if (size > max_payload) return false;
     make_room();
     rtps::CacheChange_t* change = writer_->new_change([size] { return static_cast<std::uint32_t>(size); }, rtps::ALIVE);
     if (change == nullptr || change->serializedPayload.max_size < size) {
       if (change != nullptr) writer_->release_change(change);
-      return count_lost();
+      return false;
     }
     fill({reinterpret_cast<char*>(change->serializedPayload.data), size});
     change->serializedPayload.length = static_cast<std::uint32_t>(size);
@@ -209,12 +156,8 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
     }
     if (history_->add_change(change, params)) return true;
     writer_->release_change(change);
-    return count_lost();
+    return false;
   }
-
-  void separate_by_vendor() override { writer_->reader_data_filter(this); }
-
- private:
   bool count_lost() {
     ++lost_;
     return false;
@@ -252,6 +195,7 @@ class FastWriter final : public Writer, private rtps::WriterListener, private ep
   Endpoint endpoint_;
   Guid guid_{};
   std::uint64_t lost_ = 0;
+  std::chrono::nanoseconds longest_write_{0};
   std::unique_ptr<rtps::WriterHistory> history_;
   rtps::RTPSWriter* writer_ = nullptr;
 };
@@ -395,6 +339,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
 
   bool start(const ParticipantSettings& settings) {
     settings_ = settings;
+    inbox_.call(settings.on_news);
     participant_ = rtps::RTPSDomain::createParticipant(settings.domain, true, attributes_of(settings), this);
     if (participant_ != nullptr) guid_ = to_guid(participant_->getGuid());
     return participant_ != nullptr;
@@ -421,17 +366,20 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   int descriptor() const override { return inbox_.descriptor(); }
   std::uint64_t refused() const override { return inbox_.refused(); }
 
-  void deliver() override {
+  bool deliver() override {
+    bool has_matched = false;
     for (auto& event : inbox_.take()) {
       if (auto* peer = std::get_if<Peer>(&event)) {
         if (on_peer_) on_peer_(*peer);
       } else if (auto* matched = std::get_if<Matched>(&event)) {
         match(*matched);
+        has_matched = true;
       } else if (auto* sampled = std::get_if<Sampled>(&event)) {
         const auto found = endpoints_.find(sampled->endpoint);
         if (found != endpoints_.end() && found->second->on_sample) found->second->on_sample(sampled->sample);
       }
     }
+    return has_matched;
   }
 
  private:

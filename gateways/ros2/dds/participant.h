@@ -1,11 +1,13 @@
 // A participant of DDS that writes and reads messages that are encoded already. The only part that includes Fast DDS. One thread at a time:
 // Fast DDS's own threads put what they receive into a queue, and deliver() hands it on.
 //
-// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted.
+// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted. What
+// nobody reads, and nobody could read later, is not encoded.
 // Errors name what could not be made.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -43,6 +45,7 @@ struct ParticipantSettings {
   std::string user_data = "enclave=/;";
   std::string log_name = "ros2-gateway";    // of the lines that are logged
   std::string distro_setting = "--distro";  // where a user chooses the family of ROS 2
+  std::function<void()> on_news{};          // called by threads of DDS when deliver() has something to do; instead of the descriptor
 };
 
 struct EndpointSettings {
@@ -89,6 +92,8 @@ class Writer {
                      const std::optional<SampleIdentity>& related = std::nullopt) = 0;
   // Samples that a reader may have missed.
   virtual std::uint64_t lost() const = 0;
+  // Of all calls of write().
+  virtual std::chrono::nanoseconds longest_write() const = 0;
   // Replies of services: those with an identity go to readers of Fast DDS and others, those without to all but readers of Fast DDS.
   virtual void separate_by_vendor() = 0;
 };
@@ -116,7 +121,8 @@ class Participant {
 
   // Readable when deliver() has something to do; an eventfd.
   virtual int descriptor() const = 0;
-  virtual void deliver() = 0;
+  // True when a reader or a writer was matched, or is no more.
+  virtual bool deliver() = 0;
   // Samples that were thrown away because too many came at once.
   virtual std::uint64_t refused() const = 0;
 };
