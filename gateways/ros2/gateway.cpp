@@ -36,6 +36,7 @@ std::set<std::string> robots_in(const Listed& listed) {
 Gateway::Gateway(Options options)
     : options_(std::move(options)),
       errands_(options_.server_id),
+      steps_(options_.server_id),
       world_(
           options_.server_id, errands_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
       waits_(options_.waits) {}
@@ -69,7 +70,7 @@ base::Result<void> Gateway::open() {
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
   if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
   if (options_.has_parameters) serve_parameters(*node_, gateway_node);
-  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, options_.service_prefix);
+  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, steps_, options_.service_prefix);
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
                                             [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
   if (options_.is_lockstep) {
@@ -77,7 +78,8 @@ base::Result<void> Gateway::open() {
     turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)),
                                      [this] { bell_.ring(); });
   }
-  if (!bell_.ring_for(signals_) || !bell_.ring_for(errands_.descriptor())) return base::Error{"no file descriptors left"};
+  if (!bell_.ring_for(signals_) || !bell_.ring_for(errands_.descriptor()) || !bell_.ring_for(steps_.descriptor()))
+    return base::Error{"no file descriptors left"};
   return {};
 }
 
@@ -159,6 +161,7 @@ void Gateway::answer_bell() {
   if (::read(signals_, &signal, sizeof signal) == sizeof signal) is_over_ = true;
   if (participant_->deliver()) are_sources_due_ = true;
   errands_.deliver();
+  steps_.deliver();
   if (!turns_ || tick_) return;
   if (const auto tick = turns_->tick()) begin_tick(*tick);
 }

@@ -71,7 +71,7 @@ class Gateway {
 
   Options options_;
   int signals_ = -1;
-  Errands errands_;
+  Errands errands_, steps_;  // steps: takes long
   Bell bell_;
   gateway::WatchedIfaces ifaces_;
   World world_;

@@ -3,10 +3,15 @@
 #include <regex.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "ros/from_iface.h"
+#include "shm/layout.h"
 
 namespace ros2 {
 namespace {
@@ -34,17 +39,46 @@ enum Feature : std::uint16_t {
   world_info_getting = 44,
 };
 // Results that a service has for itself.
-constexpr std::uint8_t already_in_state = 101, name_not_unique = 101, no_resource = 104, namespace_invalid = 105,
-                       resource_parse_error = 106, invalid_pose = 109, state_invalid_pose = 101, no_world = 101;
+constexpr std::uint8_t already_in_state = 101, transition_error = 102, incorrect_transition = 103, name_not_unique = 101,
+                       name_invalid = 102, unsupported_format = 103, no_resource = 104, namespace_invalid = 105, resource_parse_error = 106,
+                       invalid_pose = 109, state_invalid_pose = 101, no_world = 101;
 
 SimulationResult good() { return {SimulationResult::ok, ""}; }
-SimulationResult bad(std::uint8_t code, const std::string& why) { return {code, why}; }
+// Without the end of a text that repeats a huge value of the client.
+SimulationResult bad(std::uint8_t code, std::string why) {
+  constexpr std::size_t most = 500;
+  if (why.size() > most) {
+    std::size_t end = most;
+    while (end > 0 && (static_cast<unsigned char>(why[end]) & 0xc0) == 0x80) --end;  // within a character
+    why.resize(end);
+    why += "...";
+  }
+  return {code, std::move(why)};
+}
 
-// A POSIX extended regular expression; one of clients, so its length is limited.
+// The C library unrolls repetitions, one in another too: three characters of a client would fill the memory. It also looks for back
+// references, which ERE has not, in a time that grows with each one.
+bool is_cheap(const std::string& pattern) {
+  constexpr double most = 1000;
+  double copies = 1;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] == '\\' && i + 1 < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i + 1])) != 0) return false;
+    if (pattern[i] != '{') continue;
+    const char* at = pattern.c_str() + i + 1;
+    char* end = nullptr;
+    double count = std::strtod(at, &end);
+    if (*end == ',') count = std::max(count, std::strtod(end + 1, &end));
+    copies *= std::max(count, 1.0);
+  }
+  return copies <= most;
+}
+
+// A POSIX extended regular expression; one of clients, so its length and its repetitions are limited.
 class Pattern {
  public:
   explicit Pattern(const std::string& text) : is_everything_(text.empty()) {
-    is_good_ = is_everything_ || (text.size() <= max_pattern && ::regcomp(&compiled_, text.c_str(), REG_EXTENDED | REG_NOSUB) == 0);
+    is_good_ = is_everything_ ||
+               (text.size() <= max_pattern && is_cheap(text) && ::regcomp(&compiled_, text.c_str(), REG_EXTENDED | REG_NOSUB) == 0);
   }
   ~Pattern() {
     if (is_good_ && !is_everything_) ::regfree(&compiled_);
@@ -71,18 +105,37 @@ std::vector<std::string> models_in(const std::string& tree) {
 std::optional<shm::Pose> shm_pose(const ros::Pose& pose) {
   const auto& q = pose.orientation;
   const auto& p = pose.position;
+  constexpr double most = 1e12;  // of the simulator
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (!std::isfinite(length) || !std::isfinite(p.x + p.y + p.z)) return std::nullopt;
+  if (!std::isfinite(length) || !(std::abs(p.x) < most && std::abs(p.y) < most && std::abs(p.z) < most)) return std::nullopt;
   if (length < 1e-9) return shm::Pose{p.x, p.y, p.z, 1, 0, 0, 0};  // all zero: not said
   return shm::Pose{p.x, p.y, p.z, q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+// Why a model cannot have this name; nothing when it can. The simulator gives another name in place of the last ones, if it may.
+std::optional<std::string> problem_of_model_name(const std::string& name, bool may_rename) {
+  if (name.size() > shm::max_name_length) return "name must have at most " + std::to_string(shm::max_name_length) + " bytes";
+  if (std::ranges::any_of(name, [](unsigned char c) { return c < ' ' || c == 127; })) return "name has a control character";
+  if (may_rename) return std::nullopt;
+  if (name.empty()) return "name is empty and allow_renaming is false";
+  if (name.find("::") != std::string::npos || name.find('/') != std::string::npos) return "name \"" + name + "\" has :: or /";
+  if (name == "world" || (name.starts_with("__") && name.ends_with("__"))) return "name \"" + name + "\" is reserved";
+  return std::nullopt;
+}
+
+// "<mujoco ...>" and other formats. A text that is no XML at all is one that cannot be parsed.
+bool is_other_format(const std::string& text) {
+  const auto root = base::trim(text);
+  if (!root.starts_with('<') || root.starts_with("<?") || root.starts_with("<!")) return false;
+  return !root.starts_with("<sdf") && !root.starts_with("<robot") && root.find('>') != std::string_view::npos;
 }
 
 bool is_world(const std::string& frame) { return frame.empty() || frame == "world" || frame == "map"; }
 
 }  // namespace
 
-SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, std::string prefix)
-    : node_(node), world_(world), errands_(errands), prefix_(std::move(prefix)) {
+SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix)
+    : node_(node), world_(world), errands_(errands), steps_(steps), prefix_(std::move(prefix)) {
   serve_time();
   serve_entities();
   serve_spawnables();
@@ -97,13 +150,10 @@ ros::SimulationState SimulationServices::state() const {
   return {sample.steps == 0 ? ros::SimulationState::stopped : ros::SimulationState::paused};
 }
 
-void SimulationServices::ask(shm::Request request, std::function<void(const Result&)> done, std::chrono::nanoseconds timeout) {
-  errands_.post(
-      std::move(request),
-      [done = std::move(done)](const base::Result<shm::Reply>& reply) {
-        done(reply ? good() : bad(SimulationResult::failed, reply.error().message));
-      },
-      timeout);
+void SimulationServices::ask(shm::Request request, std::function<void(const Result&)> done) {
+  errands_.post(std::move(request), [done = std::move(done)](const base::Result<shm::Reply>& reply) {
+    done(reply ? good() : bad(SimulationResult::failed, reply.error().message));
+  });
 }
 
 // ---- time ----
@@ -115,7 +165,7 @@ void SimulationServices::serve_time() {
             {{spawning, deleting, spawning_resource_string, spawnables, entity_state_getting, entity_state_setting, simulation_reset,
               simulation_reset_state, simulation_state_getting, simulation_state_setting, simulation_state_pause, step_single,
               step_multiple, world_info_getting},
-             {"sdf"},
+             {"sdf", "urdf"},
              "rtm-sim"}});
       });
   node_.serve<ros::GetSimulationStateRequest, ros::GetSimulationStateResponse>(
@@ -124,10 +174,15 @@ void SimulationServices::serve_time() {
       });
   node_.serve<ros::SetSimulationStateRequest, ros::SetSimulationStateResponse>(name("set_simulation_state"), [this](const auto& request,
                                                                                                                     const auto& reply) {
-    const auto answer = [reply](const Result& result) { reply(ros::SetSimulationStateResponse{result}); };
-    const std::uint8_t wanted = request.state.state;
-    if (wanted == state().state) return answer(bad(already_in_state, "the simulation is in this state already"));
+    const auto answer = [reply](Result result) {
+      if (result.result == SimulationResult::failed) result.result = transition_error;
+      reply(ros::SetSimulationStateResponse{std::move(result)});
+    };
+    const std::uint8_t wanted = request.state.state, now = state().state;
+    if (wanted == now) return answer(bad(already_in_state, "the simulation is in this state already"));
     if (wanted == ros::SimulationState::playing) return ask(shm::RunRequest{}, answer);
+    if (wanted == ros::SimulationState::paused && now == ros::SimulationState::stopped)
+      return answer(bad(incorrect_transition, "the simulation is stopped; it can be paused when it has run"));
     if (wanted == ros::SimulationState::paused) return ask(shm::PauseRequest{}, answer);
     if (wanted != ros::SimulationState::stopped)
       return answer(bad(SimulationResult::unsupported, "expected 0 (stopped), 1 (playing) or 2 (paused), got " + std::to_string(wanted)));
@@ -153,7 +208,10 @@ void SimulationServices::serve_time() {
           return answer(bad(SimulationResult::failed, "the simulation runs; pause it first"));
         if (request.steps < 1 || request.steps > max_steps)
           return answer(bad(SimulationResult::failed, "steps must be from 1 to 1000000000, got " + std::to_string(request.steps)));
-        ask(shm::StepRequest{.steps = static_cast<std::int64_t>(request.steps)}, answer, step_timeout);
+        steps_.post(
+            shm::StepRequest{.steps = static_cast<std::int64_t>(request.steps)},
+            [answer](const base::Result<shm::Reply>& done) { answer(done ? good() : bad(SimulationResult::failed, done.error().message)); },
+            step_timeout);
       });
   node_.serve<ros::GetCurrentWorldRequest, ros::GetCurrentWorldResponse>(name("get_current_world"), [this](const auto&, const auto& reply) {
     if (!world_.is_there()) return reply(ros::GetCurrentWorldResponse{bad(no_world, "no simulator runs"), {}});
@@ -169,7 +227,10 @@ void SimulationServices::ask_models(const ros::EntityFilters& filters, OnModels 
     return done({}, bad(SimulationResult::unsupported, "only the filter by name is supported: categories, tags and bounds must be empty"));
   const auto pattern = std::make_shared<Pattern>(filters.filter);
   if (!pattern->is_good())
-    return done({}, bad(SimulationResult::failed, "filter is no POSIX extended regular expression of at most 200 characters"));
+    return done({}, bad(SimulationResult::failed,
+                        "filter must be a POSIX extended regular expression of at most 200 characters, with {N} of at "
+                        "most 1000 copies in all; got \"" +
+                            filters.filter + "\""));
   errands_.post(shm::TreeRequest{}, [pattern, done = std::move(done)](const base::Result<shm::Reply>& reply) {
     if (!reply) return done({}, bad(SimulationResult::failed, reply.error().message));
     auto models = models_in(reply->text);
@@ -231,11 +292,13 @@ void SimulationServices::serve_spawnables() {
 void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply) {
   const auto refuse = [&](std::uint8_t code, const std::string& why) { reply(ros::SpawnEntityResponse{bad(code, why), ""}); };
   if (request.uri.empty() && request.resource_string.empty()) return refuse(no_resource, "uri and resource_string are empty");
+  if (const auto problem = problem_of_model_name(request.label, request.allow_renaming)) return refuse(name_invalid, *problem);
+  if (is_other_format(request.resource_string)) return refuse(unsupported_format, "resource_string must be sdf or urdf");
   if (!request.entity_namespace.empty())
     return refuse(namespace_invalid, "entity_namespace must be empty: topics have the name of the model");
   const auto pose = shm_pose(request.initial_pose.pose);
   if (!pose || !is_world(request.initial_pose.header.frame_id))
-    return refuse(invalid_pose, "initial_pose must be finite and in the frame world");
+    return refuse(invalid_pose, "initial_pose must have a finite orientation, a position below 1e12 m, and be in the frame world");
   ask_models({}, [this, request, reply, pose](const std::vector<std::string>& models, const Result& result) {
     if (result.result != SimulationResult::ok) return reply(ros::SpawnEntityResponse{result, ""});
     std::string wanted = request.label;
@@ -318,7 +381,7 @@ void SimulationServices::set_state(const ros::SetEntityStateRequest& request,
   if (request.state.header.frame_id == "keep") return set_velocity();
   const auto pose = shm_pose(request.state.pose);
   if (!pose || !is_world(request.state.header.frame_id))
-    return answer(bad(state_invalid_pose, "pose must be finite and in the frame world"));
+    return answer(bad(state_invalid_pose, "pose must have a finite orientation, a position below 1e12 m, and be in the frame world"));
   const bool is_at_rest = twist.linear.x == 0 && twist.linear.y == 0 && twist.linear.z == 0 && twist.angular.x == 0 &&
                           twist.angular.y == 0 && twist.angular.z == 0;
   errands_.post(shm::SetPoseRequest{request.entity, *pose}, [answer, set_velocity, is_at_rest](const base::Result<shm::Reply>& done) {

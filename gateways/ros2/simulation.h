@@ -15,8 +15,9 @@ namespace ros2 {
 
 class SimulationServices {
  public:
-  // `prefix`: "" for the root names, "/sim" for "/sim/get_simulation_state" and so on. All must outlive this object.
-  SimulationServices(Node& node, World& world, Errands& errands, std::string prefix);
+  // `steps`: where steps wait, so that the simulation can be paused meanwhile. `prefix`: "" for the root names, "/sim" for
+  // "/sim/get_simulation_state" and so on. All must outlive this object.
+  SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix);
 
  private:
   using Result = ros::SimulationResult;
@@ -33,13 +34,14 @@ class SimulationServices {
   void ask_models(const ros::EntityFilters& filters, OnModels done);
   void ask_state(const std::string& entity, OnState done);
   // The simulator's answer as a result.
-  void ask(shm::Request request, std::function<void(const Result&)> done, std::chrono::nanoseconds timeout = Errands::limit);
+  void ask(shm::Request request, std::function<void(const Result&)> done);
   ros::SimulationState state() const;
   std::string name(const char* service) const { return prefix_ + "/" + service; }
 
   Node& node_;
   World& world_;
   Errands& errands_;
+  Errands& steps_;
   const std::string prefix_;
 };
 

@@ -259,7 +259,7 @@ def joints():
         peer.message(states, "sensor_msgs/JointState", lambda m: abs(m["velocity"][0] - 0.1) < 0.02)
 
 
-# TwistStamped of stamp 0 drives as Twist does; what is not finite is refused.
+# TwistStamped of stamp 0 drives as Twist does, from writers of best effort too; what is not finite is refused.
 def stamped():
     with Rig() as rig:
         rig.sim(two)
@@ -276,6 +276,15 @@ def stamped():
 
         await_("the leader moves", moves, 0.1)
         assert peer.message("/odom", "nav_msgs/Odometry")["header"]["frame_id"] == "odom"
+        peer.writer("weak", "rt/cmd_vel", wire.type_on_wire("geometry_msgs/Twist"), "best_effort")
+        peer.await_matched("weak")
+
+        def goes_back():
+            peer.put("weak", "geometry_msgs/Twist", wire.twist(-0.2, 0.0))
+            return peer.messages("/odom", "nav_msgs/Odometry")[-1]["twist"]["twist"]["linear"]["x"] < -0.1
+
+        await_("the leader goes back", goes_back, 0.1)
+        assert "is requested as" not in rig.log(rig.process), rig.log(rig.process)
         message["twist"] = wire.twist(math.nan, 0.0)
         peer.put("stamped", "geometry_msgs/TwistStamped", message)
         await_("the refusal", lambda: "warning: ros2-gateway: /cmd_vel:" in rig.log(rig.process).replace("warn:", "warning:"))
@@ -343,11 +352,16 @@ class CycloneClient:
         peer.await_matched(self.replies)
 
     def call(self, kind, value, reply_kind):
+        return self.reply(self.start(kind, value), reply_kind)
+
+    def start(self, kind, value):
         self.number += 1
         head = self.id + struct.pack("<q", self.number)
         body = wire.encode(kind, value)
         self.peer.say(f"put {self.requests} {(body[:4] + head + body[4:]).hex()}")
+        return head
 
+    def reply(self, head, reply_kind):
         def reply():
             for data in list(self.peer.samples[self.replies]):
                 if data[4:20] == head:
@@ -411,9 +425,19 @@ def services():
         refused = ask(step, "StepSimulationRequest", {"steps": 1})
         assert refused["result"] == 4 and "pause it first" in refused["error_message"], refused
         assert ask(change, "SetSimulationStateRequest", {"state": 0})["result"] == 1 and current() == 0
+        assert ask(change, "SetSimulationStateRequest", {"state": 2})["result"] == 103 and current() == 0
+        # What takes long does not keep others waiting, and can be ended.
+        long = step.start("simulation_interfaces/StepSimulationRequest", {"steps": 10**9})
+        await_("the steps", lambda: rig.stats()["steps"] > 0)
+        assert ask(change, "SetSimulationStateRequest", {"state": 2})["result"] == 1 and current() == 2
+        step.reply(long, "simulation_interfaces/ResultResponse")
         entities = caller(peer, "GetEntities")
-        filters = {"filter": "^(lead|foll)", "categories": b"", "tags": [], "filter_mode": 0, "bounds": {"type": 0, "points": []}}
-        found = entities.call("simulation_interfaces/GetEntitiesRequest", filters, "simulation_interfaces/GetEntitiesResponse")
+        unfiltered = {"categories": b"", "tags": [], "filter_mode": 0, "bounds": {"type": 0, "points": []}}
+        # Patterns that would take all memory, or for ever.
+        for hostile in ("a{1,255}{1,255}{1,255}", "(a{1000}){1000}", "(a*)*\\1", "x" * 201, "["):
+            refused = entities.call("simulation_interfaces/GetEntitiesRequest", {"filter": hostile, **unfiltered}, "simulation_interfaces/GetEntitiesResponse")["result"]
+            assert refused["result"] == 4 and hostile[:20] in refused["error_message"], refused
+        found = entities.call("simulation_interfaces/GetEntitiesRequest", {"filter": "^(lead|foll)", **unfiltered}, "simulation_interfaces/GetEntitiesResponse")
         assert sorted(found["entities"]) == ["follower", "leader"], found
         pose = caller(peer, "GetEntityState")
         where = pose.call("simulation_interfaces/EntityRequest", {"entity": "leader"}, "simulation_interfaces/GetEntityStateResponse")
@@ -433,6 +457,18 @@ def services():
         assert spawned() == (101, "") and spawned(allow_renaming=True) == (1, "crate_1")
         assert spawned(name="x", resource_string="<sdf")[0] == 106 and spawned(name="x", resource_string="")[0] == 104
         assert spawned(name="x", entity_namespace="/a")[0] == 105
+        # Names that the model would not have; huge texts come back shortened.
+        for name in ("", "a::b", "world", "a\nb", "n" * 100000):
+            assert spawned(name=name) == (102, ""), name
+        assert spawned(name="", allow_renaming=True)[0] == 1
+        assert spawned(name="x", resource_string="<mujoco/>")[0] == 103 and spawned(name="x", resource_string="nonsense")[0] == 106
+        urdf = '<?xml version="1.0"?><robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+        assert spawned(name="of_urdf", resource_string=urdf) == (1, "of_urdf")
+        for x in (math.nan, math.inf, 1e300):
+            far = {**place, "pose": {**place["pose"], "position": {"x": x, "y": 0.0, "z": 0.0}}}
+            assert spawned(name="x", initial_pose=far)[0] == 109, x
+        lost = pose.call("simulation_interfaces/EntityRequest", {"entity": "n" * 100000}, "simulation_interfaces/GetEntityStateResponse")["result"]
+        assert lost["result"] == 2 and len(lost["error_message"]) < 600, len(lost["error_message"])
         spawnables = caller(peer, "GetSpawnables")
         listed = spawnables.call("simulation_interfaces/GetSpawnablesRequest", {"sources": []}, "simulation_interfaces/GetSpawnablesResponse")
         assert listed["result"]["result"] == 1 and listed["spawnables"], listed
