@@ -19,7 +19,7 @@ if(RTMSIM_ROS2)
     set_tests_properties(ros2.${case} PROPERTIES LABELS integration TIMEOUT 300)
   endforeach()
   rtmsim_test(ros2_mappings_test ros2/ros2_mappings_test.cpp LIBRARIES ros2_mappings)
-  foreach(case types bad_values qos saved ends missing own_mapping)
+  foreach(case types bad_values qos keys saved ends missing own_mapping)
     add_test(NAME ros2.ports.${case}
       COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/ros2/ros2_ports.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(ros2.ports.${case} PROPERTIES LABELS integration TIMEOUT 300)

@@ -1,9 +1,11 @@
 #include "port_qos.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "base/log.h"
+#include "base/suggestion.h"
 #include "base/text.h"
 
 namespace ros2 {
@@ -36,17 +38,41 @@ base::Result<bool> is_second(const Policy& policy, const std::string& first, con
   return base::Error{policy.key + " must be " + first + " or " + second + ", got " + base::in_quotes(policy.value)};
 }
 
-// Keys below `node` that mean something to OpenRTM but not here.
-void name_useless_keys(const coil::Properties& connection, const std::string& node, const std::vector<std::string>& known) {
-  std::vector<std::string> useless;
-  for (const auto& key : connection.propertyNames()) {
-    if (key.starts_with(node) && std::ranges::find(known, key.substr(node.size())) == known.end()) useless.push_back(key);
-  }
-  if (!useless.empty())
-    base::log(base::Level::warn, "ros2", "{} without effect: reliability, durability and history are supported", base::join(useless, ", "));
+// All that mean something here, without the name of the transport.
+const std::vector<std::string>& known_keys() {
+  static const std::vector<std::string> known = [] {
+    std::vector<std::string> keys = {"topic", "frame_id", "child_frame_id", "joint_names", "reliability", "durability", "depth", "history"};
+    for (const char* node : {"writer_qos.", "reader_qos."})
+      for (const char* key : {"durability.kind", "reliability.kind", "history.kind", "history.depth"})
+        keys.push_back(std::string(node) + key);
+    for (const char* node : {"publisher.", "subscriber."})
+      for (const char* key : {"qos.durability.kind", "qos.reliability.kind", "topic.historyQos.kind", "topic.historyQos.depth", "name"})
+        keys.push_back(std::string(node) + key);
+    return keys;
+  }();
+  return known;
+}
+
+bool is_qos(const std::string& key) {
+  return std::ranges::any_of(std::array{"writer_qos.", "reader_qos.", "publisher.", "subscriber."},
+                             [&](const char* node) { return key.starts_with(node); });
 }
 
 }  // namespace
+
+void name_useless_keys(const coil::Properties& connection, const std::string& name) {
+  for (const auto& full : connection.propertyNames()) {
+    if (!full.starts_with(name + ".")) continue;
+    const std::string key = full.substr(name.size() + 1);
+    if (std::ranges::find(known_keys(), key) != known_keys().end()) continue;
+    const std::string meant = base::nearest(key, known_keys());
+    base::log(base::Level::warn, "ros2", "{}: {}={} without effect{}", connection.getProperty("connector_name"), full,
+              connection.getProperty(full),
+              !meant.empty() ? "; did you mean " + name + "." + meant + "?"
+              : is_qos(key)  ? ": reliability, durability and history are supported"
+                             : ", unless a mapping of your own reads it");
+  }
+}
 
 base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic) {
   EndpointSettings& endpoint = topic.endpoint;
@@ -72,9 +98,6 @@ base::Result<void> read_qos(const coil::Properties& connection, const std::strin
   if (!number || *number < 1 || *number > static_cast<std::int64_t>(most_samples))
     return base::Error{depth.key + " must be from 1 to 10000, got " + base::in_quotes(depth.value)};
   endpoint.depth = *keep_all ? most_samples : static_cast<std::size_t>(*number);
-  name_useless_keys(connection, python, {"durability.kind", "reliability.kind", "history.kind", "history.depth"});
-  name_useless_keys(connection, cpp,
-                    {"qos.durability.kind", "qos.reliability.kind", "topic.historyQos.kind", "topic.historyQos.depth", "name"});
   return {};
 }
 

@@ -7,7 +7,7 @@
 //
 // Without a reliability a writer is reliable, and a reader receives from all writers.
 //
-// Policies that OpenRTM has and this transport does not are named in a warning. Pure, except for that line; any thread.
+// Pure, except for warnings; any thread.
 #pragma once
 
 #include <coil/Properties.h>
@@ -23,6 +23,10 @@ struct PortTopic {
   EndpointSettings endpoint{};
   bool takes_all = false;  // a reader of reliable and of best effort writers
 };
+
+// Warns of each key below `name` that means nothing here: misspelled, a policy that OpenRTM has and this transport does not, or one that an
+// author's mapping reads. The line has the key that was most likely meant.
+void name_useless_keys(const coil::Properties& connection, const std::string& name);
 
 base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic);
 

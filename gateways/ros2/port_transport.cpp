@@ -63,10 +63,11 @@ base::Result<PortTopic> topic_of_type(const coil::Properties& connection, bool i
 // The topic of a connection as it is on the wire.
 base::Result<PortTopic> topic_of(const coil::Properties& connection, bool is_writer) {
   const std::string name = text_of_one_side(connection, is_writer, "interface_type");
-  std::string topic = std::string(base::trim(connection.getProperty(name + ".topic")));
-  if (topic.empty()) return base::Error{name + ".topic is missing: expected a topic, as in " + name + ".topic=/cmd_vel"};
-  if (topic.front() != '/') topic.insert(0, "/");
-  if (const auto problem = problem_of_name(topic)) return base::Error{name + ".topic " + *problem};
+  name_useless_keys(connection, name);
+  const std::string typed = std::string(base::trim(connection.getProperty(name + ".topic")));
+  if (typed.empty()) return base::Error{name + ".topic is missing: expected a topic, as in " + name + ".topic=/cmd_vel"};
+  const std::string topic = typed.front() == '/' ? typed : "/" + typed;
+  if (const auto problem = problem_of_name(topic)) return base::Error{name + ".topic " + *problem + ", got " + base::in_quotes(typed)};
   auto made = topic_of_type(connection, is_writer);
   if (!made) return made;
   made->endpoint.topic = topic_on_wire(topic);
@@ -102,8 +103,8 @@ base::Result<PortDomainSettings> settings_of_process() {
   return settings;
 }
 
-bool complain(const base::Error& error) {
-  base::log(base::Level::error, "ros2", "connection refused: {}", error.message);
+bool complain(const coil::Properties& connection, const base::Error& error) {
+  base::log(base::Level::error, "ros2", "connection refused: {}: {}", connection.getProperty("connector_name"), error.message);
   return false;
 }
 
@@ -114,11 +115,11 @@ class TopicWriter final : public RTC::InPortConsumer {
   void init(coil::Properties& properties) override { connection_ = properties; }
   bool subscribeInterface(const SDOPackage::NVList&) override {
     const auto settings = settings_of_process();
-    if (!settings) return complain(settings.error());
+    if (!settings) return complain(connection_, settings.error());
     const auto topic = topic_of(connection_, true);
-    if (!topic) return complain(topic.error());
+    if (!topic) return complain(connection_, topic.error());
     auto made = publish_port(*settings, topic->endpoint);
-    if (!made) return complain(made.error());
+    if (!made) return complain(connection_, made.error());
     publication_ = std::move(*made);
     return true;
   }
@@ -142,9 +143,9 @@ class TopicReader final : public RTC::InPortProvider {
   }
   bool publishInterface(SDOPackage::NVList&) override {
     auto settings = settings_of_process();
-    if (!settings) return complain(settings.error());
+    if (!settings) return complain(connection_, settings.error());
     auto topic = topic_of(connection_, false);
-    if (!topic) return complain(topic.error());
+    if (!topic) return complain(connection_, topic.error());
     settings_ = std::move(*settings);
     topic_ = std::move(*topic);
     return true;
@@ -154,7 +155,7 @@ class TopicReader final : public RTC::InPortProvider {
       RTC::ByteData data(bytes.data(), bytes.size());
       connector->write(data);
     });
-    if (!made) throw std::runtime_error(made.error().message);
+    if (!made) throw std::runtime_error(connection_.getProperty("connector_name") + ": " + made.error().message);
     subscription_ = std::move(*made);
   }
 

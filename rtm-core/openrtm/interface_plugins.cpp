@@ -207,12 +207,20 @@ class AuthorCarrier final : public corba::Carrier {
     end.setListener(info, &RuntimeAccess::listeners(*connector_));
   }
 
+  // With the name of the connection, for messages.
+  coil::Properties named_properties() const {
+    const auto& profile = connector_->profile();
+    coil::Properties properties = profile.properties;
+    properties.setProperty("connector_name", profile.name);
+    return properties;
+  }
+
   template <class Consumer, class Introduce>
   std::shared_ptr<Consumer> subscribed(const ConnectorProfile& profile, Introduce introduce_it) {
     auto consumer = make_end<Consumer>(name_, rtclog_);
     if (!consumer) return nullptr;
     const bool is_good = guarded(rtclog_, "init or subscribeInterface", [&] {
-      coil::Properties properties = connector_->profile().properties;
+      coil::Properties properties = named_properties();
       consumer->init(properties);
       introduce_it(*consumer);
       return consumer->subscribeInterface(profile.properties);
@@ -225,7 +233,7 @@ class AuthorCarrier final : public corba::Carrier {
     auto provider = make_end<Provider>(name_, rtclog_);
     if (!provider) return nullptr;
     const bool is_good = guarded(rtclog_, "init, publishInterface or setConnector", [&] {
-      coil::Properties properties = connector_->profile().properties;
+      coil::Properties properties = named_properties();
       provider->init(properties);
       if (!provider->publishInterface(profile.properties)) return false;
       introduce(*provider);

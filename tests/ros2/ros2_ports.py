@@ -315,7 +315,7 @@ def qos():
         await_("a number of the best effort writer", weak_one_passes, 0.1)
         numbers = [one["data"] for one in peer.messages("/any_out", "std_msgs/Int16") if one["data"] >= 0]
         assert len(numbers) == len(set(numbers)), numbers
-        assert "fast-rtps.publisher.qos.deadline.period.seconds without effect" in rig.log(host), rig.log(host)
+        assert "fast-rtps.publisher.qos.deadline.period.seconds=1 without effect: reliability" in rig.log(host), rig.log(host)
         peer.advertise("/sensor", "std_msgs/Int32", "best_effort")
         for topic in ("/fast", "/plain"):
             peer.subscribe(topic, "std_msgs/Int32", "best_effort")
@@ -345,6 +345,37 @@ def qos():
                             (("ros2.depth=0",), 'ros2.depth must be from 1 to 10000, got "0"')):
             done = rig.try_rtse("con", "TopicRelay0:Short_out", "-p", "interface_type=ros2", "-p", "ros2.topic=/a", *(word for one in words for word in ("-p", one)))
             assert done.returncode != 0 and line in rig.log(host), (words, rig.log(host))
+
+
+# A misspelled property is named with the one that was meant; -d makes no second connection of a port to its topic.
+def keys():
+    with PortRig() as rig:
+        host = rig.relay()
+        rig.connect("Long_out", "/keys", "-p", "ros2.relibility=best_effort", "-p", "ros2.writer_qos.history.dept=3", "-p", "ros2.shelf=7")
+        for line in ("ros2.relibility=best_effort without effect; did you mean ros2.reliability?",
+                     "ros2.writer_qos.history.dept=3 without effect; did you mean ros2.writer_qos.history.depth?",
+                     "ros2.shelf=7 without effect, unless a mapping of your own reads it"):
+            await_(line, lambda: line in rig.log(host))
+        for wrong, line in ((("ros2.topc=/a",), "ros2.topc=/a without effect; did you mean ros2.topic?"), (("ros2.topic=/a//b",), 'got "/a//b"'),
+                            (("ros2.topic=a-b",), 'ros2.topic may have letters, digits, _ and / only, got "a-b"')):
+            words = [word for one in ("interface_type=ros2", *wrong) for word in ("-p", one)]
+            for port in ("Long_out", "Long_in"):
+                done = rig.try_rtse("con", f"TopicRelay0:{port}", *words)
+                assert done.returncode != 0 and line in rig.log(host), (wrong, rig.log(host))
+                assert f"connection refused: TopicRelay0:{port}: ros2.topic" in rig.log(host), rig.log(host)
+
+        def connections():
+            rig.rtse("save", f"{rig.work}/system.yaml")
+            return open(f"{rig.work}/system.yaml").read().count("/once")
+
+        words = ("-p", "interface_type=ros2", "-p")
+        rig.rtse("con", "TopicRelay0:Double_out", *words, "ros2.topic=/once")
+        one = connections()
+        assert one > 0
+        rig.rtse("con", "-d", "TopicRelay0:Double_out", *words, "ros2.topic=once")
+        assert connections() == one
+        rig.rtse("con", "-d", "TopicRelay0:Double_out", *words, "ros2.topic=/once_more")
+        assert connections() == 2 * one
 
 
 # A saved system has the connections of its ports with topics, as XML and as YAML.

@@ -35,6 +35,18 @@ bool are_connected(const PortView& a, const PortView& b) {
   return false;
 }
 
+// A connection of the port alone, to a topic, has these properties already. A topic may leave out its first slash.
+bool is_on_topic(const PortView& port, const Properties& properties) {
+  const auto plain = [](const std::string& key, const std::string& value) {
+    return key.ends_with(".topic") && value.starts_with('/') ? value.substr(1) : value;
+  };
+  return std::ranges::any_of(port.connectors, [&](const auto& connector) {
+    return connector.ports.length() == 1 && std::ranges::all_of(properties, [&](const auto& one) {
+             return plain(one.first, property(connector.properties, one.first)) == plain(one.first, one.second);
+           });
+  });
+}
+
 struct ConnectOptions {
   std::vector<std::string> ports;
   std::string id;
@@ -57,6 +69,7 @@ void connect(const Session& session, Console& console, const ConnectOptions& opt
   if (!properties) return console.fail(properties.error());
   if (const auto wrong = corba::misunderstood_values(*properties); !wrong.empty())
     return console.fail({"connecting " + base::join(options.ports, " and ") + ": " + base::join(wrong, "; ")});
+  if (options.no_duplicates && ports.size() == 1 && is_on_topic(*ports[0], *properties)) return;
   if (const auto done = connect_ports(ports, options.id, options.name, *properties); !done) console.fail(done.error());
 }
 
@@ -167,7 +180,8 @@ void add_connect(base::Command& app, Chosen& chosen) {
   con->add_option("-i,--id", options->id, "Connector ID (default: a new one)");
   con->add_option("-n,--name", options->name, "Name of the connection");
   con->add_option("-p,--property", options->properties, "KEY=VALUE, e.g. subscription_type=new")->allow_extra_args(false);
-  con->add_flag("-d,--no-duplicates", options->no_duplicates, "Do nothing if the ports are already connected");
+  con->add_flag("-d,--no-duplicates", options->no_duplicates,
+                "Do nothing if the ports are already connected; of one port: if it has a connection with these properties");
   con->callback(
       [&chosen, options] { chosen.work = [options](const Session& session, Console& console) { connect(session, console, *options); }; });
 
