@@ -199,3 +199,50 @@ def test_a_consumer_of_one_program_calls_the_provider_of_another(shop):
         system.rtse("act", "Buyer0")
         await_("sold out", lambda: "sold out gone 3" in system.log(buyer))
         assert "bought Shop.Item(name='apple', price=1.5, paint=green, sizes=[1, 2, 3]) 4 True" in system.log(buyer)
+
+
+def test_an_object_adapter_with_policies_has_objects_with_ids_of_the_author(shop):
+    from omniORB import CORBA, PortableServer
+    import Shop
+    from counter import Counter_i
+    root = CORBA.ORB_init().resolve_initial_references("RootPOA")
+    policies = [root.create_lifespan_policy(PortableServer.PERSISTENT), root.create_id_assignment_policy(PortableServer.USER_ID),
+                root.create_implicit_activation_policy(PortableServer.NO_IMPLICIT_ACTIVATION)]
+    child = root.create_POA("child", root._get_the_POAManager(), policies)
+    child._get_the_POAManager().activate()
+    servant = Counter_i()
+    child.activate_object_with_id("bell", servant)
+    reference = child.id_to_reference("bell")
+    assert [item.name for item in reference._narrow(Shop.Counter).list()] == ["apple"] * 3
+    assert servant._this()._is_equivalent(reference)
+    assert child.reference_to_servant(reference) is servant and child.servant_to_id(servant) == b"bell"
+    assert child.the_name == "child" and child._get_the_parent() is root
+    poa = PortableServer.POA
+    for failing, problem in ((lambda: root.create_POA("child", None, []), poa.AdapterAlreadyExists),
+                             (lambda: root.find_POA("nobody", False), poa.AdapterNonExistent),
+                             (lambda: child.activate_object(Counter_i()), poa.WrongPolicy),
+                             (lambda: child.deactivate_object("nobody"), poa.ObjectNotActive),
+                             (lambda: child.activate_object_with_id("bell", Counter_i()), poa.ObjectAlreadyActive)):
+        with pytest.raises(problem):
+            failing()
+    child.destroy(True, True)
+
+
+def test_the_manager_of_an_object_adapter_holds_and_lets_go(shop):
+    from omniORB import CORBA, PortableServer
+    from counter import Counter_i
+    import Shop
+    root = CORBA.ORB_init().resolve_initial_references("RootPOA")
+    own = root.create_POA("own", None, [])
+    servant = Counter_i()
+    own.activate_object(servant)
+    manager = own.the_POAManager
+    assert manager.get_state() == PortableServer.POAManager.HOLDING
+    manager.activate()
+    assert manager.get_state() == manager.ACTIVE
+    assert len(servant._this()._narrow(Shop.Counter).list()) == 3
+    manager.discard_requests()
+    assert manager.get_state() == manager.DISCARDING
+    manager.deactivate()
+    assert manager.get_state() == manager.INACTIVE
+    own.destroy(True, True)

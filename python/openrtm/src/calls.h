@@ -81,6 +81,9 @@ class Servant final : public PortableServer::ServantBase {
   PyObject* self() const { return self_; }
   // The object adapter may call it from now on: the Python object stays.
   void keep_self();
+  // Where it is active; nil before that. With the interpreter's lock.
+  PortableServer::POA_ptr adapter() const { return adapter_.in(); }
+  void set_adapter(PortableServer::POA_ptr adapter) { adapter_ = PortableServer::POA::_duplicate(adapter); }
 
   CORBA::Boolean _dispatch(omniCallHandle& handle) override;
   const char* _mostDerivedRepoId() override { return ids_.empty() ? "IDL:omg.org/CORBA/Object:1.0" : ids_.front().c_str(); }
@@ -91,6 +94,7 @@ class Servant final : public PortableServer::ServantBase {
  private:
   PyObject* self_;
   bool is_kept_ = false;
+  PortableServer::POA_var adapter_;
   const std::vector<std::string> ids_;
   std::map<std::string, const Operation*> operations_;
 };

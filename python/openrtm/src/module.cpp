@@ -1,6 +1,7 @@
 // The extension module _openrtm_core: the runtime for components of Python (packages/OpenRTM_aist) and the ORB (packages/omniORB).
 #include <pybind11/pybind11.h>
 
+#include "adapters.h"
 #include "channel.h"
 #include "component.h"
 #include "contexts.h"
@@ -18,6 +19,7 @@ PYBIND11_MODULE(_openrtm_core, module) {
   python::add_services(module);
   python::add_channels(module);
   python::add_components(module);
+  python::add_adapters(module);
   python::add_orb(module);
   python::add_manager(module);
   python::add_manager_listeners(module);

@@ -1,12 +1,15 @@
 #include "orb.h"
 
+#include <omniORB4/CORBA.h>
+#include <omniORB4/minorCode.h>
 #include <pybind11/stl.h>
+#include <rtm/Manager.h>
 
-#include <cstring>
+#include <optional>
 
+#include "adapters.h"
 #include "calls.h"
 #include "coder.h"
-#include "component.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
 #include "references.h"
@@ -44,61 +47,6 @@ std::vector<std::string> orb_init(const std::vector<std::string>& words) {
   return rest;
 }
 
-PortableServer::POA_ptr root_poa() {
-  const CORBA::ORB_var orb = current_orb();
-  const CORBA::Object_var object = orb->resolve_initial_references("RootPOA");
-  return PortableServer::POA::_narrow(object);
-}
-
-py::bytes id_bytes(const PortableServer::ObjectId& id) { return py::bytes(reinterpret_cast<const char*>(id.get_buffer()), id.length()); }
-
-PortableServer::ObjectId id_from(const std::string& octets) {
-  PortableServer::ObjectId id;
-  id.length(static_cast<CORBA::ULong>(octets.size()));
-  if (!octets.empty()) std::memcpy(id.get_buffer(), octets.data(), octets.size());
-  return id;
-}
-
-py::bytes activate(Servant& servant) {
-  servant.keep_self();
-  const PortableServer::ObjectId_var id = asked([&] {
-    const PortableServer::POA_var poa = root_poa();
-    try {
-      return PortableServer::ObjectId_var(poa->activate_object(&servant));
-    } catch (const PortableServer::POA::ServantAlreadyActive&) {
-      return PortableServer::ObjectId_var(poa->servant_to_id(&servant));
-    }
-  });
-  return id_bytes(id.in());
-}
-
-py::object reference_of(Servant& servant) {
-  servant.keep_self();
-  const CORBA::Object_var object = asked([&] {
-    const PortableServer::POA_var poa = root_poa();
-    return CORBA::Object_var(poa->servant_to_reference(&servant));
-  });
-  return py::reinterpret_steal<py::object>(reference_out(object, servant._mostDerivedRepoId()));
-}
-
-// The Python object behind a reference, when it is in this process.
-py::object local_servant(const ObjRef& self) {
-  Servant* own = nullptr;
-  PortableServer::ServantBase* servant = nullptr;
-  try {
-    unlocked([&] {
-      const PortableServer::POA_var poa = root_poa();
-      servant = poa->reference_to_servant(self.object);
-    });
-  } catch (const CORBA::Exception&) {
-    return py::none();
-  }
-  own = dynamic_cast<Servant*>(servant);
-  py::object found = own && own->self() ? py::reinterpret_borrow<py::object>(own->self()) : py::object(py::none());
-  unlocked([&] { servant->_remove_ref(); });
-  return found;
-}
-
 void add_references(py::module_& module) {
   py::class_<ObjRef>(module, "ObjRef")
       .def("invoke", &invoke)
@@ -122,26 +70,30 @@ void add_references(py::module_& module) {
            })
       .def("set_timeout",
            [](const ObjRef& self, long milliseconds) { corba::limit_calls(self.object, std::chrono::milliseconds(milliseconds)); });
-  py::class_<Servant, std::shared_ptr<Servant>>(module, "Servant")
-      .def(py::init([](const py::object& self, const py::dict& operations, std::vector<std::string> ids) {
-        return owned(new Servant(self, operations, std::move(ids)));
-      }))
-      .def("this", &reference_of)
-      .def("activate", &activate)
-      .def("activate_with_id", [](Servant& servant, const std::string& id) {
-        servant.keep_self();
-        asked([&] {
-          const PortableServer::POA_var poa = root_poa();
-          poa->activate_object_with_id(id_from(id), &servant);
-        });
-      });
+}
+
+// The names and numbers of omniORB's minor codes.
+py::dict minor_codes() {
+  using namespace omni;
+  py::dict all;
+  for (const minorCodeLookup* table : {BAD_PARAM_LookupTable, BAD_INV_ORDER_LookupTable, COMM_FAILURE_LookupTable, INITIALIZE_LookupTable,
+                                       INV_OBJREF_LookupTable, MARSHAL_LookupTable, NO_IMPLEMENT_LookupTable, OBJECT_NOT_EXIST_LookupTable,
+                                       TIMEOUT_LookupTable, TRANSIENT_LookupTable, UNKNOWN_LookupTable})
+    for (; table->name; ++table) all[table->name] = table->value;
+  return all;
 }
 
 void add_orb_functions(py::module_& module) {
+  module.def("minor_codes", &minor_codes);
   module.def("orb_init", &orb_init);
   module.def("orb_run", [] { unlocked([] { current_orb()->run(); }); });
   module.def("orb_shutdown", [] { unlocked([] { current_orb()->shutdown(false); }); });
   module.def("set_call_timeout", [](unsigned long milliseconds) { omniORB::setClientCallTimeout(milliseconds); });
+  module.def("set_connect_timeout", [](unsigned long milliseconds) { omniORB::setClientConnectTimeout(milliseconds); });
+  module.def("trace_level", [](std::optional<CORBA::ULong> level) {
+    if (level) omniORB::traceLevel = *level;
+    return omniORB::traceLevel;
+  });
   module.def("string_to_object", [](const std::string& text) {
     const CORBA::Object_var object = asked([&] { return CORBA::Object_var(current_orb()->string_to_object(text.c_str())); });
     return py::reinterpret_steal<py::object>(reference_out(object, ""));
@@ -155,26 +107,9 @@ void add_orb_functions(py::module_& module) {
     const CORBA::Object_var object = asked([&] { return CORBA::Object_var(current_orb()->resolve_initial_references(name.c_str())); });
     return py::reinterpret_steal<py::object>(reference_out(object, name == "NameService" ? "IDL:omg.org/CosNaming/NamingContext:1.0" : ""));
   });
-  module.def("poa_activate", [] {
-    if (own_orb) return unlocked([] { own_orb->activate(); });
-    asked([] {
-      const PortableServer::POA_var poa = root_poa();
-      const PortableServer::POAManager_var manager = poa->the_POAManager();
-      manager->activate();
-    });
-  });
-  module.def("poa_deactivate", [](const std::string& id) {
-    asked([&] {
-      const PortableServer::POA_var poa = root_poa();
-      poa->deactivate_object(id_from(id));
-    });
-  });
-  module.def("poa_id_to_reference", [](const std::string& id) {
-    const CORBA::Object_var object = asked([&] {
-      const PortableServer::POA_var poa = root_poa();
-      return CORBA::Object_var(poa->id_to_reference(id_from(id)));
-    });
-    return py::reinterpret_steal<py::object>(reference_out(object, ""));
+  // Before anybody calls objects of a script without a manager.
+  module.def("orb_activate", [] {
+    if (own_orb) unlocked([] { own_orb->activate(); });
   });
 }
 

@@ -219,6 +219,10 @@ class ORB:
     def perform_work(self):
         pass
 
+    def create_policy(self, type_, value):
+        from . import PortableServer
+        return PortableServer.Policy(type_, value)
+
     def create_sequence_tc(self, bound, element):
         return TypeCode((tcInternal.tv_sequence, element._d, bound))
 

@@ -311,7 +311,19 @@ def setClientCallTimeout(*args):
         _core.set_call_timeout(int(args[0]))
 
 
+def setClientConnectTimeout(milliseconds):
+    _core.set_connect_timeout(int(milliseconds))
+
+
+def traceLevel(level=None):
+    """How much the ORB logs, 0 to 40. Without an argument the present value."""
+    return _core.trace_level(level)
+
+
 def __getattr__(name):
-    if name in ("any", "URI"):
+    if name in ("any", "URI", "minorCodes"):
         return importlib.import_module("omniORB." + name)
+    codes = vars(importlib.import_module("omniORB.minorCodes"))
+    if name in codes and "_" in name.strip("_"):
+        return codes[name]
     raise AttributeError("omniORB.%s is not part of this implementation (docs/python-components.md)" % name)
