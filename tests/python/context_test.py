@@ -130,3 +130,43 @@ def test_a_context_that_fails_is_one_clear_line(system, tmp_path, context, line)
     assert "Fatal" not in log
     process.terminate()
     assert process.wait(60) == 0
+
+
+@pytest.mark.parametrize("end", ["return 0", "raise ValueError('over')"])
+def test_a_component_rests_in_a_context_whose_loop_has_returned(system, tmp_path, end):  # noqa: F811
+    context = f"""
+class Own(OpenRTM_aist.PeriodicExecutionContext):
+    def svc(self):
+        while not Run.seen:
+            self.invokeWorkerPreDo()
+            self.invokeWorkerDo()
+            time.sleep(0.001)
+        {end}
+"""
+    file = made(tmp_path, context)
+    text = (tmp_path / file).read_text().replace("    def onExecute", """    seen = False
+    def onDeactivated(self, ec_id):
+        print("deactivated", flush=True)
+        return RTC.RTC_OK
+
+    def onExecute""").replace('        if self._count == 5:', '        Run.seen = self._count == 5\n        if self._count == 5:')
+    (tmp_path / file).write_text(text)
+    process = program(system, file, "-o", "exec_cxt.periodic.type:Own", "-o", "exec_cxt.callback_timeout:3600", folder=tmp_path)
+    seen(system, "Run0")
+    system.rtse("act", "Run0")
+    log = says(system, process, "its components stand still")
+    assert "Own.svc() of an execution context" in log
+    system.rtse("exit", "Run0")
+    says(system, process, "deactivated")
+    await_("the component has left", lambda: "Run0" not in system.rtse("ls"))
+
+
+@pytest.mark.parametrize("wrong", ["None", "3", "'Own'"])
+def test_a_context_that_nobody_can_make_is_one_line(system, tmp_path, wrong):  # noqa: F811
+    file = made(tmp_path, ticked)
+    (tmp_path / file).write_text((tmp_path / file).read_text().replace('registerECFactory("Own", Own,', f'registerECFactory("Own", {wrong},'))
+    process = program(system, file, folder=tmp_path)
+    log = says(system, process, "registered False False")
+    assert "registerECFactory('Own'): expected a class of an execution context or a function that makes one, got " in log
+    process.terminate()
+    assert process.wait(60) == 0

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bitset>
 #include <memory>
 #include <string>
@@ -86,6 +87,7 @@ class Hooks {
  public:
   void bind(PyObject* self, const std::vector<std::string>& overridden) {
     self_ = self;
+    class_name_ = Py_TYPE(self)->tp_name;
     for (std::size_t i = 0; i < hook_count; ++i)
       overridden_[i] = std::find(overridden.begin(), overridden.end(), hook_names[i]) != overridden.end();
   }
@@ -125,9 +127,11 @@ class Hooks {
         problem = error.what();
       }
     }
-    RTC::Logger("context").write(RTC::Logger::RTL_ERROR,
-                                 std::string(hook_names[hook]) + "() of an execution context failed; " + consequence + ": " + problem);
+    log(RTC::Logger::RTL_ERROR, hook, std::string("failed; ") + consequence + ": " + problem);
     return false;
+  }
+  void log(int level, Hook hook, const std::string& text) const {
+    RTC::Logger("context").write(level, class_name_ + "." + hook_names[hook] + "() of an execution context " + text);
   }
 
   template <class Base, class... Arguments>
@@ -149,6 +153,7 @@ class Hooks {
  private:
   PyObject* self_ = nullptr;
   bool is_kept_ = false;
+  std::string class_name_;
   std::bitset<hook_count> overridden_;
 };
 
@@ -165,7 +170,8 @@ class Plain : public RTC::ExecutionContextServant<POA_OpenRTM::ExtTrigExecutionC
 template <class Base>
 constexpr bool has_loop = std::is_base_of_v<RTC::PeriodicExecutionContext, Base>;
 
-// The one operation that differs: the loop of a periodic context, the tick of the others.
+// The one operation that differs: the loop of a periodic context, the tick of the others. When the loop has returned although nobody has
+// stopped the context, who waits for a component to rest makes the transition.
 template <class Base>
 class Driven : public Base {
  public:
@@ -175,6 +181,7 @@ class Driven : public Base {
     hooks.call(Hook::tick, "the tick is lost", [](PyObject*) {});
   }
   Hooks hooks;
+  std::atomic<bool> loop_is_over{false};
 };
 template <class Base>
 requires has_loop<Base>
@@ -183,10 +190,14 @@ class Driven<Base> : public Base {
   using Base::Base;
   int svc() override {
     if (!hooks.has(Hook::svc)) return Base::svc();
-    hooks.call(Hook::svc, "its components stand still", [](PyObject*) {});
+    loop_is_over = false;
+    const bool has_returned = hooks.call(Hook::svc, "its components stand still", [](PyObject*) {});
+    if (has_returned && this->threadRunning()) hooks.log(RTC::Logger::RTL_WARN, Hook::svc, "has returned; its components stand still");
+    loop_is_over = true;
     return 0;
   }
   Hooks hooks;
+  std::atomic<bool> loop_is_over{false};
 };
 
 template <class Base>
@@ -257,14 +268,22 @@ class Context final : public Driven<Base> {
   Code onResetting(Component one) override { return hooks.code(Hook::resetting, ok, one); }
   Code onWaitingActivated(Machine* one, long count) override { return hooks.code(Hook::waiting_activated, ok, one, count); }
   Code onActivated(Machine* one, long count) override { return hooks.code(Hook::activated, ok, one, count); }
-  Code onWaitingDeactivated(Machine* one, long count) override { return hooks.code(Hook::waiting_deactivated, ok, one, count); }
+  Code onWaitingDeactivated(Machine* one, long count) override { return rested(Hook::waiting_deactivated, one, count); }
   Code onDeactivated(Machine* one, long count) override { return hooks.code(Hook::deactivated, ok, one, count); }
-  Code onWaitingReset(Machine* one, long count) override { return hooks.code(Hook::waiting_reset, ok, one, count); }
+  Code onWaitingReset(Machine* one, long count) override { return rested(Hook::waiting_reset, one, count); }
   Code onReset(Machine* one, long count) override { return hooks.code(Hook::reset, ok, one, count); }
 
  private:
   static Code ok() { return RTC::RTC_OK; }
+  Code rested(Hook hook, Machine* one, long count) {
+    const Code code = hooks.code(hook, ok, one, count);
+    if (!this->loop_is_over || is_stepping_.exchange(true)) return code;
+    this->invokeWorkerPreDo();
+    is_stepping_ = false;
+    return code;
+  }
   bool is_destroyed_ = false;
+  std::atomic<bool> is_stepping_{false};
 };
 
 // --- factories
@@ -416,6 +435,7 @@ Class<Base> add_context(py::module_& module, const char* name, Make make) {
   cls.def(py::init([make](const std::string& given) { return owned(unlocked([&] { return make(given); })); }), py::arg("name") = "")
       .def("_bind", [](Self& self, const py::object& object,
                        const std::vector<std::string>& overridden) { self.hooks.bind(object.ptr(), overridden); })
+      .def("_rtm_loop_is_over", [](Self& self, bool is_over) { self.loop_is_over = is_over; })
       .def("init", [](Self& self, const Properties& properties) { unlocked([&] { self.base_init(*properties.node); }); })
       .def("start", [](Self& self) { return code_item(unlocked([&] { return self.start(); })); })
       .def("stop", [](Self& self) { return code_item(unlocked([&] { return self.stop(); })); })

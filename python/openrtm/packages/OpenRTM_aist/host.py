@@ -6,10 +6,12 @@ also known under its bare name. Its folder comes first in sys.path.
 import os
 import re
 import sys
+import threading
 
 import _openrtm_core as _core
 
 _loaded = {}  # real path: module
+_loading = []  # for each module that is being imported: [thread, the function that its main() gives to setModuleInitProc]
 
 
 def prepare():
@@ -17,6 +19,15 @@ def prepare():
     coding = _core.manager_config().getProperty("manager.modules.Python.text")
     if coding:
         _core.set_text_coding(coding.lower())
+
+
+def is_loading():
+    """Whether a module is being imported now, on this thread."""
+    return bool(_loading) and _loading[-1][0] == threading.get_ident()
+
+
+def set_init_function(function):
+    _loading[-1][1] = function
 
 
 def _told():
@@ -28,15 +39,18 @@ def _told():
 
 def load(file, init_function):
     """Import a module and call its init function. Empty, or the line that says why it failed."""
+    _loading.append([threading.get_ident(), None])
     try:
         module = _import(file)
     except SyntaxError as problem:
         return syntax_problem(file, problem)
     except BaseException as problem:
         return old_name(problem) or "cannot be imported: " + _told()
+    finally:
+        named = _loading.pop()[1]
     stem = os.path.splitext(os.path.basename(file))[0]
     names = [init_function] if init_function else [stem + "Init", stem[:1].upper() + stem[1:] + "Init", "MyModuleInit"]
-    function = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), None)
+    function = next((getattr(module, name) for name in names if callable(getattr(module, name, None))), named)
     if function is None:
         return "has no function " + names[0]
     from .manager import Manager

@@ -134,14 +134,19 @@ class Manager:
 
     # --- life
 
+    # A module that calls its main() while a host loads it wants its components only: the host runs the manager.
     def setModuleInitProc(self, proc):
-        _core.manager_set_init_function(lambda: proc(self))
+        if host.is_loading():
+            host.set_init_function(proc)
+        else:
+            _core.manager_set_init_function(lambda: proc(self))
 
     def activateManager(self):
-        return _core.manager_activate()
+        return True if host.is_loading() else _core.manager_activate()
 
     def runManager(self, no_block=None):
-        _core.manager_run(bool(no_block))
+        if not host.is_loading():
+            _core.manager_run(bool(no_block))
 
     def shutdown(self):
         _core.manager_shutdown()
@@ -179,6 +184,10 @@ class Manager:
     # --- components
 
     def registerFactory(self, profile, new_func, delete_func=None):
+        if not callable(new_func):
+            self.getLogbuf().RTC_ERROR("registerFactory(%r): expected a class of a component or a function that makes one, got %s",
+                                       (profile.getProperty("implementation_id"), type(new_func).__name__))
+            return False
         return _core.manager_register_factory(profile, lambda: new_func(self))
 
     def createComponent(self, comp_args):
@@ -231,6 +240,10 @@ class Manager:
     def registerECFactory(self, name, new_func, delete_func=None):
         """Components may name the context in execution_contexts or exec_cxt.periodic.type from now on."""
         from .contexts import ExecutionContextFactory
+        if not callable(new_func):
+            self.getLogbuf().RTC_ERROR("registerECFactory(%r): expected a class of an execution context or a function that makes one, got %s",
+                                       (name, type(new_func).__name__))
+            return False
         return ExecutionContextFactory.instance().addFactory(name, new_func, delete_func) == ExecutionContextFactory.FACTORY_OK
 
     def isRunning(self):

@@ -5,7 +5,7 @@ import time
 import _openrtm_core as _core
 
 __all__ = ["Async_tInvoker", "Async_ref_tInvoker", "Async_t", "Async_ref_t", "ScopedLock", "Task", "Time", "TimeValue", "TimeMeasure",
-           "ClockManager", "Guard", "Timer", "PeriodicTask", "ListenerObject", "ListenerFunc", "toTypename"]
+           "ClockManager", "SystemClock", "LogicalClock", "AdjustedClock", "Guard", "Timer", "PeriodicTask", "ListenerObject", "ListenerFunc", "toTypename"]
 
 
 class uuid1:
@@ -54,10 +54,11 @@ class Guard(ScopedLock):
 
 class Task:
     """A thread that runs svc()."""
+    __thread = None
+    __runs = False
 
     def __init__(self):
-        self._thread = None
-        self._running = False
+        pass
 
     def open(self, args=None):
         return 0
@@ -69,25 +70,28 @@ class Task:
         return 0
 
     def activate(self):
-        if self._running:
+        if self.__runs:
             return
-        self._running = True
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
+        self.__runs = True
+        self.__told = getattr(self, "_rtm_loop_is_over", lambda is_over: None)  # of a context whose loop this is
+        self.__told(False)
+        self.__thread = threading.Thread(target=self.__run, daemon=True)
+        self.__thread.start()
 
-    def _run(self):
+    def __run(self):
         try:
             self.svc()
         finally:
-            self._running = False
+            self.__runs = False
+            self.__told(True)
 
     def wait(self):
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join()
+        if self.__thread is not None and self.__thread is not threading.current_thread():
+            self.__thread.join()
         return 0
 
     def reset(self):
-        self._running = False
+        self.__runs = False
 
     def finalize(self):
         self.reset()
@@ -173,61 +177,61 @@ class PeriodicTask:
     """Calls a function at a period on a thread of its own: setTask, setPeriod, activate; finalize ends it."""
 
     def __init__(self):
-        self._function = None
-        self._period = 0.0
-        self._thread = None
-        self._changed = threading.Condition()
-        self._is_over = self._is_suspended = self._is_told = False
+        self.__function = None
+        self.__period = 0.0
+        self.__thread = None
+        self.__changed = threading.Condition()
+        self.__is_over = self.__is_suspended = self.__is_told = False
 
     def setTask(self, function, delete_in_dtor=True):
-        self._function = getattr(function, "svc", function)
+        self.__function = getattr(function, "svc", function)
         return True
 
     def setPeriod(self, period):
         """Seconds, or a TimeValue."""
-        self._period = period.toDouble() if hasattr(period, "toDouble") else float(period)
+        self.__period = period.toDouble() if hasattr(period, "toDouble") else float(period)
 
     def activate(self):
-        if self._thread is None and self._function is not None:
-            self._is_over = False
-            self._thread = threading.Thread(target=self._run, daemon=True)
-            self._thread.start()
+        if self.__thread is None and self.__function is not None:
+            self.__is_over = False
+            self.__thread = threading.Thread(target=self.__run, daemon=True)
+            self.__thread.start()
 
     def suspend(self):
-        self._is_suspended = True
+        self.__is_suspended = True
         return 0
 
     def resume(self):
-        with self._changed:
-            self._is_suspended = False
-            self._changed.notify()
+        with self.__changed:
+            self.__is_suspended = False
+            self.__changed.notify()
         return 0
 
     def signal(self):
         """Call it now, although its time has not come or it is suspended."""
-        with self._changed:
-            self._is_told = True
-            self._changed.notify()
+        with self.__changed:
+            self.__is_told = True
+            self.__changed.notify()
 
     def finalize(self):
-        with self._changed:
-            self._is_over = True
-            self._changed.notify()
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join()
-        self._thread = None
+        with self.__changed:
+            self.__is_over = True
+            self.__changed.notify()
+        if self.__thread is not None and self.__thread is not threading.current_thread():
+            self.__thread.join()
+        self.__thread = None
 
-    def _run(self):
+    def __run(self):
         due = time.monotonic()
         while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._is_over or self._is_told, max(due - time.monotonic(), 0))
-                self._changed.wait_for(lambda: self._is_over or self._is_told or not self._is_suspended)
-                if self._is_over:
+            with self.__changed:
+                self.__changed.wait_for(lambda: self.__is_over or self.__is_told, max(due - time.monotonic(), 0))
+                self.__changed.wait_for(lambda: self.__is_over or self.__is_told or not self.__is_suspended)
+                if self.__is_over:
                     return
-                self._is_told = False
-            self._function()
-            due = max(due + self._period, time.monotonic())
+                self.__is_told = False
+            self.__function()
+            due = max(due + self.__period, time.monotonic())
 
 
 class Timer:
@@ -282,7 +286,7 @@ class _Factory:
         return cls._the_one
 
     def addFactory(self, id_, creator, deleter=None):
-        if not id_ or creator is None:
+        if not id_ or not callable(creator):
             return self.INVALID_ARG
         code = self._add(id_, creator)
         if code == self.FACTORY_OK:
@@ -356,7 +360,9 @@ class TimeMeasure:
         return bool(values)
 
 
-class _Clock:
+class LogicalClock:
+    """The clock in force: simulated time in simulated contexts."""
+
     def gettime(self):
         return Time().getTime()
 
@@ -364,7 +370,13 @@ class _Clock:
         return False
 
 
-class _SystemClock(_Clock):
+class AdjustedClock(LogicalClock):
+    pass
+
+
+class SystemClock(LogicalClock):
+    """The wall clock."""
+
     def gettime(self):
         return TimeValue(time.time())
 
@@ -380,4 +392,4 @@ class ClockManager:
 
     def getClock(self, name):
         """ "logical" and "adjusted" are the clock in force, "system" is the wall clock."""
-        return _SystemClock() if name == "system" else _Clock()
+        return SystemClock() if name == "system" else LogicalClock()
