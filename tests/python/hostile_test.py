@@ -133,6 +133,7 @@ def test_listeners_that_raise_are_logged_and_samples_go_on(system, tmp_path):  #
     log = says(system, process, "ZeroDivisionError")
     assert "KeyError: 'data listener'" in log
     assert log.count("raised: ZeroDivisionError") == 1
+    assert "Raiser0: a PreComponentActionListener raised: ZeroDivisionError" in log
     system.rtse("dis", "Raiser0:out", "Printer0:number")
     says(system, process, "SystemExit: 3")
     assert process.poll() is None

@@ -78,3 +78,37 @@ def test_lists_of_names_and_values_become_properties():
 def test_a_name_that_is_missing_says_where_the_names_are():
     with pytest.raises(AttributeError, match="OpenRTM_aist.InPortPushConnector is not part of this implementation"):
         OpenRTM_aist.InPortPushConnector
+
+
+def test_a_star_import_brings_what_is_loaded_later_too():
+    names = {}
+    exec("from OpenRTM_aist import *", names)
+    for name in ("DataFlowComponentBase", "CorbaNaming", "StaticFSM", "CSPInPort", "PeriodicECSharedComposite", "newNV", "get_state", "EventInPort"):
+        assert name in names, name
+
+
+def test_an_attribute_of_an_author_hides_none_of_the_base():
+    class Odd(OpenRTM_aist.Task):
+        def __init__(self):
+            self._thread = self._running = self._run = self._function = 7
+            self.called = threading.Semaphore(0)
+
+        def svc(self):
+            self.called.release()
+            return 0
+
+    task = Odd()
+    task.activate()
+    assert task.called.acquire(timeout=30)
+    task.wait()
+    own = {name for name in vars(OpenRTM_aist.DataFlowComponentBase) if name.startswith("_") and not name.startswith("__")}
+    known = {"_configsets", "_this", "_SdoConfigImpl", "_profile", "_properties", "_objref", "_orb", "_poa", "_default_POA"}
+    assert {name for name in own if not name.startswith("_rtm_")} == known
+
+
+def test_the_names_of_minor_codes_are_those_of_the_orb():
+    import omniORB
+    from omniORB.minorCodes import TRANSIENT_ConnectFailed
+    assert TRANSIENT_ConnectFailed == omniORB.TRANSIENT_ConnectFailed == 0x41540002
+    with pytest.raises(AttributeError):
+        omniORB.TRANSIENT_NoSuchCode

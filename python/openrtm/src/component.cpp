@@ -4,6 +4,7 @@
 #include <rtm/CorbaPort.h>
 
 #include "component/managed.h"
+#include "composites.h"
 #include "convert.h"
 #include "ports.h"
 #include "properties.h"
@@ -74,7 +75,7 @@ void Component::keep_self() {
 void Component::let_self_go() {
   if (!std::exchange(is_kept_, false) || !self_) return;
   const Ref self(self_);
-  const Ref result(PyObject_CallMethod(self.get(), "_let_go", nullptr));
+  const Ref result(PyObject_CallMethod(self.get(), "_rtm_let_go", nullptr));
   if (!result) PyErr_Clear();
 }
 
@@ -149,8 +150,9 @@ bool Component::bind_parameter(const std::string& name, const std::string& defau
 
 namespace {
 
+// `kind`: of listener.
 template <class Call>
-void heard(const Function& function, Complaint& complaint, Call arguments) {
+void heard(const Component& owner, const char* kind, const Function& function, Complaint& complaint, Call arguments) {
   const Locked locked;
   std::string problem;
   try {
@@ -164,15 +166,15 @@ void heard(const Function& function, Complaint& complaint, Call arguments) {
   }
   if (!complaint.is_new(problem)) return;
   const Released released;
-  RTC::Logger("listener").write(RTC::Logger::RTL_ERROR, "a listener raised: " + problem);
+  RTC::Logger(owner.getInstanceName()).write(RTC::Logger::RTL_ERROR, std::string("a ") + kind + " raised: " + problem);
 }
 
 template <class Base, class... Args>
 class Heard : public Base {
  public:
-  explicit Heard(const py::object& function) : function_(function) {}
+  Heard(const Component& owner, const char* kind, const py::object& function) : owner_(owner), kind_(kind), function_(function) {}
   void operator()(Args... args) override {
-    heard(function_, complaint_, [&] { return py::make_tuple(to_argument(args)...); });
+    heard(owner_, kind_, function_, complaint_, [&] { return py::make_tuple(to_argument(args)...); });
   }
 
  private:
@@ -182,6 +184,8 @@ class Heard : public Base {
   static py::object to_argument(const RTC::PortProfile& profile) { return to_python(profile, "IDL:omg.org/RTC/PortProfile:1.0"); }
   static py::object to_argument(RTC::ConnectorProfile& profile) { return to_python(profile, "IDL:omg.org/RTC/ConnectorProfile:1.0"); }
   static py::object to_argument(const coil::Properties& set) { return py::cast(Properties::copy_of(set)); }
+  const Component& owner_;
+  const char* const kind_;
   const Function function_;
   Complaint complaint_;
 };
@@ -198,35 +202,43 @@ void Component::add_listener(int group, int type, const py::object& function) {
   switch (group) {
     case 0:
       return addPreComponentActionListener(as<PreComponentActionListenerType>(type),
-                                           new Heard<PreComponentActionListener, UniqueId>(function));
+                                           new Heard<PreComponentActionListener, UniqueId>(*this, "PreComponentActionListener", function));
     case 1:
-      return addPostComponentActionListener(as<PostComponentActionListenerType>(type),
-                                            new Heard<PostComponentActionListener, UniqueId, ReturnCode_t>(function));
+      return addPostComponentActionListener(
+          as<PostComponentActionListenerType>(type),
+          new Heard<PostComponentActionListener, UniqueId, ReturnCode_t>(*this, "PostComponentActionListener", function));
     case 2:
-      return addPortActionListener(as<PortActionListenerType>(type), new Heard<PortActionListener, const PortProfile&>(function));
+      return addPortActionListener(as<PortActionListenerType>(type),
+                                   new Heard<PortActionListener, const PortProfile&>(*this, "PortActionListener", function));
     case 3:
-      return addExecutionContextActionListener(as<ExecutionContextActionListenerType>(type),
-                                               new Heard<ExecutionContextActionListener, UniqueId>(function));
+      return addExecutionContextActionListener(
+          as<ExecutionContextActionListenerType>(type),
+          new Heard<ExecutionContextActionListener, UniqueId>(*this, "ExecutionContextActionListener", function));
     case 4:
       return addPortConnectListener(as<PortConnectListenerType>(type),
-                                    new Heard<PortConnectListener, const char*, ConnectorProfile&>(function));
+                                    new Heard<PortConnectListener, const char*, ConnectorProfile&>(*this, "PortConnectListener", function));
     case 5:
-      return addPortConnectRetListener(as<PortConnectRetListenerType>(type),
-                                       new Heard<PortConnectRetListener, const char*, ConnectorProfile&, ReturnCode_t>(function));
+      return addPortConnectRetListener(
+          as<PortConnectRetListenerType>(type),
+          new Heard<PortConnectRetListener, const char*, ConnectorProfile&, ReturnCode_t>(*this, "PortConnectRetListener", function));
     case 6:
-      return addConfigurationParamListener(as<ConfigurationParamListenerType>(type),
-                                           new Heard<ConfigurationParamListener, const char*, const char*>(function));
+      return addConfigurationParamListener(
+          as<ConfigurationParamListenerType>(type),
+          new Heard<ConfigurationParamListener, const char*, const char*>(*this, "ConfigurationParamListener", function));
     case 7:
-      return addConfigurationSetListener(as<ConfigurationSetListenerType>(type),
-                                         new Heard<ConfigurationSetListener, const coil::Properties&>(function));
+      return addConfigurationSetListener(
+          as<ConfigurationSetListenerType>(type),
+          new Heard<ConfigurationSetListener, const coil::Properties&>(*this, "ConfigurationSetListener", function));
     case 8:
-      return addConfigurationSetNameListener(as<ConfigurationSetNameListenerType>(type),
-                                             new Heard<ConfigurationSetNameListener, const char*>(function));
+      return addConfigurationSetNameListener(
+          as<ConfigurationSetNameListenerType>(type),
+          new Heard<ConfigurationSetNameListener, const char*>(*this, "ConfigurationSetNameListener", function));
     case 9:
-      return addPreFsmActionListener(as<PreFsmActionListenerType>(type), new Heard<PreFsmActionListener, const char*>(function));
+      return addPreFsmActionListener(as<PreFsmActionListenerType>(type),
+                                     new Heard<PreFsmActionListener, const char*>(*this, "PreFsmActionListener", function));
     case 10:
-      return addPostFsmActionListener(as<PostFsmActionListenerType>(type),
-                                      new Heard<PostFsmActionListener, const char*, ReturnCode_t>(function));
+      return addPostFsmActionListener(as<PostFsmActionListenerType>(type), new Heard<PostFsmActionListener, const char*, ReturnCode_t>(
+                                                                               *this, "PostFsmActionListener", function));
     default:
       throw py::index_error("no such kind of listener");
   }
@@ -256,7 +268,7 @@ std::vector<py::object> sets_of(Component& self) {
 }
 
 void add_configuration(py::class_<Component, Holder>& cls) {
-  cls.def("_config_update",
+  cls.def("_rtm_config_update",
           [](Component& self, const std::string& set, const std::string& parameter) {
             const Released released;
             if (set.empty())
@@ -266,26 +278,27 @@ void add_configuration(py::class_<Component, Holder>& cls) {
             else
               self.m_configsets.update(set.c_str(), parameter.c_str());
           })
-      .def("_config_has_parameter", [](Component& self, const std::string& name) { return self.m_configsets.isExist(name.c_str()); })
-      .def("_config_unbind", [](Component& self, const std::string& name) { return self.m_configsets.unbindParameter(name.c_str()); })
-      .def("_config_is_changed", [](Component& self) { return self.m_configsets.isChanged(); })
-      .def("_config_active_id", [](Component& self) { return std::string(self.m_configsets.getActiveId()); })
-      .def("_config_have", [](Component& self, const std::string& id) { return self.m_configsets.haveConfig(id.c_str()); })
-      .def("_config_is_active", [](Component& self) { return self.m_configsets.isActive(); })
-      .def("_config_sets", &sets_of)
-      .def("_config_set",
+      .def("_rtm_config_has_parameter", [](Component& self, const std::string& name) { return self.m_configsets.isExist(name.c_str()); })
+      .def("_rtm_config_unbind", [](Component& self, const std::string& name) { return self.m_configsets.unbindParameter(name.c_str()); })
+      .def("_rtm_config_is_changed", [](Component& self) { return self.m_configsets.isChanged(); })
+      .def("_rtm_config_active_id", [](Component& self) { return std::string(self.m_configsets.getActiveId()); })
+      .def("_rtm_config_have", [](Component& self, const std::string& id) { return self.m_configsets.haveConfig(id.c_str()); })
+      .def("_rtm_config_is_active", [](Component& self) { return self.m_configsets.isActive(); })
+      .def("_rtm_config_sets", &sets_of)
+      .def("_rtm_config_set",
            [](Component& self, const std::string& id) { return Properties::copy_of(self.m_configsets.getConfigurationSet(id.c_str())); })
-      .def("_config_set_values",
+      .def("_rtm_config_set_values",
            [](Component& self, const Properties& set) {
              return unlocked([&] { return self.m_configsets.setConfigurationSetValues(*set.node); });
            })
-      .def("_config_add", [](Component& self,
-                             const Properties& set) { return unlocked([&] { return self.m_configsets.addConfigurationSet(*set.node); }); })
-      .def("_config_remove",
+      .def(
+          "_rtm_config_add",
+          [](Component& self, const Properties& set) { return unlocked([&] { return self.m_configsets.addConfigurationSet(*set.node); }); })
+      .def("_rtm_config_remove",
            [](Component& self, const std::string& id) {
              return unlocked([&] { return self.m_configsets.removeConfigurationSet(id.c_str()); });
            })
-      .def("_config_activate", [](Component& self, const std::string& id) {
+      .def("_rtm_config_activate", [](Component& self, const std::string& id) {
         return unlocked([&] { return self.m_configsets.activateConfigurationSet(id.c_str()); });
       });
 }
@@ -300,13 +313,13 @@ void add_names(py::class_<Component, Holder>& cls) {
       .def("getCategory", [](Component& self) { return std::string(self.getCategory()); })
       .def("getNamingNames", [](Component& self) { return self.getNamingNames(); })
       .def(
-          "_properties_of",
+          "_rtm_properties_of",
           [](Component& self) {
             return Properties{nullptr, &self.m_properties};
           },
           py::keep_alive<0, 1>())
       .def("setProperties", [](Component& self, const Properties& other) { unlocked([&] { self.setProperties(*other.node); }); })
-      .def("_reference", [](Component& self) {
+      .def("_rtm_reference", [](Component& self) {
         CORBA::Object_var object;
         unlocked([&] { object = self.getObjRef(); });
         return py::reinterpret_steal<py::object>(reference_out(object, "IDL:openrtm.aist.go.jp/OpenRTM/DataFlowComponent:1.0"));
@@ -314,12 +327,12 @@ void add_names(py::class_<Component, Holder>& cls) {
 }
 
 void add_ports_of_components(py::class_<Component, Holder>& cls) {
-  cls.def("_add_in_port", [](Component& self, const std::string& name,
-                             RTC::InPortBase& port) { return unlocked([&] { return self.addInPort(name.c_str(), port); }); })
-      .def("_add_out_port", [](Component& self, const std::string& name,
-                               OutPort& port) { return unlocked([&] { return self.addOutPort(name.c_str(), port); }); })
-      .def("_add_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.addPort(port); }); })
-      .def("_remove_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.removePort(port); }); })
+  cls.def("_rtm_add_in_port", [](Component& self, const std::string& name,
+                                 RTC::InPortBase& port) { return unlocked([&] { return self.addInPort(name.c_str(), port); }); })
+      .def("_rtm_add_out_port", [](Component& self, const std::string& name,
+                                   OutPort& port) { return unlocked([&] { return self.addOutPort(name.c_str(), port); }); })
+      .def("_rtm_add_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.addPort(port); }); })
+      .def("_rtm_remove_port", [](Component& self, RTC::PortBase& port) { return unlocked([&] { return self.removePort(port); }); })
       .def("readAll", [](Component& self) { return unlocked([&] { return self.readAll(); }); })
       .def("writeAll", [](Component& self) { return unlocked([&] { return self.writeAll(); }); })
       .def(
@@ -387,11 +400,11 @@ void add_components(py::module_& module) {
        if (!manager) throw std::runtime_error("there is no manager yet: call OpenRTM_aist.Manager.init first");
        return owned(unlocked([&] { return new Component(manager); }));
      }))
-      .def("_bind_self", [](Component& self, py::object object) { self.bind_self(object.ptr()); })
-      .def("_bind_parameter", &Component::bind_parameter)
-      .def("_add_listener", &Component::add_listener)
-      .def("_tell_fsm", &tell_fsm)
-      .def("_notify_fsm", [](Component& self, bool is_structure, const std::string& hint) {
+      .def("_rtm_bind_self", [](Component& self, py::object object) { self.bind_self(object.ptr()); })
+      .def("_rtm_bind_parameter", &Component::bind_parameter)
+      .def("_rtm_add_listener", &Component::add_listener)
+      .def("_rtm_tell_fsm", &tell_fsm)
+      .def("_rtm_notify_fsm", [](Component& self, bool is_structure, const std::string& hint) {
         using Status = RTC::RTObject_impl::Status;
         unlocked([&] { self.notifyObservers(is_structure ? Status::fsm_structure : Status::fsm_profile, hint); });
       });
@@ -400,6 +413,7 @@ void add_components(py::module_& module) {
   add_contexts_of_components(cls);
   add_configuration(cls);
   add_sdo_of_components(cls);
+  add_organization_of_components(cls);
 }
 
 }  // namespace python

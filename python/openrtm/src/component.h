@@ -16,11 +16,16 @@
 #include "gil.h"
 #include "listeners.h"
 
+namespace SDOPackage {
+class PeriodicECOrganization;
+}
+
 namespace python {
 
 class Component final : public RTC::DataFlowComponentBase {
  public:
   explicit Component(RTC::Manager* manager) : DataFlowComponentBase(manager) {}
+  ~Component() override;
 
   // With the interpreter's lock: the Python object, not owned.
   void bind_self(PyObject* self);
@@ -34,6 +39,9 @@ class Component final : public RTC::DataFlowComponentBase {
 
   bool bind_parameter(const std::string& name, const std::string& default_value, const pybind11::object& function);
   void add_listener(int group, int type, const pybind11::object& function);
+  // Of a composite; nullptr for others.
+  void organize();
+  SDOPackage::PeriodicECOrganization* organization() const { return organization_; }
   using RTObject_impl::m_configsets;
   using RTObject_impl::m_properties;
 
@@ -58,6 +66,7 @@ class Component final : public RTC::DataFlowComponentBase {
   bool is_kept_ = false;
   bool updates_state_ = true;  // the class has an onStateUpdate of its own
   std::vector<std::unique_ptr<Function>> bound_;
+  SDOPackage::PeriodicECOrganization* organization_ = nullptr;  // a servant; this object holds one reference
 };
 
 // A new servant as its Python object owns it: when that dies, the servant forgets it and gives back the first reference.

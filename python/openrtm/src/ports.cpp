@@ -265,10 +265,9 @@ void add_ports(py::module_& module) {
       .def("_write", &OutPort::write_value)
       .def("_statuses",
            [](OutPort& port) {
-             std::vector<int> all;
-             for (const auto& status : port.getStatusList())
-               all.push_back(static_cast<int>(static_cast<RTC::DataPortStatus::Enum>(status)));
-             return py::cast(all);
+             py::list all;
+             for (const auto& status : port.getStatusList()) all.append(static_cast<int>(static_cast<RTC::DataPortStatus::Enum>(status)));
+             return all;
            })
       .def("_type_id", [](OutPort& port) { return port.type().id; })
       .def("_descriptor", [](OutPort& port) { return py::reinterpret_borrow<py::object>(port.type().descriptor); })

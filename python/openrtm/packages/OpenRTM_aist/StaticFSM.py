@@ -35,7 +35,7 @@ class Link:
     _history = None
 
     def __init__(self, machine):
-        self._machine = machine
+        self._rtm_machine = machine
 
     def onInit(self):
         pass
@@ -49,25 +49,25 @@ class Link:
     on_init, on_entry, on_exit = onInit, onEntry, onExit
 
     def set_state(self, state):
-        self._machine.change(state)
+        self._rtm_machine.change(state)
 
     setState = set_state
 
     def setStateHistory(self, state):
-        self._machine.change(state, with_history=True)
+        self._rtm_machine.change(state, with_history=True)
 
     def setStateDirect(self, state):
-        self._machine.change(state)
+        self._rtm_machine.change(state)
 
     def dispatch(self, event):
-        self._machine.dispatch(event)
+        self._rtm_machine.dispatch(event)
 
     def data(self, state_class=None):
-        return self._machine.data_of(state_class or type(self))
+        return self._rtm_machine.data_of(state_class or type(self))
 
     @property
     def rtComponent(self):
-        return self._machine.component
+        return self._rtm_machine.component
 
 
 def FSM_TOPSTATE(cls):
@@ -97,7 +97,7 @@ class Machine:
 
     def __init__(self, top, component=None):
         self.component = component
-        self._tells = hasattr(component, "_tell_fsm")
+        self._tells = hasattr(component, "_rtm_tell_fsm")
         self._top = top
         self._states, self._data, self._last = {}, {}, {}
         self._waiting = collections.deque()
@@ -207,10 +207,10 @@ class Machine:
     def _told(self, action, cls, call, after=None):
         if not self._tells:
             return call()
-        self.component._tell_fsm(False, action, cls.__name__, RTC.RTC_OK)
+        self.component._rtm_tell_fsm(False, action, cls.__name__, RTC.RTC_OK)
         code = call()
         is_code = getattr(code, "_parent_id", None) == RTC.ReturnCode_t._NP_RepositoryId
-        self.component._tell_fsm(True, action, (after() if after else cls).__name__, code if is_code else RTC.RTC_OK)
+        self.component._rtm_tell_fsm(True, action, (after() if after else cls).__name__, code if is_code else RTC.RTC_OK)
 
     def _common(self, old, new):
         common = []

@@ -36,6 +36,12 @@ for _name in ("ByteDataStreamBase", "CORBA_CdrMemoryStream", "SerializerFactorie
     _LATER[_name] = ("serializers", _name)
 for _name in ("SdoServiceProviderBase", "SdoServiceConsumerBase", "SdoServiceProviderFactory", "SdoServiceConsumerFactory"):
     _LATER[_name] = ("sdo", _name)
+_LATER["PeriodicECSharedComposite"] = ("composite", "PeriodicECSharedComposite")
+_LATER["EventInPort"] = ("EventPort", "EventInPort")
+for _name in ("newNV", "copyFromProperties", "copyToProperties", "isString", "isStringValue", "toString", "appendStringValue", "append", "dump"):
+    _LATER[_name] = ("NVUtil", _name)
+for _name in ("for_each", "find", "push_back", "push_back_list", "insert", "front", "back", "erase", "erase_if", "refToVstring"):
+    _LATER[_name] = ("CORBA_SeqUtil", _name)
 for _name in ("ExecutionContextBase", "PeriodicExecutionContext", "ExtTrigExecutionContext", "ExecutionContextFactory", "ECDelete"):
     _LATER[_name] = ("contexts", _name)
 for _name in ("activate", "already_connected", "connect", "connect_by_name", "connect_multi", "create_connector", "deactivate", "disconnect",
@@ -43,6 +49,10 @@ for _name in ("activate", "already_connected", "connect", "connect_by_name", "co
               "is_in_active", "is_in_error", "is_in_inactive", "reset"):
     _LATER[_name] = ("CORBA_RTCUtil", _name)
 del _name
+
+
+# `from OpenRTM_aist import *` takes those that are loaded later, too.
+__all__ = sorted({_name for _name in globals() if not _name.startswith("_")} | set(_LATER))
 
 
 def __getattr__(name):

@@ -24,49 +24,49 @@ class ConfigAdmin:
         self._component = component
 
     def update(self, config_set=None, config_param=None):
-        self._component._config_update(config_set or "", config_param or "")
+        self._component._rtm_config_update(config_set or "", config_param or "")
 
     def isExist(self, name):
-        return self._component._config_has_parameter(name)
+        return self._component._rtm_config_has_parameter(name)
 
     def unbindParameter(self, name):
-        return self._component._config_unbind(name)
+        return self._component._rtm_config_unbind(name)
 
     def isChanged(self):
-        return self._component._config_is_changed()
+        return self._component._rtm_config_is_changed()
 
     def changedParameters(self):
         return []
 
     def getActiveId(self):
-        return self._component._config_active_id()
+        return self._component._rtm_config_active_id()
 
     def haveConfig(self, config_id):
-        return self._component._config_have(config_id)
+        return self._component._rtm_config_have(config_id)
 
     def isActive(self):
-        return self._component._config_is_active()
+        return self._component._rtm_config_is_active()
 
     def getConfigurationSets(self):
-        return self._component._config_sets()
+        return self._component._rtm_config_sets()
 
     def getConfigurationSet(self, config_id):
-        return self._component._config_set(config_id)
+        return self._component._rtm_config_set(config_id)
 
     def getActiveConfigurationSet(self):
-        return self._component._config_set(self.getActiveId())
+        return self._component._rtm_config_set(self.getActiveId())
 
     def setConfigurationSetValues(self, config_set):
-        return self._component._config_set_values(config_set)
+        return self._component._rtm_config_set_values(config_set)
 
     def addConfigurationSet(self, config_set):
-        return self._component._config_add(config_set)
+        return self._component._rtm_config_add(config_set)
 
     def removeConfigurationSet(self, config_id):
-        return self._component._config_remove(config_id)
+        return self._component._rtm_config_remove(config_id)
 
     def activateConfigurationSet(self, config_id):
-        return self._component._config_activate(config_id)
+        return self._component._rtm_config_activate(config_id)
 
     def bindParameter(self, name, var, default, trans=None):
         return self._component.bindParameter(name, var, default, trans)
@@ -90,37 +90,50 @@ class ConfigAdmin:
         self._component.removeConfigurationSetNameListener(type_, listener)
 
     def setOnUpdate(self, function):
-        self._component._add_listener(8, 0, function)
+        self._component._rtm_add_listener(8, 0, function)
 
     def setOnUpdateParam(self, function):
-        self._component._add_listener(6, 0, function)
+        self._component._rtm_add_listener(6, 0, function)
 
     def setOnSetConfigurationSet(self, function):
-        self._component._add_listener(7, 0, function)
+        self._component._rtm_add_listener(7, 0, function)
 
     def setOnAddConfigurationSet(self, function):
-        self._component._add_listener(7, 1, function)
+        self._component._rtm_add_listener(7, 1, function)
 
     def setOnRemoveConfigurationSet(self, function):
-        self._component._add_listener(8, 1, function)
+        self._component._rtm_add_listener(8, 1, function)
 
     def setOnActivateSet(self, function):
-        self._component._add_listener(8, 2, function)
+        self._component._rtm_add_listener(8, 2, function)
 
 
 Configuration = ConfigAdmin
 
 
+class _Made:
+    """An attribute that is made anew each time: what refers to the component and is kept by it would keep it in memory. An author's
+    attribute of the same name takes its place."""
+
+    def __init__(self, function):
+        self._function = function
+
+    def __get__(self, owner, cls=None):
+        return self if owner is None else self._function(owner)
+
+
 class DataFlowComponentBase(_core.Component):
+    """The base of components. Names that begin with _rtm_ belong to it; all others are free for authors, except those of OpenRTM."""
+
     def __init__(self, manager=None, orb=None, poa=None):
         _core.Component.__init__(self)
-        self._bind_self(self)
+        self._rtm_bind_self(self)
         self._manager = manager
-        self._ports = []
+        self._rtm_ports = []
         self._inports = []
         self._outports = []
         self._rtcout = Logger("rtobject")
-        self._registered = []
+        self._rtm_registered = []
         for name in ("onDeactivate", "onActivate", "onExcute"):
             if hasattr(type(self), name):
                 self._rtcout.RTC_WARN("%s.%s is never called; the callbacks are onActivated, onDeactivated, onExecute",
@@ -170,39 +183,39 @@ class DataFlowComponentBase(_core.Component):
     # --- ports
 
     def addInPort(self, name, port):
-        added = self._add_in_port(name, port) if isinstance(port, _core.InPortBase) else self._add_channel(port)
+        added = self._rtm_add_in_port(name, port) if isinstance(port, _core.InPortBase) else self._rtm_add_channel(port)
         if added:
-            self._ports.append(port)
+            self._rtm_ports.append(port)
             self._inports.append(port)
         return added
 
     def addOutPort(self, name, port):
-        added = self._add_out_port(name, port) if isinstance(port, _core.OutPort) else self._add_channel(port)
+        added = self._rtm_add_out_port(name, port) if isinstance(port, _core.OutPort) else self._rtm_add_channel(port)
         if added:
-            self._ports.append(port)
+            self._rtm_ports.append(port)
             self._outports.append(port)
         return added
 
     def addPort(self, port):
-        added = self._add_port(port)
+        added = self._rtm_add_port(port)
         if added:
-            self._ports.append(port)
+            self._rtm_ports.append(port)
         return added
 
     # A CSP port, whose settings are those of the component's port.
-    def _add_channel(self, port):
+    def _rtm_add_channel(self, port):
         kind = "inport" if hasattr(port, "readData") else "outport"
         for key in ("port." + kind, "port.%s.%s" % (kind, port.name())):
-            port.init(self._properties_of().getNode(key))
-        return self._add_port(port)
+            port.init(self._rtm_properties_of().getNode(key))
+        return self._rtm_add_port(port)
 
     registerInPort = addInPort
     registerOutPort = addOutPort
     registerPort = addPort
 
     def removePort(self, port):
-        removed = self._remove_port(port)
-        for one in (self._ports, self._inports, self._outports):
+        removed = self._rtm_remove_port(port)
+        for one in (self._rtm_ports, self._inports, self._outports):
             if port in one:
                 one.remove(port)
         return removed
@@ -210,7 +223,7 @@ class DataFlowComponentBase(_core.Component):
     removeInPort = removeOutPort = deletePort = removePort
 
     def deletePortByName(self, name):
-        for port in list(self._ports):
+        for port in list(self._rtm_ports):
             if port.getName().rpartition(".")[2] == name or port.getName() == name:
                 self.removePort(port)
 
@@ -224,11 +237,11 @@ class DataFlowComponentBase(_core.Component):
 
     def bindParameter(self, param_name, var, def_val, trans=None):
         """Bind var[0] to a parameter: it is replaced when the active configuration set changes. Its type decides the conversion."""
-        self._bind_parameter(param_name, def_val, _assignment(var, trans))
+        self._rtm_bind_parameter(param_name, def_val, _assignment(var, trans))
         return True
 
     def updateParameters(self, config_set):
-        self._config_update(config_set, "")
+        self._rtm_config_update(config_set, "")
 
     def getConfigService(self):
         return ConfigAdmin(self)
@@ -236,86 +249,89 @@ class DataFlowComponentBase(_core.Component):
     # --- identity
 
     def getProperties(self):
-        return self._properties_of()
+        return self._rtm_properties_of()
 
-    # Made anew each time: what refers to the component and is kept by it would keep it in memory.
-    @property
+    @_Made
     def _properties(self):
-        return self._properties_of()
+        return self._rtm_properties_of()
 
-    @property
+    @_Made
     def _configsets(self):
         return ConfigAdmin(self)
 
     def getObjRef(self):
-        return self._reference()
+        return self._rtm_reference()
 
     _this = getObjRef
 
-    @property
+    @_Made
     def _SdoConfigImpl(self):
         return self.get_configuration()
 
-    @property
+    @_Made
     def _profile(self):
         return self.get_component_profile()
 
     def getManager(self):
         return self._manager
 
-    @property
+    @_Made
     def _objref(self):
-        return self._reference()
+        return self._rtm_reference()
 
-    @property
+    @_Made
     def _orb(self):
         from omniORB import CORBA
         return CORBA.ORB_init()
 
-    @property
+    @_Made
     def _poa(self):
         from omniORB import PortableServer
         return PortableServer.root_poa()
 
+    def _default_POA(self):
+        from omniORB import PortableServer
+        return PortableServer.root_poa()
+
     # The runtime calls it when it has let the component go. Listeners may refer to it.
-    def _let_go(self):
-        for owner in [self] + self._ports:
-            for one in getattr(owner, "_registered", ()):
+    def _rtm_let_go(self):
+        for registered in [self._rtm_registered] + [getattr(port, "_registered", ()) for port in self._rtm_ports]:
+            for one in registered:
                 one.listener = None
 
     # --- listeners: (type, function) -> what remove... takes
 
-    def _listen(self, group, type_, listener):
+    def _rtm_listen(self, group, type_, listener):
         registered = _Registered(listener)
-        self._add_listener(group, type_, registered)
-        self._registered.append(registered)
+        self._rtm_add_listener(group, type_, registered)
+        self._rtm_registered.append(registered)
         return registered
 
     # Of state machines of Python, whose service is written in Python, too.
     def addFsmProfileListener(self, type_, listener, autoclean=True):
         """BIND_FSM_EVENT: listener(RTC.FsmEventProfile) when a port binds an event."""
-        return self._listen_in_python("profile", type_, listener)
+        return self._rtm_listen_in_python("profile", type_, listener)
 
     def addFsmStructureListener(self, type_, listener, autoclean=True):
         """listener(RTC.FsmStructure) when a tool sets or asks for the structure of the state machine."""
-        return self._listen_in_python("structure", type_, listener)
+        return self._rtm_listen_in_python("structure", type_, listener)
 
-    def _listen_in_python(self, kind, type_, listener):
+    def _rtm_listen_in_python(self, kind, type_, listener):
         registered = _Registered(listener)
         registered.event = (kind, type_)
-        self._registered.append(registered)
+        self._rtm_registered.append(registered)
         return registered
 
-    def _tell_listeners(self, kind, type_, value):
-        for one in list(self._registered):
+    def _rtm_tell_listeners(self, kind, type_, value):
+        for one in list(self._rtm_registered):
             if getattr(one, "event", None) == (kind, type_):
                 try:
                     one(value)
                 except Exception:
-                    self._rtcout.RTC_ERROR("a listener raised: %s", self._rtcout.print_exception())
+                    Logger(self.getInstanceName()).RTC_ERROR("a listener of the state machine raised: %s", Logger.print_exception())
 
-    def _forget(self, type_, listener):
-        for one in self._registered:
+    def _rtm_forget(self, type_, listener):
+        for one in self._rtm_registered:
             if one is listener or one.listener is listener:
                 one.listener = None
 
@@ -341,7 +357,7 @@ def _assignment(var, trans):
 
 def _remote(name):
     def call(self, *args):
-        return getattr(self._reference(), name)(*args)
+        return getattr(self._rtm_reference(), name)(*args)
     call.__name__ = name
     return call
 
@@ -356,15 +372,15 @@ _GROUPS = ("PreComponentActionListener", "PostComponentActionListener", "PortAct
 
 def _adder(group):
     def add(self, type_, listener, autoclean=True):
-        return self._listen(group, type_, listener)
+        return self._rtm_listen(group, type_, listener)
     return add
 
 
 for _number, _name in enumerate(_GROUPS):
     setattr(DataFlowComponentBase, "add" + _name, _adder(_number))
-    setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._forget)
+    setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._rtm_forget)
 for _name in ("FsmProfileListener", "FsmStructureListener"):
-    setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._forget)
+    setattr(DataFlowComponentBase, "remove" + _name, DataFlowComponentBase._rtm_forget)
 del _name, _number
 
 RTObject_impl = DataFlowComponentBase

@@ -33,8 +33,8 @@ class FsmService(SdoServiceProviderBase, RTC__POA.ExtendedFsmService):
         self._structure.event_profiles.append(profile)
         if self._machine is not None:
             component = self._machine.component
-            component._tell_listeners("profile", FsmProfileListenerType.BIND_FSM_EVENT, profile)
-            component._notify_fsm(False, name)
+            component._rtm_tell_listeners("profile", FsmProfileListenerType.BIND_FSM_EVENT, profile)
+            component._rtm_notify_fsm(False, name)
 
     def finalize(self):
         self._machine = None
@@ -42,9 +42,9 @@ class FsmService(SdoServiceProviderBase, RTC__POA.ExtendedFsmService):
     def _tell(self, type_):
         if self._machine is not None:
             component = self._machine.component
-            component._tell_listeners("structure", type_, self._structure)
+            component._rtm_tell_listeners("structure", type_, self._structure)
             if type_ == FsmStructureListenerType.SET_FSM_STRUCTURE:
-                component._notify_fsm(True, self._structure.name)
+                component._rtm_notify_fsm(True, self._structure.name)
 
 
 def offer(machine, top):
