@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "asset-reader/mesh_io.h"
+#include "asset-reader/scene_check.h"
 #include "base/text.h"
 
 namespace sim {
@@ -44,9 +45,16 @@ base::Result<const aiScene*> Import::read(unsigned flags) {
     for (const auto extension : extensions) known.push_back("." + std::string(extension));
     return base::Error{"is of no format that is read; expected " + base::join(known, ", ")};
   }
-  const aiScene* scene = importer_.ReadFile(path_, flags);
-  if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};
-  return scene;
+  const auto checked = [this](const aiScene* scene) -> base::Result<const aiScene*> {
+    if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};
+    if (const auto whole = check_scene(*scene); !whole) return whole.error();
+    return scene;
+  };
+  // Before the steps after it, which read by the indexes of the file, and for the callers once more.
+  auto scene = checked(importer_.ReadFile(path_, 0));
+  if (!scene || flags == 0) return scene;
+  drop_empty_faces(**scene);
+  return checked(importer_.ApplyPostProcessing(flags));
 }
 
 }  // namespace sim

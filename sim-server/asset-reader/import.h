@@ -18,7 +18,7 @@ class Import {
 
   // For its properties.
   Assimp::Importer& importer() { return importer_; }
-  // With a root. Lives as long as this object. `flags`: of aiPostProcessSteps.
+  // With a root, its indexes checked (scene_check.h). Lives as long as this object. `flags`: of aiPostProcessSteps.
   base::Result<const aiScene*> read(unsigned flags);
 
  private:

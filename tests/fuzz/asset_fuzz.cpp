@@ -2,8 +2,9 @@
 // Embree and the bending of skins: none may end, hang or corrupt this process. The reader may die, which is counted.
 //   asset_fuzz [--fork] [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...
 // N mutations of each file, each given up after MS milliseconds (2000); bodies fall on every Nth mesh (1). A crash leaves the last one in
-// asset_fuzz_last.EXTENSION; --keep keeps those that ended the reader. One reader reads until a file ends it. Prints counts by file and by
-// format. --fork, for campaigns: readers are forked (fork_server.h) and have 64 MiB; sanitizer reports of readers go to stderr.
+// asset_fuzz_last.EXTENSION; --keep keeps those that ended the reader or were not read in time. One reader reads until a file ends it.
+// Prints counts by file and by format, and of each way in which readers ended. --fork, for campaigns: readers are forked (fork_server.h)
+// and have 64 MiB; sanitizer reports of readers go to stderr.
 #include <unistd.h>
 
 #include <algorithm>
@@ -52,12 +53,15 @@ constexpr std::size_t reader_memory = 64 << 20U;  // [byte] with --fork
 
 struct Count {
   long files = 0, results = 0, errors = 0, deaths = 0, late = 0;
+  std::map<std::string, long> ends;  // of readers, by how they ended
   void add(const Count& other) {
     files += other.files, results += other.results, errors += other.errors, deaths += other.deaths, late += other.late;
+    for (const auto& [how, count] : other.ends) ends[how] += count;
   }
   void print(const std::string& name) const {
     std::printf("%-28s %ld files: %ld with a result, %ld with an error; %ld ended the reader, %ld were not read in time\n", name.c_str(),
                 files, results, errors, deaths, late);
+    for (const auto& [how, count] : ends) std::printf("  %ld: %s\n", count, how.c_str());
     std::fflush(stdout);
   }
 };
@@ -116,7 +120,7 @@ void fall_on(const sim::MeshShape& shape, const sim::TriangleMesh& triangles) {
     require(!physics.exists(id) || physics.model_pose(id).matrix().allFinite(), "a pose is not finite");
 }
 
-// True: it has ended the reader.
+// True: it has ended the reader, or was not read in time.
 bool run(const std::string& file, const Options& options, Count& count) {
   const sim::ReadDeadline deadline(std::chrono::steady_clock::now() + options.limit);
   ++count.files;
@@ -129,7 +133,10 @@ bool run(const std::string& file, const Options& options, Count& count) {
     if (!result.ok()) {
       const std::string& why = result.error().message;
       require(is_one_line(result.error()), "an error is not one line");
-      is_deadly = is_deadly || why.find("its reader") != std::string::npos || why.find("of processor time") != std::string::npos;
+      if (!is_deadly && (why.find("its reader") != std::string::npos || why.find("of processor time") != std::string::npos)) {
+        is_deadly = true;
+        ++count.ends[why.substr(std::min(why.size(), why.find(file) + file.size() + 2))];
+      }
       is_late = is_late || why.find("in time") != std::string::npos;
     }
     has_result = has_result || result.ok();
@@ -159,7 +166,7 @@ bool run(const std::string& file, const Options& options, Count& count) {
   ++(has_result ? count.results : count.errors);
   count.deaths += is_deadly ? 1 : 0;
   count.late += is_late ? 1 : 0;
-  return is_deadly;
+  return is_deadly || is_late;
 }
 
 const std::vector<std::string> words{"nan",
@@ -260,8 +267,8 @@ Count run_seed(const std::vector<Seed>& seeds, std::size_t which, const Options&
   for (long i = 0; i < options.runs; ++i) {
     fs::remove(last);
     std::ofstream(last, std::ios::binary) << mutate(seeds[which].content, seeds[below(seeds.size())].content, below);
-    const bool is_deadly = run(fs::absolute(last).string(), options, count);
-    if (!is_deadly || options.keep.empty()) continue;
+    const bool is_kept = run(fs::absolute(last).string(), options, count);
+    if (!is_kept || options.keep.empty()) continue;
     const std::string name = seeds[which].file.stem().string() + "_" + std::to_string(options.seed) + "_" + std::to_string(i) + extension;
     fs::copy_file(last, options.keep / name, fs::copy_options::overwrite_existing);
   }

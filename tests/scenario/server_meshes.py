@@ -13,7 +13,7 @@ from server_rig import *
 folder = pathlib.Path(work.name)
 damaged = sorted(pathlib.Path(f"{source}/tests/worlds/damaged_meshes").iterdir())
 crate = f"{source}/tests/worlds/models/crate/meshes/crate.dae"
-reasons = ("is damaged: its reader ended with", "processor time to read", "is too large for the memory", "was not read")
+reasons = ("is damaged: its reader ended with", "is damaged: mesh", "processor time to read", "is too large for the memory", "was not read")
 
 
 def model(mesh, name="m", texture=None):

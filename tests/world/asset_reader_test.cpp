@@ -201,6 +201,43 @@ TEST(AssetReader, a_file_that_ends_the_reader_is_not_tried_again_until_it_change
   EXPECT_EQ(started(), readers + 1);
 }
 
+// A triangle, and a second face: the count of its corners, and each.
+std::string ply(const std::string& corners) {
+  std::string head = "ply\nformat ascii 1.0\nelement vertex 3\n";
+  for (const char* axis : {"x", "y", "z"}) head += std::string("property float ") + axis + "\n";
+  return head + "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n" + corners + "\n";
+}
+
+TEST(AssetReader, a_face_that_names_a_vertex_that_is_not_there_is_told_and_ends_no_reader) {
+  const WorldFiles files;
+  const auto read = [&](const std::string& corner) {
+    return MeshShape{files.write("a" + corner + ".ply", ply("3 0 1 " + corner)), "", false, {1, 1, 1}};
+  };
+  ASSERT_TRUE(TriangleCache().triangles(read("2")));
+  const auto readers = AssetReader::mine().started();
+  for (const std::string corner : {"3", "1000000", "90000000", "4294967295"}) {
+    const MeshShape shape = read(corner);
+    const auto triangles = TriangleCache().triangles(shape);
+    const auto mesh = read_mesh_file(shape);
+    ASSERT_FALSE(triangles) << corner;
+    ASSERT_FALSE(mesh) << corner;
+    for (const auto& error : {triangles.error(), mesh.error()})
+      EXPECT_THAT(error.message, testing::HasSubstr("is damaged: mesh 0 \"\": face 1 names vertex " + corner + " of 3"));
+  }
+  EXPECT_EQ(AssetReader::mine().started(), readers);
+}
+
+TEST(AssetReader, a_face_without_corners_is_left_out) {
+  const WorldFiles files;
+  const MeshShape shape{files.write("a.ply", ply("0")), "", false, {1, 1, 1}};
+  const auto triangles = TriangleCache().triangles(shape);
+  ASSERT_TRUE(triangles) << triangles.error().message;
+  EXPECT_EQ((*triangles)->triangles.size(), 1U);
+  const auto mesh = read_mesh_file(shape);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh.value().mesh.indices.size(), 3U);
+}
+
 TEST(AssetReader, formats_that_no_world_uses_are_refused_by_their_names) {
   const WorldFiles files;
   const auto met = TriangleCache().triangles(MeshShape{files.write("a.blend", "BLENDER"), "", false, {1, 1, 1}});

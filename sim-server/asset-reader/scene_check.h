@@ -1,0 +1,20 @@
+// What Assimp hands over is what the file says: importers do not check all indexes, and steps after them, as the code here, read arrays by
+// them. One thread at a time.
+#pragma once
+
+#include <assimp/scene.h>
+
+#include "base/result.h"
+
+namespace sim {
+
+// Indexes of vertices, meshes and bones are in range, and arrays that are counted are there. Nodes nest at most deepest_node deep. One line
+// for what does not hold.
+inline constexpr unsigned deepest_node = 1000;
+base::Result<void> check_scene(const aiScene& scene);
+
+// Faces without corners: Assimp takes them for polygons, and the step that makes triangles ends the process over them. For a scene that was
+// checked, before its steps.
+void drop_empty_faces(const aiScene& scene);
+
+}  // namespace sim
