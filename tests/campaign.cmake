@@ -8,7 +8,7 @@ function(campaign_cases script)
     set_tests_properties(campaigns.${case} PROPERTIES LABELS integration TIMEOUT 300 SKIP_RETURN_CODE 77)
   endforeach()
 endfunction()
-campaign_cases(campaigns.py sweep reports pages killed warm_killed without_simctl disk_full interrupted refused events faults models_as_simulated hunts hunts_restarts)
+campaign_cases(campaigns.py sweep reports pages killed warm_killed without_simctl disk_full interrupted refused events goes_to faults models_as_simulated hunts hunts_restarts)
 campaign_cases(trouble.py kills shared machine finds)
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
 foreach(case rows broken killed other_rows)

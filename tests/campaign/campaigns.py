@@ -259,6 +259,13 @@ def refused():
         ("events: [{at: 1, push: {model: nobody, force: [1, 0, 0]}}]", 'events: the world has no model "nobody"; models: '),
         ("events: [{at: 1, wrench: {model: nobody, force: [1, 0, 0]}}]", 'events: the world has no model "nobody"; models: '),
         ("events: [{at: 1, wrench: {model: box_1, torque: [1, 0, 0]}}]", 'model "box_1" is static and cannot be pushed'),
+        ("events: [{at: 1, wrench: {model: 'pioneer2dx::nose', force: [1, 0, 0]}}]", 'events: model "pioneer2dx" has no link "nose"; links: '),
+        ("events: [{at: 1, push: {model: 'pioneer2dx::nose', force: [1, 0, 0]}}]", 'events: model "pioneer2dx" has no link "nose"; links: '),
+        ("hunt: {events: [{wrench: {model: 'pioneer2dx::nose', force: [1, 0, 0]}}]}", 'hunt: events: model "pioneer2dx" has no link "nose"; links: '),
+        ("events: [{at: 1, wrench: {model: pioneer2dx, force: [1e8, 0, 0]}}]", "force must be below 1e7, got 1e+08"),
+        ("events: [{at: 1, wrench: {model: pioneer2dx, torque: [0, 0, -1e7]}}]", "torque must be below 1e7, got -1e+07"),
+        ("events: [{at: 1, push: {model: pioneer2dx, force: [0, 0, 1e7]}}]", "force must be below 1e7, got 1e+07"),
+        ("events: [{at: 1, joint_force: {model: pioneer2dx, joint: left_wheel_joint, force: 1e9}}]", "force must be below 1e7, got 1e+09"),
         ("events: [{at: 1, joint_force: {model: nobody, joint: nose, force: 1}}]", 'events: the world has no model "nobody"; models: '),
         ("events: [{at: 1, joint_force: {model: pioneer2dx, joint: nose, force: 1}}]", 'events: model "pioneer2dx" has no joint "nose"; joints: '),
         ("events: [{at: 1, set: {component: LaserObstacleAvoid0, parameter: gain, value: 1}}]", 'has no parameter "gain"; parameters: clearance_cap, distance_gain'),
@@ -381,6 +388,37 @@ def interrupted():
         assert code == 1 and expected in err and len(err.splitlines()) == 1, (words, code, out, err)
         assert not list(folder.glob("rtse-run-*")) and not list(folder.glob("plan.finds/*")), list(folder.iterdir())
     assert json.loads(rtse("--json", "sweep", p, "--rows", "1..1").stdout)["passed"] == 1
+
+
+# A recorded run with events and faults is the same in goto, at its end and before it: in one go, and by steps.
+def goes_to():
+    deeds = """events:
+  - {at: 0.2, push: {model: pioneer2dx, force: [0, 40, 0], for: 0.1}}
+  - {at: 0.3, wrench: {model: pioneer2dx, force: [0, 10, 0], torque: [0, 0, 3], persistent: true}}
+  - {at: 0.3, spawn: {model: "model://cow", name: cow, pose: [3, 3, 0]}}
+  - {at: 0.5, joint_force: {model: pioneer2dx, joint: left_wheel_joint, force: -6, for: 0.2}}
+  - {at: 0.6, set: {component: LaserObstacleAvoid0, parameter: stop_distance, value: 0.9}}
+  - {when: {model: pioneer2dx, region: [-10, -10, 10, 10], after: 0.7}, delete: cow}
+faults:
+  - {at: 0.4, for: 0.3, sensor: "pioneer2dx::laser", is: noise, amount: 0.2}
+  - {at: 0.7, actuator: "pioneer2dx::position2d", is: weak}
+  - {at: 0.2, connector: range-to-avoidance, is: drop}
+  - {at: 0.5, for: 0.1, component: LaserObstacleAvoid0, is: slow, amount: 0.001}
+"""
+    whole = json.loads(rtse("--json", "sweep", plan(deeds, "deeds.yaml"), "--row", 1, "--record", "--keep", folder / "recorded").stdout)["state"]
+    quiet = twice("repeat: 1\n", "quiet.yaml")
+    assert whole != quiet["state"], quiet
+    recording = folder / "recorded/run.mcap"
+    stats = f"{bin_dir}/simctl --json stats"
+    done = rtse("--json", "goto", recording, "1", "--module-path", lib_dir, "--then", stats)
+    assert "is not done again" not in done.stderr, done.stderr
+    assert json.loads(done.stdout.split("\n", 1)[1])["hash"] == whole, (done.stdout, whole)
+    # By steps, and back: the state at 0.55 s is one, whichever way leads there.
+    there = json.loads(rtse("--json", "goto", recording, "0.55", "--module-path", lib_dir, "--then", stats).stdout.split("\n", 1)[1])["hash"]
+    stepped = subprocess.run([f"{bin_dir}/rtse", "--json", "goto", recording, "0.25", "--module-path", lib_dir], input="n\nt 0.55\nt 1\nt 0.55\nq\n", cwd=folder,
+                             stdout=subprocess.PIPE, timeout=200, text=True)
+    assert [json.loads(line)["time"] for line in stepped.stdout.splitlines()][-3:] == [0.55, 1, 0.55], stepped.stdout
+    assert there not in (quiet["state"], whole), there
 
 
 # What happens at a time or on a condition happens at the same step in every run.
@@ -568,6 +606,6 @@ hunt:
 
 
 try:
-    {"sweep": sweep, "reports": reports, "pages": pages, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts, "hunts_restarts": hunts_restarts}[case]()
+    {"sweep": sweep, "reports": reports, "pages": pages, "killed": killed, "warm_killed": warm_killed, "without_simctl": without_simctl, "disk_full": disk_full, "interrupted": interrupted, "refused": refused, "events": events, "goes_to": goes_to, "faults": faults, "models_as_simulated": models_as_simulated, "hunts": hunts, "hunts_restarts": hunts_restarts}[case]()
 finally:
     subprocess.run(["rm", "-rf", str(folder)], check=False)

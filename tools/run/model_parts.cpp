@@ -13,6 +13,15 @@ using base::Result;
 
 std::string listed(const std::vector<std::string>& names) { return names.empty() ? "none" : base::join(names, ", "); }
 
+Result<void> find_part(const std::vector<ModelParts>& parts, const std::string& model, const std::string& kind, const std::string& name,
+                       std::vector<std::string> ModelParts::*names) {
+  const auto found = std::ranges::find(parts, model, &ModelParts::name);
+  if (found == parts.end()) return Error{"the world has no model " + base::in_quotes(model)};
+  const auto& all = *found.*names;
+  if (std::ranges::find(all, name) != all.end()) return {};
+  return Error{"model " + base::in_quotes(model) + " has no " + kind + " " + base::in_quotes(name) + "; " + kind + "s: " + listed(all)};
+}
+
 }  // namespace
 
 ModelParts to_parts(const nlohmann::json& model) {
@@ -22,6 +31,7 @@ ModelParts to_parts(const nlohmann::json& model) {
     const auto type = joint.value("type", "");
     if (type != "fixed" && type != "ball") parts.joints.push_back(joint.value("name", ""));
   }
+  for (const auto& link : model.value("links", none)) parts.links.push_back(link.value("name", ""));
   for (const auto& one : model.value("grippers", none)) {
     Gripper gripper{parts.name + "::" + one.value("name", ""), parts.name};
     gripper.links = one.value("fingers", std::vector<std::string>());
@@ -66,10 +76,11 @@ Result<Gripper> find_gripper(const std::vector<ModelParts>& parts, const std::st
 }
 
 Result<void> find_joint(const std::vector<ModelParts>& parts, const std::string& model, const std::string& joint) {
-  const auto found = std::ranges::find(parts, model, &ModelParts::name);
-  if (found == parts.end()) return Error{"the world has no model " + base::in_quotes(model)};
-  if (std::ranges::find(found->joints, joint) != found->joints.end()) return {};
-  return Error{"model " + base::in_quotes(model) + " has no joint " + base::in_quotes(joint) + "; joints: " + listed(found->joints)};
+  return find_part(parts, model, "joint", joint, &ModelParts::joints);
+}
+
+Result<void> find_link(const std::vector<ModelParts>& parts, const std::string& model, const std::string& link) {
+  return find_part(parts, model, "link", link, &ModelParts::links);
 }
 
 }  // namespace tools

@@ -1,4 +1,4 @@
-// Joints and grippers of the models of a world, and who holds what: from the tree that the simulator tells of (RTMSIM_REQUEST_TREE,
+// Links, joints and grippers of the models of a world, and who holds what: from the tree that the simulator tells of (RTMSIM_REQUEST_TREE,
 // sim-server --check --json). Values; any thread.
 #pragma once
 
@@ -24,6 +24,7 @@ struct ModelParts {
   std::string name;
   std::vector<std::string> joints;  // that have a position
   std::vector<Gripper> grippers;
+  std::vector<std::string> links{};
 };
 
 // One of the "models" of a tree.
@@ -36,5 +37,7 @@ std::string grip_problem(const Gripper& gripper, const std::string& model, const
 base::Result<Gripper> find_gripper(const std::vector<ModelParts>& parts, const std::string& name);
 // Of the model; the error says which joints it has.
 base::Result<void> find_joint(const std::vector<ModelParts>& parts, const std::string& model, const std::string& joint);
+
+base::Result<void> find_link(const std::vector<ModelParts>& parts, const std::string& model, const std::string& link);
 
 }  // namespace tools

@@ -45,6 +45,7 @@ base::Result<RecordedRun> RecordedRun::unpack(const std::string& recording, Need
     *place = (run.folder() / name).string();
     std::ofstream(*place, std::ios::binary) << attachment->data;
   }
+  if (const auto script = reader->attachment("script.yaml")) run.script_ = script->data;
   // What the world names is found from where its file was.
   const fs::path was = run.note("world_file");
   std::error_code error;

@@ -30,13 +30,15 @@ class RecordedRun {
   // Those of the run. Processes of others are started by their commands and their run file, which must still be there.
   // An Error names an option that this version does not know.
   base::Result<tools::RunOptions> options() const;
+  // What the script of the run did, see RunScript::written(); empty: nothing, or an older version has recorded it.
+  const std::string& script() const { return script_; }
   // What was done in the run that options() cannot do again; empty: nothing.
   std::string lost() const;
 
  private:
   RecordedRun() = default;
   std::optional<base::ScratchFolder> folder_;
-  std::string system_, world_;
+  std::string system_, world_, script_;
   std::vector<std::string> resource_paths_;
   mcap::Texts notes_;
   double end_s_ = 0;

@@ -50,6 +50,7 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
                        "--controlled", "--attach", "system.xml=" + call.system},
                       {},
                       log_};
+  if (!call.script.empty()) program.words.insert(program.words.end(), {"--attach", "script.yaml=" + call.script});
   if (call.last_s > 0) program.words.insert(program.words.end(), {"--last", base::format_number(call.last_s)});
   takes_hashes_ = !call.hashes.empty();
   if (takes_hashes_) program.words.insert(program.words.end(), {"--hashes", call.hashes});

@@ -21,6 +21,7 @@ struct RecorderCall {
   std::string system;                                      // the profile as it is for this run
   std::string file;                                        // to write
   double last_s = 0;                                       // only so much before the end; 0: all
+  std::string script;                                      // a file, see RunScript::written(); empty: none
   std::string hashes;                                      // the run's hash log, see finish(); empty: none
   std::vector<std::pair<std::string, std::string>> notes;  // how the run was made
 };

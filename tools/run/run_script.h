@@ -49,6 +49,8 @@ class RunScript {
   virtual Result<void> act(RunScene&, std::int64_t done) = 0;
   // Whether it was asked for that this component is in its error state, or gone, at the end.
   virtual bool excuses(const std::string& instance) const = 0;
+  // What it does between the steps, as text from which a program can do the same again in this run; empty: nothing that can be.
+  virtual std::string written() const { return {}; }
   // The last call. `seen` is what the verdicts are about. The files of the run are still there, and the simulator if there is a scene.
   virtual void end(RunScene* scene, const Seen& seen, RunResult& result) = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -90,7 +91,9 @@ class Run final : public RunningSystem {
     return all;
   }
   Result<void> make_steps(std::int64_t steps) override {
-    return tools::make_steps(simulator_, steps, stepping([](double) {}));
+    const auto now = simulator_.now();  // a break may have stopped the last steps before their end
+    if (!now) return fail("simulator " + simulator_.id() + " does not respond");
+    return advance(std::llround(now->time_s / simulator_.step()), steps, [](double) {});
   }
 
  private:
@@ -352,11 +355,21 @@ class Run final : public RunningSystem {
 
   Result<void> record() {
     if (options_.record.empty()) return {};
-    auto started = recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"),
-                                    std::filesystem::absolute(options_.record).string(), options_.record_last_s, hashes_.file(), notes()},
-                                   wait());
+    auto started =
+        recorder_.start({naming_.address(), simulator_.id(), place_.file("system.xml"), std::filesystem::absolute(options_.record).string(),
+                         options_.record_last_s, write_script(), hashes_.file(), notes()},
+                        wait());
     if (started && hooks_.recording) hooks_.recording();
     return started;
+  }
+
+  // Its file; empty: there is nothing that can be done again.
+  std::string write_script() const {
+    const auto text = hooks_.script != nullptr ? hooks_.script->written() : std::string();
+    if (text.empty()) return {};
+    const auto file = place_.file("script.yaml");
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
   }
 
   // What makes the run again, beside the profile and the world.
@@ -395,7 +408,7 @@ class Run final : public RunningSystem {
 
   Result<void> drive() {
     if (hooks_.driver) return hooks_.driver(*this);
-    auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
+    const auto left = static_cast<std::int64_t>(std::llround(options_.duration_s / simulator_.step()));
     if (const auto alive = check_children(); !alive) return alive;
     if (const auto watched = judge_.watch(); !watched) return watched;
     double last = 0;  // [s], simulated
@@ -407,24 +420,41 @@ class Run final : public RunningSystem {
       reporter_.show_progress(now, options_.duration_s);
       static_cast<void>(judge_.watch());  // so that the simulator need not keep it; at the end it must succeed
     };
-    for (std::int64_t done = 0; left > 0;) {
-      const auto stop = hooks_.script ? hooks_.script->next_stop(done).value_or(done + left) : done + left;
-      const auto steps = std::min(left, stop - done);
-      if (const auto stepped = tools::make_steps(simulator_, steps, stepping(passed)); !stepped) {
-        const auto now = simulator_.now();
-        result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
-        return fail(who_is_stopped() + stepped.error().message + hosts_.who_is_waited_for(system_) +
-                    foreign_.who_may_be_waited_for(system_, late_participants(simulator_)));
-      }
-      left -= steps;
-      done += steps;
-      result_.simulated_s = static_cast<double>(done) * simulator_.step();
-      if (hooks_.script && stop == done) {
-        if (const auto acted = hooks_.script->act(*scene_, done); !acted) return acted;
-      }
+    is_stopped_in_a_step_ = false;
+    if (const auto stepped = advance(0, left, passed); !stepped) {
+      if (!is_stopped_in_a_step_) return stepped;
+      const auto now = simulator_.now();
+      result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
+      return fail(who_is_stopped() + stepped.error().message + hosts_.who_is_waited_for(system_) +
+                  foreign_.who_may_be_waited_for(system_, late_participants(simulator_)));
     }
     reporter_.end_progress();
     return check_children();
+  }
+
+  // Makes steps after `done` ones, and what the script wants between them. An error of a step is marked.
+  Result<void> advance(std::int64_t done, std::int64_t steps, const std::function<void(double)>& passed) {
+    const auto end = done + steps;
+    const auto act = [&] {
+      return hooks_.script != nullptr && done > acted_ ? hooks_.script->act(*scene_, acted_ = done) : Result<void>();
+    };
+    // A break stopped the last steps where the script wanted something, too.
+    if (hooks_.script != nullptr && done > acted_ && hooks_.script->next_stop(done - 1) == done) {
+      if (const auto acted = act(); !acted) return acted;
+    }
+    while (done < end) {
+      const auto stop = std::min(end, hooks_.script != nullptr ? hooks_.script->next_stop(done).value_or(end) : end);
+      const bool is_wanted = hooks_.script != nullptr && hooks_.script->next_stop(done) == stop;
+      if (const auto stepped = tools::make_steps(simulator_, stop - done, stepping(passed)); !stepped) {
+        is_stopped_in_a_step_ = true;
+        return stepped;
+      }
+      done = stop;
+      result_.simulated_s = static_cast<double>(done) * simulator_.step();
+      if (!is_wanted) continue;
+      if (const auto acted = act(); !acted) return acted;
+    }
+    return {};
   }
 
   // A member of others that is told to end gets no onDeactivated, as our own do. Where a tick hangs, or a process has gone, nobody could
@@ -476,6 +506,8 @@ class Run final : public RunningSystem {
   PortValues ports_;
   ForeignLinks links_;
   std::optional<RunScene> scene_;  // of a script
+  std::int64_t acted_ = 0;         // the step after which it did something last
+  bool is_stopped_in_a_step_ = false;
 };
 
 }  // namespace

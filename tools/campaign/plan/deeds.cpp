@@ -67,6 +67,14 @@ std::vector<std::string> numbers_of(const YAML::Node& node, const char* what, st
   return numbers;
 }
 
+// Of a push, as the simulator takes it.
+void check_push(const YAML::Node& node, const char* what, const std::vector<std::string>& numbers) {
+  constexpr double largest = 1e7;  // [N], [N m]
+  for (const auto& number : numbers) {
+    if (!(std::abs(*base::parse_number(number)) < largest)) fail_at(node, std::string(what) + " must be below 1e7, got " + number);
+  }
+}
+
 struct EventRow {
   const char* key;
   Event::Kind kind;
@@ -108,6 +116,7 @@ void read_wrench(const YAML::Node& what, Event& event) {
   if (!clears && !what["force"] && !what["torque"]) fail_at(what, "wrench needs force, torque or clear");
   for (const char* key : {"force", "torque"}) {
     const auto numbers = what[key] ? numbers_of(what[key], key, {3}, "3 numbers") : std::vector<std::string>(3, "0");
+    check_push(what[key] ? what[key] : what, key, numbers);
     event.numbers.insert(event.numbers.end(), numbers.begin(), numbers.end());
   }
 }
@@ -117,6 +126,7 @@ void read_joint_force(const YAML::Node& what, Event& event) {
   const bool clears = read_push_time(what, event);
   if (!clears && !what["force"]) fail_at(what, "joint_force needs force or clear");
   event.numbers = {clears ? "0" : base::format_number(*base::parse_number(what["force"].Scalar()))};
+  check_push(clears ? what : what["force"], "force", event.numbers);
 }
 
 void read_details(const YAML::Node& what, Event& event) {
@@ -129,6 +139,7 @@ void read_details(const YAML::Node& what, Event& event) {
     case Event::Kind::push:
       event.target = word(what, "model");
       event.numbers = numbers_of(what["force"], "force", {3, 6}, "3 numbers of a force or 6 of a force and a torque");
+      check_push(what["force"], "force", event.numbers);
       if (what["for"]) event.duration_s = *base::parse_number(what["for"].Scalar());
       break;
     case Event::Kind::wrench:

@@ -61,6 +61,18 @@ std::vector<std::string> DeedsRunner::properties() const {
   return properties;
 }
 
+std::string DeedsRunner::written() const {
+  std::string events, faults;
+  for (const auto& event : deeds_.events) events += "  - " + event.text + "\n";
+  for (const auto& fault : deeds_.faults) {
+    const bool is_in_system = fault.object == Object::connector || (fault.object == Object::component && is_by_property(fault.kind));
+    if (!is_in_system) faults += "  - " + fault.text() + "\n";
+  }
+  if (events.empty() && faults.empty()) return {};
+  return "system: system.xml\nworld: world.sdf\nduration: " + base::format_number(duration_s_) + "\nseed: " + std::to_string(seed_) + "\n" +
+         (events.empty() ? "" : "events:\n" + events) + (faults.empty() ? "" : "faults:\n" + faults);
+}
+
 std::vector<std::string> DeedsRunner::simulator_options() const {
   std::vector<std::string> options;
   for (const auto& fault : deeds_.faults) {

@@ -28,6 +28,8 @@ class DeedsRunner {
   // Faults of components and connections that are properties of what is created.
   Result<void> alter(tools::SavedSystem& system) const;
   std::vector<std::string> properties() const;
+  // A plan with what the run does that neither the system nor the properties of its components say; empty: nothing.
+  std::string written() const;
   // For sim-server: faults of sensors and drives, which it times itself.
   std::vector<std::string> simulator_options() const;
   // Ports that conditions are about.

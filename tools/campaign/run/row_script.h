@@ -37,6 +37,7 @@ class RowScript final : public tools::RunScript {
   std::optional<std::int64_t> next_stop(std::int64_t done) const override { return deeds_.next_stop(done); }
   tools::Result<void> act(tools::RunScene& scene, std::int64_t done) override { return deeds_.act(scene, done); }
   bool excuses(const std::string& instance) const override { return deeds_.excuses(instance); }
+  std::string written() const override { return deeds_.written(); }
   void end(tools::RunScene* scene, const tools::Seen& seen, tools::RunResult& result) override;
 
   const std::map<std::string, double>& measures() const { return measures_; }

@@ -198,6 +198,14 @@ class SubjectChecks {
     if (const auto found = tools::find_joint(parts(), model, joint); !found) fail(where, found.error().message);
   }
 
+  // Of a target MODEL::LINK.
+  void check_link(const std::string& where, const std::string& target) {
+    const auto colons = target.find("::");
+    if (colons == std::string::npos || !models_.contains(target.substr(0, colons))) return;
+    if (const auto found = tools::find_link(parts(), target.substr(0, colons), target.substr(colons + 2)); !found)
+      fail(where, found.error().message);
+  }
+
   // What is spawned may bring one.
   void check_gripper(const std::string& where, const std::string& gripper) {
     if (has_unnamed_ || !spawned_.empty()) return;
@@ -212,7 +220,8 @@ class SubjectChecks {
       case Event::Kind::push:
       case Event::Kind::wrench:
         if (is_static(event.target)) fail(where, "model " + base::in_quotes(event.target) + " is static and cannot be pushed");
-        return check_model(where, event.target);
+        check_model(where, event.target);
+        return check_link(where, event.target);
       case Event::Kind::joint_force: {
         const auto colons = event.target.find("::");
         check_model(where, event.target.substr(0, colons));

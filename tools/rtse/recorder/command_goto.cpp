@@ -15,6 +15,7 @@
 #include "base/command_line.h"
 #include "base/interrupt.h"
 #include "base/text.h"
+#include "campaign/run/deeds_script.h"
 #include "recording/mcap/bytes.h"
 #include "recording/ring.h"
 #include "recording/sample_text.h"
@@ -203,6 +204,15 @@ bool is_recording(const std::string& file) {
   return head == mcap::magic;
 }
 
+// What a plan did in the run; null: nothing.
+using Script = std::unique_ptr<campaign::DeedsScript>;
+base::Result<Script> script_of(const RecordedRun& run) {
+  if (run.script().empty()) return Script();
+  const auto file = (run.folder() / "script.yaml").string();
+  std::ofstream(file, std::ios::binary) << run.script();
+  return campaign::DeedsScript::read(file);
+}
+
 void go(const Session& session, Console& console, const GotoOptions& options, const base::Command& command) {
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
@@ -217,7 +227,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
       return console.fail({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
     if (!run) return console.fail(run.error());
-    if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
+    if (const auto lost = run->lost(); run->script().empty() && !lost.empty()) console.warn(lost);
     recorded.emplace(std::move(*run));
     auto recorded_options = recorded->options();
     if (!recorded_options) return console.fail(recorded_options.error());
@@ -242,8 +252,11 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
   std::string input;
   for (;;) {
     Stand stand(session, console, wanted, condition, time_s, input);
-    const auto made =
-        tools::run_system(session.orb(), call, console, {.driver = [&](tools::RunningSystem& system) { return stand.drive(system); }});
+    const auto script = recorded ? script_of(*recorded) : base::Result<Script>(nullptr);
+    if (!script) return console.fail(script.error());
+    tools::RunHooks hooks{.driver = [&](tools::RunningSystem& system) { return stand.drive(system); }};
+    if (*script) hooks.script = script->get(), hooks.simulator_options = (*script)->simulator_options();
+    const auto made = tools::run_system(session.orb(), call, console, hooks);
     if (!made.problem.empty()) return console.fail({made.problem});
     if (!stand.wish()) return;
     // The same run once more, and not so far.
