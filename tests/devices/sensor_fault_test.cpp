@@ -211,6 +211,32 @@ TEST(SensorFaults, what_somebody_looks_at_while_time_stands_still_has_the_fault_
   EXPECT_EQ(runs[0], runs[1]);
 }
 
+// As of a position2d: places, angles and velocities; the truth beside them stays.
+TEST(DriveFaults, a_bias_reaches_the_odometry_of_what_moves_in_space) {
+  WorldDef world;
+  world.physics.step = 0.001;
+  world.models = {body("drone", SphereShape{0.1}, at(1, 2, 3))};
+  PluginDef plugin;
+  plugin.name = "gz::sim::systems::VelocityControl", plugin.filename = "gz-sim-velocity-control-system";
+  world.models[0].plugins.push_back(plugin);
+  SimulationFixture f(std::move(world));
+  auto drone = f.open(IfaceType::position3d, "drone::position3d");
+  ASSERT_TRUE(drone.command(shm::CommandKind::velocity, std::array<double, 6>{}));
+  f.run(0.1);
+  ASSERT_TRUE(f.simulation->add_fault({"drone::position3d", FaultKind::bias, 0.25, f.simulation->time()}));
+  f.run(0.1);
+  ASSERT_TRUE(drone.read());
+  const auto seen = drone.sample<shm::Position3dSample>();
+  for (const auto& [number, place] : {std::pair(seen.odometry.x, 0.0), {seen.odometry.y, 0.0}, {seen.odometry.z, 0.0}})
+    EXPECT_NEAR(number, place + 0.25, 1e-3);
+  const Eigen::Isometry3d pose = from_pose(seen.odometry);
+  EXPECT_NEAR(yaw_of(pose), 0.25, 1e-3);
+  EXPECT_NEAR(std::asin(-pose.linear()(2, 0)), 0.25, 1e-3);
+  EXPECT_NEAR(seen.velocity[0], 0.25, 1e-6);
+  EXPECT_NEAR(seen.true_pose.x, 1, 1e-3);
+  EXPECT_NEAR(seen.true_velocity[0], 0, 1e-6);
+}
+
 TEST(DriveFaults, a_weak_one_reaches_a_part_of_what_is_asked_for_and_a_halted_one_goes_on) {
   FaultyRun f;
   auto drive = f.open(IfaceType::position2d, drive_name);

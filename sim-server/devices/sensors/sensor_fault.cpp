@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 
 #include "base/fault_text.h"
 #include "base/text.h"
+#include "devices/device.h"
 #include "shm/iface_types.h"
 
 namespace sim {
@@ -22,6 +24,23 @@ bool has_ranges(const shm::IfaceWriter& writer) { return writer.type() == shm::I
 // What is measured; not what the simulator says of itself beside it.
 bool is_measured(const shm::Field& field) {
   return field.kind == shm::Field::Kind::f64 && !field.name.starts_with("true") && field.name != "command" && field.name != "covariance";
+}
+
+// The odometry of what moves in space is a pose; `true_pose` is what the simulator says.
+bool is_measured_pose(const shm::Field& field) { return field.kind == shm::Field::Kind::pose && field.name == "odometry"; }
+
+// The place and the angles about x, y and z, each with its own change.
+shm::Pose changed_pose(const shm::Pose& pose, const std::function<double(double)>& change) {
+  const Eigen::Quaterniond q(pose.qw, pose.qx, pose.qy, pose.qz);
+  const Eigen::Matrix3d m = q.normalized().toRotationMatrix();
+  const double roll = change(std::atan2(m(2, 1), m(2, 2))), pitch = change(std::asin(std::clamp(-m(2, 0), -1.0, 1.0))),
+               yaw = change(std::atan2(m(1, 0), m(0, 0)));
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                  Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+                     .toRotationMatrix();
+  out.translation() = Eigen::Vector3d(change(pose.x), change(pose.y), change(pose.z));
+  return to_pose(out);
 }
 
 bool has_joints(const shm::IfaceWriter& writer) { return writer.type() == shm::IfaceType::joints; }
@@ -110,6 +129,10 @@ void SensorFault::disturb(shm::IfaceWriter& writer) {
     return;
   }
   for (const shm::Field& field : shm::row_of(writer.type()).sample) {
+    if (is_measured_pose(field)) {
+      auto& pose = *static_cast<shm::Pose*>(const_cast<void*>(field.in(&writer.sample<shm::Stamp>())));
+      pose = changed_pose(pose, change);
+    }
     if (!is_measured(field)) continue;
     // The table gives read access to whatever it is asked about; this sample is ours to write.
     auto* values = static_cast<double*>(const_cast<void*>(field.in(&writer.sample<shm::Stamp>())));
