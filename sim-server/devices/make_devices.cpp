@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "devices/battery.h"
 #include "devices/device.h"
+#include "devices/drives/buoyancy_engine.h"
 #include "devices/drives/position2d.h"
 #include "devices/drives/position3d.h"
 #include "devices/drives/vehicle3d.h"
@@ -234,7 +235,7 @@ void make_once(Makers& m, const PluginDef& plugin, MadeDevice (*make)(DeviceWorl
 void make_plugin(Makers& m, const PluginDef& plugin) {
   const ModelDef& def = m.world.physics.def(m.model);
   using enum PluginKind;
-  constexpr std::array others{velocity_control, trajectory_follower, odometry_publisher, joint_state_publisher};
+  constexpr std::array others{velocity_control, trajectory_follower, odometry_publisher, joint_state_publisher, buoyancy_engine};
   const bool has_iface = has_own_drive(def, plugin) || std::find(others.begin(), others.end(), kind_of(plugin)) != others.end();
   if (has_iface && !m.can_name(iface_name(def, plugin), "plugin " + plugin.name)) return;
   switch (kind_of(plugin)) {
@@ -275,6 +276,11 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
       return make_once(m, plugin, make_joint_states);
     case PluginKind::joint_force:
       return check_joint_force(m, plugin);
+    case PluginKind::buoyancy_engine: {
+      auto made = BuoyancyEngine::make(m.world, m.model, plugin, m.left_out);
+      if (!made || *made) m.take(std::move(made));
+      return;
+    }
     case PluginKind::wheel_slip:  // of the contacts
     case PluginKind::unsupported_drive:
     case PluginKind::joint_controller:  // joint_hold has it
@@ -287,6 +293,9 @@ void make_plugin(Makers& m, const PluginDef& plugin) {
     case PluginKind::buoyancy:  // the physics have these
     case PluginKind::hydrodynamics:
     case PluginKind::lift_drag:
+    case PluginKind::advanced_lift_drag:
+    case PluginKind::lighter_than_air:
+    case PluginKind::floating_hull:
     case PluginKind::rotor:  // make_vehicle and the joints have these
     case PluginKind::thruster:
     case PluginKind::multicopter_control:

@@ -242,6 +242,9 @@ base::Result<std::shared_ptr<const Blueprint>> Blueprint::of(std::shared_ptr<con
   blueprint->canonical = index_of_link(model, model.canonical_link).value_or(0);
   blueprint->hydrodynamics = hydrodynamics_of(model, blueprint->left_out, blueprint->notes);
   blueprint->wings = wings_of(model, blueprint->left_out);
+  blueprint->airframes = airframes_of(model, blueprint->left_out);
+  blueprint->airships = airships_of(model, blueprint->left_out);
+  blueprint->hulls = floating_hulls_of(model, blueprint->left_out, blueprint->notes);
   return std::shared_ptr<const Blueprint>(std::move(blueprint));
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "world/airframe_defs.h"
 #include "world/body_force_defs.h"
 #include "world/world_def.h"
 
@@ -41,6 +42,9 @@ struct Blueprint {
   bool is_joined_to_world = false;    // has a joint that is not fixed between a link and the world
   std::vector<HydrodynamicsDef> hydrodynamics;
   std::vector<WingDef> wings;
+  std::vector<AirframeDef> airframes;
+  std::vector<AirshipDef> airships;
+  std::vector<FloatingHullDef> hulls;
   std::vector<std::string> notes;     // one line each: what is simulated in another way than written
   std::vector<std::string> left_out;  // the same of what is not simulated
 

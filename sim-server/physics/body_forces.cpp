@@ -64,10 +64,13 @@ BodyForces::BodyForces(const Blueprint& blueprint, const PhysicsDef& physics, Sh
                                                     [](const Assembly& assembly) { return assembly.wind_mass > 0; });
   if (physics.fluid && is_carried_by(*physics.fluid, blueprint.model->name)) add_floats(shapes, lost);
   add_waters();
-  for (const WingDef& def : blueprint.wings) {
-    const auto assembly = blueprint.assembly_of_link[def.link];
-    if (!blueprint.assemblies[assembly].is_anchored) wings_.push_back({assembly, def, blueprint.link_in_body[def.link]});
-  }
+  const auto take = [&](const auto& defs, auto& taken) {
+    for (const auto& def : defs) {
+      const auto assembly = blueprint.assembly_of_link[def.link];
+      if (!blueprint.assemblies[assembly].is_anchored) taken.push_back({assembly, def, blueprint.link_in_body[def.link]});
+    }
+  };
+  take(blueprint.wings, wings_), take(blueprint.airframes, airframes_), take(blueprint.airships, airships_), take(blueprint.hulls, hulls_);
 }
 
 void BodyForces::add_floats(ShapeStore& shapes, std::vector<std::string>& lost) {
@@ -112,17 +115,54 @@ void BodyForces::apply(const std::vector<ode::Body>& bodies, const std::vector<J
     const dBodyID body = bodies[waters_[i].assembly].id();
     if (is_awake(body)) damp(waters_[i], memories_[i], body, physics.step);
   }
-  for (const Wing& wing : wings_) {
-    const dBodyID body = bodies[wing.assembly].id();
+  for (const auto& hull : hulls_) {
+    const dBodyID body = bodies[hull.assembly].id();
     if (!is_awake(body)) continue;
-    double control = 0;
-    for (const JointInstance& joint : joints) {
-      if (wing.def.control_joint == joint.index()) control = joint.state(0).position;
+    const Eigen::Isometry3d pose = pose_of_body(body) * hull.in_body;
+    for (const Eigen::Vector3d& point : hull.def.points) {
+      const Eigen::Vector3d place = pose * point;
+      push(body, place, {0, 0, lift_on(hull.def, hull.def.level - place.z(), physics.gravity.norm())}, Eigen::Vector3d::Zero());
     }
-    fly(wing, body, control, air.wind);
   }
+  fly_all(bodies, joints, air.wind);
   is_blown_ = has_wind_ && !air.is_steady;
   if (has_wind_) blow(bodies, air);
+}
+
+void BodyForces::fly_all(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints,
+                         const Eigen::Vector3d& wind) const {
+  const auto angle_of = [&](std::uint32_t wanted) {
+    for (const JointInstance& joint : joints) {
+      if (joint.index() == wanted) return joint.state(0).position;
+    }
+    return 0.0;
+  };
+  for (const auto& wing : wings_) {
+    const dBodyID body = bodies[wing.assembly].id();
+    if (is_awake(body)) fly(wing, body, wing.def.control_joint ? angle_of(*wing.def.control_joint) : 0, wind);
+  }
+  // In the link, at a place in it.
+  const auto push_at = [&](dBodyID body, const Eigen::Isometry3d& pose, const Eigen::Vector3d& place, const Eigen::Vector3d& air,
+                           const auto& force_by) {
+    const Eigen::Matrix3d into = pose.linear().transpose();
+    const AirForce force = force_by(Eigen::Vector3d(into * (velocity_at(body, pose * place) - air)),
+                                    Eigen::Vector3d(into * ode::vector(dBodyGetAngularVel(body))));
+    push(body, pose * place, pose.linear() * force.force, pose.linear() * force.torque);
+  };
+  for (const auto& one : airframes_) {
+    const dBodyID body = bodies[one.assembly].id();
+    if (!is_awake(body)) continue;
+    std::vector<double> angles;
+    for (const auto& surface : one.def.surfaces) angles.push_back(angle_of(surface.joint));
+    push_at(body, pose_of_body(body) * one.in_body, one.def.center, wind,
+            [&](const auto& velocity, const auto& rate) { return force_on(one.def, velocity, rate, angles); });
+  }
+  for (const auto& one : airships_) {
+    const dBodyID body = bodies[one.assembly].id();
+    if (!is_awake(body)) continue;
+    push_at(body, pose_of_body(body) * one.in_body, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+            [&](const auto& velocity, const auto& rate) { return force_on(one.def, velocity, rate); });
+  }
 }
 
 void BodyForces::blow(const std::vector<ode::Body>& bodies, const Air& air) const {
@@ -185,11 +225,13 @@ Vector6 BodyForces::drag_along(const Water& water, Memory& memory, const Vector6
   const Vector6 momentum = added * v;
   const Eigen::Vector3d along = v.head<3>(), spin = v.tail<3>();
   effort.head<3>() -= spin.cross(momentum.head<3>());
-  effort.tail<3>() -= along.cross(momentum.head<3>()) + spin.cross(momentum.tail<3>());
+  const Eigen::Vector3d pushed =
+      water.def.has_munk ? Eigen::Vector3d(momentum.head<3>()) : Eigen::Vector3d(added.topRightCorner<3, 3>() * spin);
+  effort.tail<3>() -= along.cross(pushed) + spin.cross(momentum.tail<3>());
   return effort;
 }
 
-void BodyForces::fly(const Wing& wing, dBodyID body, double control, const Eigen::Vector3d& wind) {
+void BodyForces::fly(const OnBody<WingDef>& wing, dBodyID body, double control, const Eigen::Vector3d& wind) {
   const WingDef& def = wing.def;
   const Eigen::Isometry3d pose = pose_of_body(body) * wing.in_body;
   const Eigen::Vector3d place = pose * def.center;

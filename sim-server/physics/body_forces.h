@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "physics/aerodynamics.h"
 #include "physics/blueprint.h"
 #include "physics/displacement.h"
 #include "physics/hash.h"
@@ -25,9 +26,13 @@ class BodyForces {
   // The bodies are those of the assemblies. Collisions without a known volume add a line to `lost` where a fluid carries the model.
   BodyForces(const Blueprint& blueprint, const PhysicsDef& physics, ShapeStore& shapes, std::vector<std::string>& lost);
 
-  bool is_empty() const { return !has_wind_ && floats_.empty() && waters_.empty() && wings_.empty(); }
+  bool is_empty() const {
+    return !has_wind_ && floats_.empty() && waters_.empty() && wings_.empty() && airframes_.empty() && airships_.empty() && hulls_.empty();
+  }
   // Water or air carries it: it never rests but where it touches something.
-  bool carries() const { return !floats_.empty() || !waters_.empty() || !wings_.empty(); }
+  bool carries() const {
+    return !floats_.empty() || !waters_.empty() || !wings_.empty() || !airframes_.empty() || !airships_.empty() || !hulls_.empty();
+  }
   // By a wind that was still changing in the last step: it does not rest.
   bool is_blown() const { return is_blown_; }
   void apply(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const PhysicsDef& physics, const Air& air);
@@ -59,9 +64,11 @@ class BodyForces {
     Matrix6 of_both = Matrix6::Identity();  // inverse of that and the added mass
     bool has_added = false;
   };
-  struct Wing {
+  // A plugin's own description, and the body that it means.
+  template <class Def>
+  struct OnBody {
     std::uint32_t assembly = 0;
-    WingDef def;
+    Def def;
     Eigen::Isometry3d in_body;
   };
 
@@ -71,14 +78,18 @@ class BodyForces {
   static void lift(const Float& one, dBodyID body, const FluidDef& fluid, const Eigen::Vector3d& gravity);
   static void damp(const Water& water, Memory& memory, dBodyID body, double dt);
   static Vector6 drag_along(const Water& water, Memory& memory, const Vector6& velocity, double dt);
-  static void fly(const Wing& wing, dBodyID body, double control, const Eigen::Vector3d& wind);
+  void fly_all(const std::vector<ode::Body>& bodies, const std::vector<JointInstance>& joints, const Eigen::Vector3d& wind) const;
+  static void fly(const OnBody<WingDef>& wing, dBodyID body, double control, const Eigen::Vector3d& wind);
 
   const Blueprint& blueprint_;
   bool has_wind_ = false, is_blown_ = false;
   std::vector<Float> floats_;
   std::vector<Water> waters_;
   std::vector<Memory> memories_;  // of waters_
-  std::vector<Wing> wings_;
+  std::vector<OnBody<WingDef>> wings_;
+  std::vector<OnBody<AirframeDef>> airframes_;
+  std::vector<OnBody<AirshipDef>> airships_;
+  std::vector<OnBody<FloatingHullDef>> hulls_;
 };
 
 }  // namespace sim

@@ -26,22 +26,6 @@ std::optional<std::uint32_t> part_named(const Parts& parts, const std::string& s
 
 std::string about(const PluginDef& plugin) { return plugin.source + ": plugin " + base::in_quotes(plugin.name) + ": "; }
 
-// The link of <link_name>; else a line.
-std::optional<std::uint32_t> link_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
-  const auto name = plugin.parameters.text_of({"link_name"});
-  const auto link = name ? link_named(model, plugin.scope, *name) : std::nullopt;
-  if (!link) {
-    left_out.push_back(
-        about(plugin) +
-        (name ? "model " + base::in_quotes(model.name) + " has no link " + base::in_quotes(*name) : "expected a <link_name>") +
-        "; the plugin is left out");
-  } else if (model.is_static) {
-    left_out.push_back(about(plugin) + "model " + base::in_quotes(model.name) + " is static and cannot move; the plugin is left out");
-    return std::nullopt;
-  }
-  return link;
-}
-
 // Its place among the letters, or -1.
 int place_of(std::string_view letters, char letter) {
   const auto place = letters.find(letter);
@@ -112,7 +96,7 @@ std::optional<WingDef> wing_of_plugin(const ModelDef& model, const PluginDef& pl
   wing.is_radial = p.bool_of({"radial_symmetry"}).value_or(false);
   wing.center = vector_of(p, "cp", wing.center);
   wing.forward = vector_of(p, "forward", wing.forward), wing.upward = vector_of(p, "upward", wing.upward);
-  if (!(wing.forward.cross(wing.upward).norm() > 1e-6 * wing.forward.norm() * wing.upward.norm())) {
+  if (!are_two_directions(wing.forward, wing.upward)) {
     left_out.push_back(about(plugin) + "<forward> and <upward> must be two directions, got " +
                        base::in_quotes(p.text_of({"forward"}).value_or("1 0 0")) + " and " +
                        base::in_quotes(p.text_of({"upward"}).value_or("0 0 1")) + "; the plugin is left out");
@@ -147,6 +131,25 @@ std::optional<std::uint32_t> link_named(const ModelDef& model, const std::string
 }
 std::optional<std::uint32_t> joint_named(const ModelDef& model, const std::string& scope, const std::string& name) {
   return part_named(model.joints, scope, name);
+}
+
+std::optional<std::uint32_t> link_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
+  const auto name = plugin.parameters.text_of({"link_name"});
+  const auto link = name ? link_named(model, plugin.scope, *name) : std::nullopt;
+  if (!link) {
+    left_out.push_back(
+        about(plugin) +
+        (name ? "model " + base::in_quotes(model.name) + " has no link " + base::in_quotes(*name) : "expected a <link_name>") +
+        "; the plugin is left out");
+  } else if (model.is_static) {
+    left_out.push_back(about(plugin) + "model " + base::in_quotes(model.name) + " is static and cannot move; the plugin is left out");
+    return std::nullopt;
+  }
+  return link;
+}
+
+bool are_two_directions(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.cross(b).norm() > 1e-6 * a.norm() * b.norm() && !a.isZero() && !b.isZero();
 }
 
 Eigen::Vector3d vector_of(const ParameterNode& parameters, std::string_view name, const Eigen::Vector3d& fallback) {
@@ -228,6 +231,11 @@ std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vecto
     const Eigen::Vector3d& c = def.center_of_mass;
     to_center.topRightCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
     of_link->added -= to_center.transpose() * *def.added_mass * to_center;
+  }
+  for (const PluginDef& plugin : model.plugins) {
+    if (kind_of(plugin) != PluginKind::lighter_than_air) continue;
+    const auto link = link_named(model, plugin.scope, plugin.parameters.text_of({"link_name"}).value_or(""));
+    for (HydrodynamicsDef& def : all) def.has_munk = def.has_munk && def.link != link;
   }
   return all;
 }

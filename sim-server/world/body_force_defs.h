@@ -27,6 +27,7 @@ struct HydrodynamicsDef {
   std::vector<Product> quadratic;    // those that are not zero
   Matrix6 added = Matrix6::Zero();   // force for each acceleration
   bool has_coriolis = true;          // of the added mass
+  bool has_munk = true;              // its moment of the velocity alone is among those; an airship's plugin has one of its own
   Eigen::Vector3d current{0, 0, 0};  // of the water, in the world [m/s]
 };
 
@@ -73,6 +74,10 @@ WindDef wind_of(const WorldDef& world, std::vector<std::string>& left_out);
 // The link or joint of the model that a plugin of this scope means by a name: in its scope first.
 std::optional<std::uint32_t> link_named(const ModelDef& model, const std::string& scope, const std::string& name);
 std::optional<std::uint32_t> joint_named(const ModelDef& model, const std::string& scope, const std::string& name);
+// That of <link_name>; else a line.
+std::optional<std::uint32_t> link_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out);
+// Neither is 0, and they are not parallel.
+bool are_two_directions(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 // Three numbers; the fallback when there are not three finite ones.
 Eigen::Vector3d vector_of(const ParameterNode& parameters, std::string_view name, const Eigen::Vector3d& fallback);
 

@@ -51,6 +51,7 @@ int group_of(const SensorDef& sensor) {
 const char* own_name(PluginKind kind) {
   if (kind == PluginKind::odometry_publisher) return "odometry";
   if (kind == PluginKind::joint_state_publisher) return "joint_states";
+  if (kind == PluginKind::buoyancy_engine) return "buoyancy_engine";
   return "position3d";
 }
 
@@ -72,6 +73,8 @@ class Namer {
       plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
     if (kind == PluginKind::battery)
       plugin.iface = take(batteries_, "battery " + base::in_quotes(plugin.name), plugin.scope, iface_own_name(plugin));
+    if (kind == PluginKind::buoyancy_engine)
+      plugin.iface = take(drives_, "plugin " + base::in_quotes(plugin.name), plugin.scope, own_name(kind));
     // One way of moving for each model, so one name.
     if (kind == PluginKind::velocity_control || kind == PluginKind::trajectory_follower)
       plugin.iface = scoped_and_short(plugin.scope, "position3d");

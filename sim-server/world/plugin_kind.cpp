@@ -29,6 +29,11 @@ const std::map<std::string_view, PluginKind>& table() {
       {"battery", battery},
       {"hydrodynamics", hydrodynamics},
       {"liftdrag", lift_drag},
+      {"advancedliftdrag", advanced_lift_drag},
+      {"lighterthanairdynamics", lighter_than_air},
+      {"buoyancyengine", buoyancy_engine},
+      {"surface", floating_hull},
+      {"simplehydrodynamics", hydrodynamics},
       {"thruster", thruster},
       {"multicopter", unsupported_drive},
       {"multicoptermotormodel", rotor},
@@ -148,7 +153,7 @@ std::optional<PluginKind> known_kind(std::string_view text) {
     return std::nullopt;
   };
   for (std::string_view prefix : {"", "lib", "ignition", "gazeboros", "gazebo", "gzsim", "gz", "sim"}) {
-    if (!name.starts_with(prefix) || name.size() <= prefix.size() + 2) continue;
+    if (!name.starts_with(prefix) || name.size() <= prefix.size() + 1) continue;
     name.erase(0, prefix.size());
     if (const auto found = look_up()) return found;
   }
@@ -199,6 +204,18 @@ bool has_own_drive(const ModelDef& model, const PluginDef& plugin) {
     }
     return false;
   });
+}
+
+bool is_steering_only(const PluginDef& plugin) {
+  const auto is_set = [&](const char* element) { return plugin.parameters.bool_of({element}).value_or(false); };
+  return kind_of(plugin) == PluginKind::car_drive && (is_set("steering_only") || is_set("use_actuator_msg"));
+}
+
+bool turns_as_told(const PluginDef& plugin) {
+  if (kind_of(plugin) != PluginKind::joint_controller || plugin.parameters.bool_of({"use_force_commands"}).value_or(false)) return false;
+  std::string name = base::to_lower(plugin.filename + " " + plugin.name);
+  std::erase_if(name, [](char c) { return c == '_' || c == '-'; });
+  return name.find("jointcontroller") != std::string::npos;
 }
 
 bool is_propeller(PluginKind kind) { return kind == PluginKind::thruster || kind == PluginKind::rotor; }

@@ -22,6 +22,10 @@ enum class PluginKind {
   fiducial,             // of a model: a mark that detectors recognise
   hydrodynamics,        // damping and added mass of a link in water
   lift_drag,            // a wing, sail, fin or blade
+  advanced_lift_drag,   // an aeroplane by its stability derivatives
+  lighter_than_air,     // the hull of an airship
+  floating_hull,        // round hulls of a boat, by points on them
+  buoyancy_engine,      // a bladder that lifts and sinks an underwater vehicle
   thruster,             // a propeller in water, on a joint
   rotor,                // a propeller in air, on a joint
   multicopter_control,  // turns rotors as a commanded velocity needs
@@ -52,6 +56,10 @@ bool is_wheel_drive(PluginKind kind);
 // Of the world; others mean a model, or what is in it. Nothing: it may stand in both, or is not known.
 std::optional<bool> is_of_world(PluginKind kind);
 
+// Of a car drive: it steers, and controllers of single joints turn the wheels.
+bool is_steering_only(const PluginDef& plugin);
+// Of gz-sim's JointController without force commands: its motor turns the joint as told, whatever that takes.
+bool turns_as_told(const PluginDef& plugin);
 // Propellers: their joints take commands like others, and push.
 bool is_propeller(PluginKind kind);
 // Of a model: false for a controller of a track that a vehicle's own plugin drives, which only gives limits.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -25,7 +26,9 @@ enum class Must {
   two_or_three,
   vector,
   vector_not_negative,
-  push
+  push,
+  ratio,
+  own  // refused by the plugin's own reader alone, since it has no default
 };
 
 struct NumberRow {
@@ -87,6 +90,8 @@ constexpr std::array drive_rows{
     NumberRow{"max_angular_acceleration", not_negative},
     NumberRow{"max_yaw_acceleration", not_negative},
     NumberRow{"min_velocity", not_positive},
+    NumberRow{"min_linear_velocity", not_positive},
+    NumberRow{"min_angular_velocity", not_positive},
     NumberRow{"min_acceleration", not_positive},
     NumberRow{"odom_publish_frequency", not_negative},
     NumberRow{"odometry_publish_frequency", not_negative},
@@ -115,16 +120,16 @@ constexpr std::array propeller_rows{
     NumberRow{"max_thrust_cmd", number},
     NumberRow{"min_thrust_cmd", number},
     NumberRow{"deadband", not_negative},
-    NumberRow{"p_gain", number},
-    NumberRow{"i_gain", number},
-    NumberRow{"d_gain", number},
+    NumberRow{"p_gain", gain},
+    NumberRow{"i_gain", gain},
+    NumberRow{"d_gain", gain},
     NumberRow{"motorConstant", positive},
     NumberRow{"momentConstant", not_negative},
     NumberRow{"rotorDragCoefficient", not_negative},
     NumberRow{"rollingMomentCoefficient", not_negative},
     NumberRow{"timeConstantUp", not_negative},
     NumberRow{"timeConstantDown", not_negative},
-    NumberRow{"rotorVelocitySlowdownSim", positive},
+    NumberRow{"rotorVelocitySlowdownSim", ratio},
     NumberRow{"maxRotVelocity", positive},
 };
 
@@ -145,6 +150,41 @@ constexpr std::array wing_rows{
     NumberRow{"cda", number},    NumberRow{"cla_stall", number},     NumberRow{"cda_stall", number},
     NumberRow{"area", positive}, NumberRow{"air_density", positive}, NumberRow{"control_joint_rad_to_cl", number},
     NumberRow{"cp", vector},     NumberRow{"forward", vector},       NumberRow{"upward", vector},
+};
+
+constexpr std::array airframe_rows{
+    NumberRow{"area", positive},
+    NumberRow{"air_density", positive},
+    NumberRow{"AR", own},
+    NumberRow{"eff", own},
+    NumberRow{"mac", not_negative},
+    NumberRow{"alpha_stall", positive},
+    NumberRow{"Cema_stall", number},
+    NumberRow{"cp", vector},
+    NumberRow{"forward", vector},
+    NumberRow{"upward", vector},
+    NumberRow{"num_ctrl_surfaces", not_negative},
+    NumberRow{"direction", number},
+};
+constexpr std::array airship_rows{
+    NumberRow{"air_density", positive},      NumberRow{"force_inviscid_coeff", own}, NumberRow{"force_viscous_coeff", own},
+    NumberRow{"moment_inviscid_coeff", own}, NumberRow{"moment_viscous_coeff", own}, NumberRow{"eps_v", own},
+    NumberRow{"axial_drag_coeff", own},
+};
+constexpr std::array hull_rows{
+    NumberRow{"hull_radius", positive},
+    NumberRow{"hull_length", positive},
+    NumberRow{"fluid_level", number},
+    NumberRow{"fluid_density", positive},
+};
+constexpr std::array bladder_rows{
+    NumberRow{"min_volume", not_negative},
+    NumberRow{"max_volume", not_negative},
+    NumberRow{"neutral_volume", not_negative},
+    NumberRow{"default_volume", not_negative},
+    NumberRow{"fluid_density", positive},
+    NumberRow{"max_inflation_rate", positive},
+    NumberRow{"surface", number},
 };
 
 constexpr std::array water_rows{
@@ -211,6 +251,14 @@ std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
       return {multicopter_rows};
     case PluginKind::lift_drag:
       return {wing_rows};
+    case PluginKind::advanced_lift_drag:
+      return {airframe_rows};
+    case PluginKind::lighter_than_air:
+      return {airship_rows};
+    case PluginKind::buoyancy_engine:
+      return {bladder_rows};
+    case PluginKind::floating_hull:
+      return {hull_rows};
     case PluginKind::hydrodynamics:
       return {current_rows};
     case PluginKind::buoyancy:
@@ -263,6 +311,8 @@ std::string_view expectation_failed(Must must, const std::string& text) {
       return is_number && value <= 0 ? "" : "a number of 0 or less";
     case not_zero:
       return is_number && value != 0 ? "" : "a number other than 0";
+    case ratio:
+      return is_number && value >= 0.001 && value <= 1e6 ? "" : "a number from 0.001 to 1e6";
     case two_or_three:
       return is_number && (value == 2 || value == 3) ? "" : "2 or 3";
     case one_or_minus_one:
@@ -300,6 +350,7 @@ class NumberChecks {
     for (const auto rows : rows_) {
       const auto row = std::ranges::find(rows, parameter.name, &NumberRow::element);
       if (row == rows.end() || !expected.empty()) continue;
+      if (row->must == own) return false;
       expected = expectation_failed(row->must, parameter.text);
       otherwise = row->otherwise;
     }
@@ -320,7 +371,38 @@ class NumberChecks {
 
 }  // namespace
 
+namespace {
+
+bool takes_several_names(PluginKind kind) {
+  return is_wheel_drive(kind) || kind == PluginKind::joint_controller || kind == PluginKind::joint_state_publisher;
+}
+
+bool takes_one_name(PluginKind kind) {
+  using enum PluginKind;
+  constexpr std::array kinds{hydrodynamics, lift_drag, advanced_lift_drag, lighter_than_air, thruster, buoyancy_engine, rotor, joint_force};
+  return std::ranges::find(kinds, kind) != kinds.end();
+}
+
+// The same joint twice where there may be several, or a second name where there may be one.
+void check_doubled_names(pugi::xml_node node, const PluginDef& plugin, Complaints& complaints) {
+  const bool takes_one = takes_one_name(kind_of(plugin));
+  if (!takes_one && !takes_several_names(kind_of(plugin))) return;
+  std::set<std::pair<std::string, std::string>> named;
+  for (pugi::xml_node element : node.children()) {
+    const std::string name = element.name(), text(base::trim(element.text().get())), lower = base::to_lower(name);
+    const bool is_joint = lower.ends_with("joint") || lower == "joint_name" || lower == "jointname";
+    if (text.empty() || (!is_joint && lower != "link_name" && lower != "linkname")) continue;
+    if (named.emplace(name, takes_one ? "" : text).second) continue;
+    complaints.warn(element, "<" + name + "> of " + describe_in_context(node) +
+                                 (takes_one ? " appears twice; the first one counts"
+                                            : " names " + base::in_quotes(text) + " twice; the second one is ignored"));
+  }
+}
+
+}  // namespace
+
 void check_numbers(pugi::xml_node node, PluginDef& plugin, Complaints& complaints) {
+  check_doubled_names(node, plugin, complaints);
   NumberChecks(kind_of(plugin), describe_in_context(node), complaints).check(node, plugin.parameters);
 }
 

@@ -276,6 +276,12 @@ TEST(WorldPlugins, are_known_under_the_names_of_all_simulators) {
   for (const char* name : {"gz-sim-thruster-system", "ignition-gazebo-thruster-system"})
     EXPECT_EQ(kind_of_plugin(name, "x"), PluginKind::thruster) << name;
   EXPECT_EQ(kind_of_plugin("gz-sim-hydrodynamics-system", "x"), PluginKind::hydrodynamics);
+  EXPECT_EQ(kind_of_plugin("libgazebo_ros_p3d.so", "truth"), PluginKind::implied);
+  EXPECT_EQ(kind_of_plugin("gz-sim-lighter_than_air_dynamics-system", "x"), PluginKind::lighter_than_air);
+  EXPECT_EQ(kind_of_plugin("gz-sim-advanced-lift-drag-system", "x"), PluginKind::advanced_lift_drag);
+  EXPECT_EQ(kind_of_plugin("ignition-gazebo-buoyancy-engine-system", "x"), PluginKind::buoyancy_engine);
+  EXPECT_EQ(kind_of_plugin("libSimpleHydrodynamics.so", "vrx::SimpleHydrodynamics"), PluginKind::hydrodynamics);
+  EXPECT_EQ(kind_of_plugin("libSurface.so", "vrx::Surface"), PluginKind::floating_hull);
   EXPECT_EQ(kind_of_plugin("gz-sim-apply-joint-force-system", "x"), PluginKind::joint_force);
   EXPECT_EQ(kind_of_plugin("gz-sim-apply-link-wrench-system", "x"), PluginKind::link_wrench);
   EXPECT_EQ(kind_of_plugin("libMyOwn.so", "diff_drive"), PluginKind::unknown);
