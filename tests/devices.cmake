@@ -8,4 +8,4 @@ find_library(APRILTAG_LIBRARY apriltag REQUIRED)
 rtmsim_test(april_tag_test devices/april_tag_test.cpp LIBRARIES simserver ${APRILTAG_LIBRARY} LABELS sim render)
 rtmsim_test(actor_test devices/actor_test.cpp LIBRARIES simserver LABELS sim render)
 
-rtmsim_test(vehicles_test devices/vehicles_test.cpp devices/buoyancy_engine_test.cpp devices/forces_test.cpp LIBRARIES simserver LABELS sim)
+rtmsim_test(vehicles_test devices/vehicles_test.cpp devices/buoyancy_engine_test.cpp devices/nonsense_test.cpp devices/forces_test.cpp LIBRARIES simserver LABELS sim)

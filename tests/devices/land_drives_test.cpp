@@ -358,6 +358,27 @@ std::vector<Kind> land_kinds() {
           {"tank::position2d", tracked_text(true)}, {"car::position2d", car_text()},   {"cart::drive", cart_text()}};
 }
 
+// gz-sim's <max_velocity> and <min_velocity> are of speed [m/s] and turn [rad/s]; <min_linear_velocity> is of one.
+TEST(DiffDrive, of_gz_sim_keeps_to_limits_that_mean_speed_and_turn) {
+  std::string cart = cart_text();
+  cart.replace(cart.find("libgazebo_ros_diff_drive.so"), 27, "gz-sim-diff-drive-system");
+  const auto ride_with = [&](const std::string& limits, double vx, double va) {
+    std::string text = cart;
+    text.insert(text.find("</plugin>"), limits);
+    LandRide ride(text, "cart::drive");
+    ride.command(vx, 0, va);
+    const auto end = ride.after(3);
+    return std::pair(end.command[0], end.command[2]);
+  };
+  const std::string both = "<max_velocity>0.5</max_velocity><min_velocity>-0.2</min_velocity>";
+  EXPECT_EQ(ride_with(both, 9, 0).first, 0.5);
+  EXPECT_EQ(ride_with(both, -9, 0).first, -0.2);
+  EXPECT_NEAR(ride_with(both, 0, 9).second, 0.5, 1e-9);
+  EXPECT_NEAR(ride_with(both, 0, -9).second, -0.2, 1e-9);
+  EXPECT_EQ(ride_with("<max_linear_velocity>0.5</max_linear_velocity><min_linear_velocity>-0.1</min_linear_velocity>", -9, 0).first, -0.1);
+  EXPECT_EQ(ride_with("<max_linear_velocity>0.5</max_linear_velocity>", -9, 0).first, -0.5);
+}
+
 // Public complaints: half a metre in five minutes. They stay awake here, as a robot with a moving arm does.
 TEST(LandDrives, that_are_told_to_stand_do_not_drift_in_five_minutes) {
   for (const Kind& kind : land_kinds()) {

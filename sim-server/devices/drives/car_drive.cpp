@@ -36,6 +36,7 @@ struct CarSettings {
   double rate = 0;                        // of samples [Hz]; 0: every step
   double tightest = 1;                    // curve that a velocity can ask for [1/m]
   bool is_tricycle = false;               // one wheel in front is driven and steered
+  bool is_steering_only = false;          // controllers of single joints turn the wheels
   std::vector<std::uint32_t> encoders;    // joints of its wheels in the rear, left and right, which its odometry comes from; or none
   double encoder_radius = 0;              // of those wheels [m]
 };
@@ -45,6 +46,16 @@ Wheel place_of(const ModelDef& model, std::uint32_t joint) {
   return {joint, place.x(), place.y()};
 }
 
+// Steering alone: no driven wheel says where the rear is.
+void place_steering(const ParameterNode& p, CarSettings& s) {
+  const auto aside = [](const Wheel& a, const Wheel& b) { return a.y < b.y; };
+  const auto [right, left] = std::minmax_element(s.steered.begin(), s.steered.end(), aside);
+  const double middle = (left->y + right->y) / 2;
+  s.wheel_base = p.number_of({"wheel_base"}).value_or(1);
+  s.separation = p.number_of({"wheel_separation"}).value_or(1);
+  for (Wheel& wheel : s.steered) wheel.x = s.wheel_base, wheel.y -= middle;
+}
+
 // Wheels and steering joints, from the middle between the wheels in the rear.
 base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, CarSettings& s) {
   std::vector<std::uint32_t> driven, steered;
@@ -52,20 +63,19 @@ base::Result<void> find_wheels(const ModelDef& model, const PluginDef& plugin, C
   const bool is_of_ros = plugin.parameters.child("rear_left_joint") != nullptr;
   if (is_of_ros) {
     add_joints(model, plugin, {"rear_left_joint", "rear_right_joint"}, driven, missing);
-  } else {
+  } else if (!s.is_steering_only) {
     add_joints(model, plugin, {"left_joint", "right_joint"}, driven, missing);
   }
   add_joints(model, plugin, {"left_steering_joint", "right_steering_joint"}, steered, missing);
-  const auto error = [&](const std::string& what) {
-    return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
-  };
-  if (!missing.empty()) return error(fmt::format("model {} has no joint {}", model.name, base::in_quotes(missing)));
-  if (driven.empty() || steered.empty()) {
-    return error(fmt::format("needs driven wheels ({}) and steering joints (left_steering_joint, right_steering_joint)",
+  const auto error = [&](const std::string& what) { return drive_error(model, plugin, what); };
+  if (!missing.empty()) return error("the model has no joint " + base::in_quotes(missing));
+  if ((driven.empty() && !s.is_steering_only) || steered.empty()) {
+    return error(fmt::format("it needs driven wheels ({}) and steering joints (left_steering_joint, right_steering_joint)",
                              is_of_ros ? "rear_left_joint, rear_right_joint" : "left_joint, right_joint"));
   }
   for (const auto joint : driven) s.driven.push_back(place_of(model, joint));
   for (const auto joint : steered) s.steered.push_back(place_of(model, joint));
+  if (s.is_steering_only) return place_steering(plugin.parameters, s), base::Result<void>();
   const auto before = [](const Wheel& a, const Wheel& b) { return a.x < b.x; };
   const auto aside = [](const Wheel& a, const Wheel& b) { return a.y < b.y; };
   const double front = std::min_element(s.steered.begin(), s.steered.end(), before)->x;
@@ -90,12 +100,10 @@ base::Result<void> find_tricycle(const ModelDef& model, const PluginDef& plugin,
   add_joints(model, plugin, {"steeringJoint", "steering_joint"}, steered, missing);
   add_joints(model, plugin, {"encoderWheelLeftJoint", "encoder_wheel_left_joint"}, rear, missing);
   add_joints(model, plugin, {"encoderWheelRightJoint", "encoder_wheel_right_joint"}, rear, missing);
-  const auto error = [&](const std::string& what) {
-    return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
-  };
-  if (!missing.empty()) return error(fmt::format("model {} has no joint {}", model.name, base::in_quotes(missing)));
+  const auto error = [&](const std::string& what) { return drive_error(model, plugin, what); };
+  if (!missing.empty()) return error("the model has no joint " + base::in_quotes(missing));
   if (driven.size() != 1 || steered.size() != 1)
-    return error("needs one driven wheel and its steering (actuated_wheel_joint, steering_joint)");
+    return error("it needs one driven wheel and its steering (actuated_wheel_joint, steering_joint)");
   Eigen::Vector3d middle(0, 0, 0);
   for (const auto joint : rear) middle += wheel_place(model, joint) / static_cast<double>(rear.size());
   const ParameterNode& p = plugin.parameters;
@@ -110,8 +118,7 @@ base::Result<void> find_tricycle(const ModelDef& model, const PluginDef& plugin,
   if (rear.size() == 2) {
     s.encoders = rear;
     s.encoder_radius = p.number_of({"encoderWheelDiameter", "encoder_wheel_diameter"}).value_or(2 * wheel_radius(model, rear[0])) / 2;
-    if (!(s.encoder_radius > 0))
-      return error(fmt::format("the diameter of an encoder's wheel must be positive, got {}", 2 * s.encoder_radius));
+    if (const auto problem = size_problem("radius of an encoder's wheel", s.encoder_radius); !problem.empty()) return error(problem);
   }
   return {};
 }
@@ -141,13 +148,13 @@ base::Result<CarSettings> car_settings_of(const ModelDef& model, const PluginDef
   const ParameterNode& p = plugin.parameters;
   CarSettings s;
   const auto find = kind_of(plugin) == PluginKind::tricycle_drive ? find_tricycle : find_wheels;
+  s.is_steering_only = is_steering_only(plugin);
   if (auto found = find(model, plugin, s); !found) return found.error();
   const double diameter = p.number_of({"actuatedWheelDiameter", "actuated_wheel_diameter", "wheelDiameter", "wheel_diameter"})
-                              .value_or(2 * wheel_radius(model, s.driven[0].joint));
+                              .value_or(s.is_steering_only ? 1 : 2 * wheel_radius(model, s.driven[0].joint));
   s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(diameter / 2);
-  if (!(s.wheel_base > 0) || !(s.separation > 0) || !(s.radius > 0)) {
-    return base::Error{fmt::format("{}: plugin {}: wheel base, separation and radius must be positive, got {}, {} and {}", plugin.source,
-                                   plugin.name, s.wheel_base, s.separation, s.radius)};
+  for (const auto& [what, size] : {std::pair("wheel base", s.wheel_base), {"wheel separation", s.separation}, {"wheel radius", s.radius}}) {
+    if (const auto problem = size_problem(what, size); !problem.empty()) return drive_error(model, plugin, problem);
   }
   const bool is_of_gz = is_of_gz_sim(plugin);
   s.steering_limit = std::clamp(p.number_of({"steering_limit", "max_steer"}).value_or(is_of_gz ? 0.5 : 0.6), 0.01, 1.5);
@@ -202,6 +209,7 @@ class Car final : public DriveTrain {
 
   Travel travel() override {
     if (!settings_.encoders.empty()) return travel_of_encoders();
+    if (settings_.driven.empty()) return {};
     const double curve = steered_curvature();
     double forward = 0, speed = 0;
     for (std::size_t i = 0; i < settings_.driven.size(); ++i) {
@@ -215,7 +223,11 @@ class Car final : public DriveTrain {
     return {forward / count, forward / count * curve, speed / count, speed / count * curve};
   }
 
-  std::array<double, 3> followed() const override { return {speed_, 0, speed_ * curvature_}; }
+  // Of a steering alone nothing: others turn the wheels.
+  std::array<double, 3> followed() const override {
+    if (settings_.driven.empty()) return {0, 0, 0};
+    return {speed_, 0, speed_ * curvature_};
+  }
   std::vector<std::uint32_t> joints() const override {
     std::vector<std::uint32_t> all;
     for (const auto* wheels : {&settings_.driven, &settings_.steered}) {

@@ -1,9 +1,13 @@
 #include "devices/drives/drive_train.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
+
+#include "base/text.h"
 
 namespace sim {
 
@@ -18,6 +22,17 @@ void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer
       missing = child.text;
     }
   }
+}
+
+base::Error drive_error(const ModelDef& model, const PluginDef& plugin, const std::string& what) {
+  return base::Error{fmt::format("{}: plugin {} of model {}: {}; the plugin is left out", plugin.source, base::in_quotes(plugin.name),
+                                 base::in_quotes(model.name), what)};
+}
+
+std::string size_problem(std::string_view what, double size) {
+  constexpr double smallest = 0.001, largest = 1000;  // [m]
+  if (size >= smallest && size <= largest) return {};
+  return fmt::format("the {} must be from {} to {} m, got {}", what, smallest, largest, size);
 }
 
 namespace {

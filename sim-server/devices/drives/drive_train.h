@@ -64,6 +64,10 @@ MadeTrain make_tracks(Physics& physics, ModelId model, const PluginDef& plugin);
 
 inline constexpr double strongest_torque = 1e6;  // [N m] of wheels that nothing but their grip holds back
 
+// A line with plugin and model, and that the plugin is left out.
+base::Error drive_error(const ModelDef& model, const PluginDef& plugin, const std::string& what);
+// What is wrong with the size of a wheel or a distance of wheels, for that line; empty: nothing. From a millimetre to a kilometre.
+std::string size_problem(std::string_view what, double size);
 // All joints that the children of these names mean; one that is not there goes into `missing`.
 void add_joints(const ModelDef& model, const PluginDef& plugin, std::initializer_list<std::string_view> spellings,
                 std::vector<std::uint32_t>& joints, std::string& missing);

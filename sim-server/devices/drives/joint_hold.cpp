@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/text.h"
 #include "devices/angle.h"
 #include "devices/drives/drive_train.h"
+#include "devices/joints/joint_list.h"
 #include "world/plugin_kind.h"
 #include "world/xml_values.h"
 
@@ -67,6 +69,23 @@ std::vector<std::uint32_t> joints_of(const ModelDef& model, const PluginDef& plu
   return joints;
 }
 
+// Who has the joint before this controller; empty: nobody.
+std::string other_of(const ModelDef& model, const PluginDef& plugin, std::uint32_t joint,
+                     const std::map<std::uint32_t, std::string>& holders) {
+  if (const auto holder = holders.find(joint); holder != holders.end()) return holder->second;
+  for (const PluginDef& other : model.plugins) {
+    if (&other == &plugin || !drives_joint(model, other, joint)) continue;
+    return other.name;
+  }
+  return {};
+}
+
+std::string drive_line(const ModelDef& model, const PluginDef& plugin, std::uint32_t joint, const std::string& other) {
+  return fmt::format("{}: plugin {} of model {}: joint {} is driven by {} already; the plugin does not hold it", plugin.source,
+                     base::in_quotes(plugin.name), base::in_quotes(model.name), base::in_quotes(model.joints[joint].name),
+                     base::in_quotes(other));
+}
+
 }  // namespace
 
 void JointHold::before_step(Physics& physics) const {
@@ -81,6 +100,7 @@ void JointHold::before_step(Physics& physics) const {
 
 std::vector<JointHold> joint_holds_of(const Physics& physics, ModelId model, std::vector<std::string>& left_out) {
   std::vector<JointHold> holds;
+  std::map<std::uint32_t, std::string> holders;  // joints, and the controllers that have them: who comes first
   const ModelDef& def = physics.def(model);
   for (const PluginDef& plugin : def.plugins) {
     if (kind_of(plugin) != PluginKind::joint_controller) continue;
@@ -94,12 +114,16 @@ std::vector<JointHold> joint_holds_of(const Physics& physics, ModelId model, std
     const auto velocities = numbers_of(plugin.parameters, "initial_velocity");
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (!is_driveable(def.joints[joints[i]])) continue;
+      if (const auto other = other_of(def, plugin, joints[i], holders); !other.empty()) {
+        const bool is_named = plugin.parameters.child("joint_name") != nullptr || plugin.parameters.child("joint") != nullptr;
+        if (is_named) left_out.push_back(drive_line(def, plugin, joints[i], other));
+        continue;
+      }
       JointHold hold = hold_of(def, model, joints[i]);
       if (i < targets.size()) hold.target = within_limits(def.joints[joints[i]], targets[i], plugin, left_out);
       if (i < velocities.size() && velocities[i] != 0) hold.has_target = false, hold.velocity = velocities[i];
-      // Who comes first has the joint.
-      if (std::none_of(holds.begin(), holds.end(), [&](const JointHold& other) { return other.joint.joint == hold.joint.joint; }))
-        holds.push_back(hold);
+      holders.emplace(joints[i], plugin.name);
+      holds.push_back(hold);
     }
   }
   return holds;

@@ -30,10 +30,6 @@ struct RollerSettings {
   double rate = 0;                                        // of samples [Hz]; 0: every step
 };
 
-base::Error roller_error(const PluginDef& plugin, const std::string& what) {
-  return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
-}
-
 // Four wheels with rollers at 45 degrees, as gz-sim counts them.
 base::Result<void> find_mecanum_wheels(const ModelDef& model, const PluginDef& plugin, RollerSettings& s) {
   const ParameterNode& p = plugin.parameters;
@@ -50,11 +46,12 @@ base::Result<void> find_mecanum_wheels(const ModelDef& model, const PluginDef& p
         Corner{"back_left_joint", "rear_left_joint", 1, -1}, Corner{"back_right_joint", "rear_right_joint", -1, 1}}) {
     std::vector<std::uint32_t> joints;
     add_joints(model, plugin, {corner.name, corner.other}, joints, missing);
-    if (!missing.empty()) return roller_error(plugin, fmt::format("model {} has no joint {}", model.name, base::in_quotes(missing)));
+    if (!missing.empty()) return drive_error(model, plugin, "the model has no joint " + base::in_quotes(missing));
     if (joints.empty())
-      return roller_error(plugin, fmt::format("needs four wheels (front_left_joint, front_right_joint, back_left_joint, back_right_joint); "
-                                              "there is no {}",
-                                              corner.name));
+      return drive_error(model, plugin,
+                         fmt::format("it needs four wheels (front_left_joint, front_right_joint, back_left_joint, back_right_joint); "
+                                     "there is no {}",
+                                     corner.name));
     for (const auto joint : joints) s.wheels.push_back({joint, {1, corner.aside, corner.turn * lever}});
   }
   return {};
@@ -66,14 +63,15 @@ base::Result<void> find_omni_wheels(const ModelDef& model, const PluginDef& plug
   for (const ParameterNode& child : plugin.parameters.children) {
     const auto joint = child.text.empty() ? std::nullopt : joint_of(model, plugin.scope, child.text);
     const bool is_named = child.name.ends_with("joint") || child.name.ends_with("Joint");
-    if (is_named && !joint) return roller_error(plugin, fmt::format("model {} has no joint {}", model.name, base::in_quotes(child.text)));
+    if (is_named && !joint) return drive_error(model, plugin, "the model has no joint " + base::in_quotes(child.text));
     if (joint && std::find(joints.begin(), joints.end(), *joint) == joints.end()) joints.push_back(*joint);
   }
-  if (joints.size() < 3) return roller_error(plugin, fmt::format("needs three wheels or more (wheel_joint), got {}", joints.size()));
+  if (joints.size() < 3)
+    return drive_error(model, plugin, fmt::format("it needs three wheels or more (wheel_joint), got {}", joints.size()));
   double reach = 0;
   for (const auto joint : joints) {
     const JointDef& def = model.joints[joint];
-    if (def.axes.empty()) return roller_error(plugin, fmt::format("joint {} does not turn", base::in_quotes(def.name)));
+    if (def.axes.empty()) return drive_error(model, plugin, fmt::format("joint {} does not turn", base::in_quotes(def.name)));
     const Eigen::Vector3d axle = def.pose_in_model.linear() * def.axes[0].xyz, place = wheel_place(model, joint);
     const Eigen::Vector3d rolling = axle.cross(Eigen::Vector3d::UnitZ());
     s.wheels.push_back({joint, {rolling.x(), rolling.y(), rolling.y() * place.x() - rolling.x() * place.y()}});
@@ -95,17 +93,25 @@ base::Result<RollerSettings> roller_settings_of(const ModelDef& model, const Plu
   const auto find = kind_of(plugin) == PluginKind::mecanum_drive ? find_mecanum_wheels : find_omni_wheels;
   if (auto found = find(model, plugin, s); !found) return found.error();
   s.radius = p.number_of({"wheel_radius", "wheelRadius"}).value_or(wheel_radius(model, s.wheels[0].joint));
-  if (!(s.radius > 0)) return roller_error(plugin, fmt::format("the wheel radius must be positive, got {}", s.radius));
+  if (const auto problem = size_problem("wheel radius", s.radius); !problem.empty()) return drive_error(model, plugin, problem);
+  for (const auto& [what, size] : {std::pair("wheelbase", s.wheel_base), {"wheel separation", s.separation}}) {
+    const bool is_given = kind_of(plugin) == PluginKind::mecanum_drive;
+    if (const auto problem = size_problem(what, size); is_given && !problem.empty()) return drive_error(model, plugin, problem);
+  }
   const Eigen::MatrixXd rows = rows_of(s.wheels);
   constexpr double least_share = 1e-3;  // of what the wheels can do in the direction that they can do best
   const Eigen::Vector3d strengths = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
   if (!(strengths(2) > least_share * strengths(0)))
-    return roller_error(plugin, "its wheels cannot drive in every direction and turn; wheel_separation and axles decide");
+    return drive_error(model, plugin, "its wheels cannot drive in every direction and turn; wheel_separation and axles decide");
   for (const RollerWheel& wheel : s.wheels) s.torque = std::min(s.torque, torque_of(model, wheel.joint));
   s.max_speed = std::max(0.0, p.number_of({"max_linear_velocity", "max_velocity", "max_speed"}).value_or(0));
   s.max_yaw_rate = std::max(0.0, p.number_of({"max_angular_velocity", "max_yaw_rate"}).value_or(0));
   s.max_acceleration = std::max(0.0, p.number_of({"max_linear_acceleration", "max_acceleration"}).value_or(0));
   s.max_yaw_acceleration = std::max(0.0, p.number_of({"max_angular_acceleration", "max_yaw_acceleration"}).value_or(0));
+  // In gz-sim one element limits both.
+  if (is_of_gz_sim(plugin) && s.max_yaw_rate == 0) s.max_yaw_rate = std::max(0.0, p.number_of({"max_velocity"}).value_or(0));
+  if (is_of_gz_sim(plugin) && s.max_yaw_acceleration == 0)
+    s.max_yaw_acceleration = std::max(0.0, p.number_of({"max_acceleration"}).value_or(0));
   s.rate = std::max(0.0, p.number_of({"odom_publish_frequency", "update_rate"}).value_or(0));
   return s;
 }

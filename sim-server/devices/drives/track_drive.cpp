@@ -52,15 +52,11 @@ Eigen::Vector3d belt_axis(const ParameterNode& p) {
          Eigen::Vector3d::UnitY();
 }
 
-base::Error track_error(const PluginDef& plugin, const std::string& what) {
-  return base::Error{fmt::format("{}: plugin {}: {}", plugin.source, plugin.name, what)};
-}
-
 base::Result<void> add_tracks(const ModelDef& model, const PluginDef& vehicle, const char* side, TrackSettings& s,
                               std::vector<Track>& tracks) {
   for (const std::string& name : tracks_of(vehicle, side)) {
     const auto link = link_of(model, vehicle.scope, name);
-    if (!link) return track_error(vehicle, fmt::format("model {} has no link {}", model.name, base::in_quotes(name)));
+    if (!link) return drive_error(model, vehicle, "the model has no link " + base::in_quotes(name));
     Track track{*link};
     for (const PluginDef& plugin : model.plugins) {
       if (kind_of(plugin) != PluginKind::track_controller || plugin.scope != vehicle.scope) continue;
@@ -70,7 +66,7 @@ base::Result<void> add_tracks(const ModelDef& model, const PluginDef& vehicle, c
     }
     tracks.push_back(track);
   }
-  if (tracks.empty()) return track_error(vehicle, "needs tracks on both sides (left_track, right_track)");
+  if (tracks.empty()) return drive_error(model, vehicle, "it needs tracks on both sides (left_track, right_track)");
   return {};
 }
 
@@ -92,13 +88,13 @@ base::Result<TrackSettings> vehicle_settings_of(const ModelDef& model, const Plu
   }
   const std::string body = p.text_of({"body_link", "body"}).value_or("");
   const auto link = body.empty() ? link_of(model, {}, model.canonical_link) : link_of(model, plugin.scope, body);
-  if (!link) return track_error(plugin, fmt::format("model {} has no link {}", model.name, base::in_quotes(body)));
+  if (!link) return drive_error(model, plugin, "the model has no link " + base::in_quotes(body));
   s.body = *link;
   s.separation = p.number_of({"tracks_separation"}).value_or(distance_of_tracks(model, s));
   s.efficiency = p.number_of({"steering_efficiency"}).value_or(0.5);
-  if (!(s.separation > 0) || !(s.efficiency > 0))
-    return track_error(
-        plugin, fmt::format("tracks_separation and steering_efficiency must be positive, got {} and {}", s.separation, s.efficiency));
+  if (const auto problem = size_problem("tracks_separation", s.separation); !problem.empty()) return drive_error(model, plugin, problem);
+  if (!(s.efficiency >= 0.001 && s.efficiency <= 1000))
+    return drive_error(model, plugin, fmt::format("steering_efficiency must be from 0.001 to 1000, got {}", s.efficiency));
   if (const ParameterNode* linear = p.child("linear_velocity")) read_limits(*linear, s.linear);
   if (const ParameterNode* angular = p.child("angular_velocity")) read_limits(*angular, s.angular);
   if (const auto most = p.number_of({"max_linear_speed"}); most && *most > 0) s.linear.low = -*most, s.linear.high = *most;
@@ -111,7 +107,7 @@ base::Result<TrackSettings> belt_settings_of(const ModelDef& model, const Plugin
   TrackSettings s;
   const std::string name = plugin.parameters.text_of({"link"}).value_or("");
   const auto link = link_of(model, plugin.scope, name);
-  if (!link) return track_error(plugin, fmt::format("model {} has no link {}", model.name, base::in_quotes(name)));
+  if (!link) return drive_error(model, plugin, "the model has no link " + base::in_quotes(name));
   s.left = {{*link, belt_axis(plugin.parameters)}};
   s.body = *link;
   s.is_vehicle = false;

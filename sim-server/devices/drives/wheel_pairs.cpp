@@ -20,6 +20,7 @@ struct PairSettings {
   double radius = 0;                       // of a wheel [m]
   double torque = 5;                       // of a wheel [N m]
   double max_speed = 0, max_yaw_rate = 0;  // 0: unlimited [m/s], [rad/s]
+  double min_speed = 0, min_yaw_rate = 0;  // backward and to the right, negative; likewise
   double max_acceleration = 0;             // of a wheel's rim [m/s^2]; 0: unlimited
   double max_yaw_acceleration = 0;         // [rad/s^2]
   double rate = 0;                         // of samples [Hz]; 0: every step
@@ -66,20 +67,15 @@ base::Result<PairSettings> pair_settings_of(const ModelDef& model, const PluginD
              {"right_joint", "rightJoint", "right_front", "rightFrontJoint", "right_front_joint", "right_rear", "rightRearJoint",
               "right_rear_joint"},
              s.right, missing);
-  if (!missing.empty())
-    return base::Error{
-        fmt::format("{}: plugin {}: model {} has no joint {}", plugin.source, plugin.name, model.name, base::in_quotes(missing))};
+  if (!missing.empty()) return drive_error(model, plugin, "the model has no joint " + base::in_quotes(missing));
   if (s.left.empty() && s.right.empty() && is_skid_of_classic(plugin)) add_joints_by_name(model, plugin, s);
-  if (s.left.empty() || s.right.empty()) {
-    return base::Error{fmt::format("{}: plugin {}: needs a left and a right joint (left_joint, right_joint)", plugin.source, plugin.name)};
-  }
+  if (s.left.empty() || s.right.empty()) return drive_error(model, plugin, "it needs a left and a right joint (left_joint, right_joint)");
   s.separation =
       p.number_of({"wheel_separation", "wheelSeparation", "wheel_track"}).value_or(wheel_separation(model, s.left[0], s.right[0]));
   s.radius = p.number_of({"wheel_radius", "wheelRadius"})
                  .value_or(p.number_of({"wheel_diameter", "wheelDiameter"}).value_or(2 * wheel_radius(model, s.left[0])) / 2);
-  if (s.separation <= 0 || s.radius <= 0) {
-    return base::Error{fmt::format("{}: plugin {}: wheel separation and radius must be positive, got {} and {}", plugin.source, plugin.name,
-                                   s.separation, s.radius)};
+  for (const auto& [what, size] : {std::pair("wheel separation", s.separation), {"wheel radius", s.radius}}) {
+    if (const auto problem = size_problem(what, size); !problem.empty()) return drive_error(model, plugin, problem);
   }
   s.torque = p.number_of({"max_wheel_torque", "wheelTorque", "wheel_torque", "torque", "max_force", "MaxForce"})
                  .value_or(is_of_gz_sim(plugin) ? torque_of_joints(model, s.left, s.right) : s.torque);
@@ -87,10 +83,17 @@ base::Result<PairSettings> pair_settings_of(const ModelDef& model, const PluginD
   if (is_skid_of_classic(plugin)) s.torque = strongest_torque;
   s.max_speed = std::max(0.0, p.number_of({"max_linear_velocity", "max_velocity", "max_speed", "maxSpeed"}).value_or(0));
   s.max_yaw_rate = std::max(0.0, p.number_of({"max_angular_velocity", "max_yaw_rate", "max_turnrate"}).value_or(0));
+  // In gz-sim one element limits both.
+  const auto both = [&](const char* element) { return is_of_gz_sim(plugin) ? p.number_of({element}).value_or(0) : 0; };
+  if (s.max_yaw_rate == 0) s.max_yaw_rate = std::max(0.0, both("max_velocity"));
+  s.min_speed = std::min(0.0, p.number_of({"min_linear_velocity", "min_velocity"}).value_or(-s.max_speed));
+  s.min_yaw_rate = std::min(0.0, p.number_of({"min_angular_velocity"}).value_or(std::min(both("min_velocity"), 0.0)));
+  if (s.min_yaw_rate == 0) s.min_yaw_rate = -s.max_yaw_rate;
   s.max_acceleration = std::max(
       0.0, p.number_of({"max_wheel_acceleration", "max_linear_acceleration", "max_acceleration", "wheelAcceleration", "wheel_acceleration"})
                .value_or(0));
   s.max_yaw_acceleration = std::max(0.0, p.number_of({"max_angular_acceleration", "max_yaw_acceleration"}).value_or(0));
+  if (s.max_yaw_acceleration == 0) s.max_yaw_acceleration = std::max(0.0, both("max_acceleration"));
   s.rate = std::max(0.0, p.number_of({"odom_publish_frequency", "update_rate", "updateRate"}).value_or(0));
   return s;
 }
@@ -112,10 +115,11 @@ class WheelPairs final : public DriveTrain {
   }
 
   void drive(const DriveOrder& order, bool motors_on, double dt) override {
-    const auto limited = [](double value, double limit) {
-      return limit > 0 ? std::clamp(value, -limit, limit) : std::clamp(value, -1000.0, 1000.0);
+    const auto limited = [](double value, double least, double most) {
+      return std::clamp(value, least < 0 ? least : -1000.0, most > 0 ? most : 1000.0);
     };
-    const double vx = limited(order.velocity[0], settings_.max_speed), va = limited(order.velocity[2], settings_.max_yaw_rate);
+    const double vx = limited(order.velocity[0], settings_.min_speed, settings_.max_speed),
+                 va = limited(order.velocity[2], settings_.min_yaw_rate, settings_.max_yaw_rate);
     const double half = settings_.separation / 2;
     std::array<double, 2> change{vx - va * half - wheels_[0], vx + va * half - wheels_[1]};
     double share = 1;

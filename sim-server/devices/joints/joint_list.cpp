@@ -17,6 +17,7 @@ namespace {
 constexpr double payload = 3;                                 // highest effort: times what gravity asks for
 constexpr double least_torque = 5, least_force = 50;          // [N m], [N] of a joint without a limit in the file
 constexpr double usual_speed = 2, usual_slide = 0.5;          // [rad/s], [m/s]
+constexpr double perfect_speed = 1000, perfect_effort = 1e6;  // of a motor that turns as told
 constexpr double least_turning = 1e-6, least_sliding = 1e-4;  // [kg m^2], [kg]: what a derived gain takes the joint to move
 
 bool is_commandable(const JointDef& joint) {
@@ -31,6 +32,7 @@ bool is_drive(PluginKind kind) {
 }
 
 void add_named_joints(const ModelDef& model, const PluginDef& plugin, const ParameterNode& node, std::set<std::uint32_t>& joints) {
+  if (is_steering_only(plugin) && (node.name == "left_joint" || node.name == "right_joint")) return;
   if (const auto joint = node.text.empty() ? std::nullopt : joint_of(model, plugin.scope, node.text)) joints.insert(*joint);
   for (const ParameterNode& child : node.children) add_named_joints(model, plugin, child, joints);
 }
@@ -110,6 +112,11 @@ std::optional<FileGains> file_gains(const ModelDef& model, std::uint32_t joint) 
   return gains_beside(model, joint, false);
 }
 
+bool has_perfect_motor(const ModelDef& model, std::uint32_t joint) {
+  return std::ranges::any_of(model.plugins,
+                             [&](const PluginDef& plugin) { return turns_as_told(plugin) && place_in(model, plugin, joint).has_value(); });
+}
+
 // For each of the joints the number of the one that it follows; -1: none.
 std::vector<int> leaders_of(const ModelDef& model, const std::vector<std::uint32_t>& joints) {
   std::vector<int> leaders(joints.size(), -1);
@@ -137,6 +144,14 @@ std::vector<std::uint32_t> commandable_joints(const ModelDef& model) {
   return joints;
 }
 
+bool drives_joint(const ModelDef& model, const PluginDef& plugin, std::uint32_t joint) {
+  if (is_propeller(kind_of(plugin)))
+    return joint_of(model, plugin.scope, plugin.parameters.text_of({"joint_name", "jointName"}).value_or("")) == joint;
+  std::set<std::uint32_t> joints;
+  if (is_drive(kind_of(plugin))) add_named_joints(model, plugin, plugin.parameters, joints);
+  return joints.contains(joint);
+}
+
 std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<std::uint32_t>& joints, const JointDynamics& dynamics,
                                      double gravity) {
   std::vector<double> start;
@@ -159,8 +174,12 @@ std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<st
     auto& setup = listed.setup;
     setup.slides = dynamics.body(i).slides;
     if (def.kind != JointDef::Kind::continuous) setup.low = axis.lower, setup.high = axis.upper;
-    setup.velocity = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : setup.slides ? usual_slide : usual_speed;
-    const double derived = std::max(payload * dynamics.most_gravity_effort(i, gravity), setup.slides ? least_force : least_torque);
+    const bool has_limits = axis.upper - axis.lower < 1e6;
+    const bool is_perfect = !has_limits && has_perfect_motor(model, joints[i]);
+    const double usual = is_perfect ? perfect_speed : setup.slides ? usual_slide : usual_speed;
+    setup.velocity = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual;
+    const double least = is_perfect ? perfect_effort : setup.slides ? least_force : least_torque;
+    const double derived = std::max(payload * dynamics.most_gravity_effort(i, gravity), least);
     setup.effort = std::isfinite(axis.effort) && axis.effort > 0 ? axis.effort : derived;
     if (const auto file = file_gains(model, joints[i])) {
       setup.gains = file->gains;

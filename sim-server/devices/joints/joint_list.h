@@ -22,6 +22,9 @@ struct ListedJoint {
 // Joints with one axis that no drive of the model turns, in the order of the file.
 std::vector<std::uint32_t> commandable_joints(const ModelDef& model);
 
+// The plugin is a drive or a propeller that turns this joint.
+bool drives_joint(const ModelDef& model, const PluginDef& plugin, std::uint32_t joint);
+
 // The dynamics are those of the same joints. `gravity`: [m/s^2].
 std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<std::uint32_t>& joints, const JointDynamics& dynamics,
                                      double gravity);
