@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "physics/body_forces.h"
+#include "physics/joints.h"
 #include "support/heavy_worlds.h"
 #include "support/physics_fixture.h"
 #include "support/usage.h"
@@ -85,6 +87,46 @@ void bench_overlapping(int count, double at_least) {
   print(line, speed(f, 0.2), "times", at_least);
 }
 
+// What a world pays that has no water, wings, propellers or wind: what asks for them in each step is asked once more for each robot.
+void bench_hooks(double at_most) {
+  constexpr int robots = 100, steps = 4000;
+  std::vector<ModelDef> models{ground()};
+  for (int i = 0; i < robots; ++i) {
+    models.push_back(pioneer("robot_" + std::to_string(i), at(i % 10 * 2.0, i / 10 * 2.0, 0)));
+    models.back().allow_auto_disable = false;
+  }
+  const auto seconds_of = [&](bool asks_again) {
+    PhysicsFixture f(world_of(models));
+    TriangleCache triangles;
+    ShapeStore shapes(triangles);
+    std::vector<std::string> lost;
+    const PhysicsDef physics;
+    std::vector<std::shared_ptr<const Blueprint>> plans;
+    std::vector<BodyForces> hooks;
+    hooks.reserve(robots);
+    for (int i = 1; i <= robots; ++i) {
+      plans.push_back(Blueprint::of(std::make_shared<const ModelDef>(models[static_cast<std::size_t>(i)])).value());
+      hooks.emplace_back(*plans.back(), physics, shapes, lost);
+    }
+    const std::vector<ode::Body> bodies;
+    const std::vector<JointInstance> joints;
+    f.run(0.5);
+    const double before = processor_time();
+    for (int step = 0; step < steps; ++step) {
+      for (BodyForces& hook : hooks) {
+        if (asks_again) hook.apply(bodies, joints, physics, {});
+      }
+      f.physics.step();
+    }
+    return processor_time() - before;
+  };
+  double without = 1e9, with = 1e9;
+  for (int i = 0; i < 3; ++i) without = std::min(without, seconds_of(false)), with = std::min(with, seconds_of(true));
+  const double ratio = with / without;
+  std::printf("%-70s %10.3f %-6s <= %6.2f  %s\n", "100 robots: processor time with / without the hooks of water and air", ratio, "",
+              at_most, ratio <= at_most ? "ok" : "MISSED");
+}
+
 void bench_many() {
   const double before = processor_time();
   PhysicsFixture f(resting_shapes(20000));
@@ -106,5 +148,6 @@ int main(int argc, char** argv) {
   sim::bench::bench_overlapping(300, 0.04);
   sim::bench::bench_overlapping(3000, 0.002);
   sim::bench::bench_many();
+  sim::bench::bench_hooks(1.02);
   std::printf("most memory: %.0f MiB\n", sim::bench::most_megabytes());
 }
