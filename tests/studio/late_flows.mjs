@@ -1,7 +1,7 @@
 // What is late loses nothing: a server that answers slowly or in another order, frames that have not come yet, parts of the page that are drawn
 // anew under a finger. The page alone, in front of a stand-in that holds its answers back: late_flows.mjs BIN_DIR SOURCE_DIR.
 import { join } from 'node:path';
-import { demo_system, hello, Mock, poses, time, world_of } from './mock.mjs';
+import { demo_system, hello, Mock, poses, time, token, world_of } from './mock.mjs';
 import { becomes, check, drawn, has_world, is_ready, open, run, same, until } from './rig.mjs';
 
 const [bin, source] = process.argv.slice(2);
@@ -69,6 +69,28 @@ const flows = [
     await answered;
     await drawn(page);
     same(await page.evaluate(() => window.studio.wire.status), 'open', 'status');
+  }),
+  flow('a token in the address is taken, also when the page writes its view there in the same moment', async ({ page }) => {
+    await is_ready(page);
+    const reloaded = page.waitForEvent('load');
+    await page.evaluate((one) => {
+      sessionStorage.clear();
+      location.hash = `#token=${one}`;
+      history.replaceState(null, '', '#');
+    }, token);
+    await reloaded;
+    await is_ready(page);
+  }),
+  flow('a tab without a token takes that of another tab, also when the other answers late', async ({ page }) => {
+    await is_ready(page);
+    const tab = await page.context().newPage();
+    await tab.addInitScript(() => {
+      const later = window.setTimeout;
+      window.setTimeout = (work, limit, ...more) => (limit === 500 ? work() : later(work, limit, ...more));
+    });
+    await tab.goto(page.url().replace(/#.*/, ''));
+    await is_ready(tab);
+    await tab.close();
   }),
   flow('an answer to an earlier question says nothing new of a component', async ({ mock, page }) => {
     await has_world(page);

@@ -22,15 +22,15 @@ function store(token: string): void {
 }
 
 // Of the address, out of which it is taken.
-function taken(): string {
-  const token = in_address.exec(location.hash)?.[1] ?? '';
+function taken(hash: string): string {
+  const token = in_address.exec(hash)?.[1] ?? '';
   if (!token) return '';
   store(token);
-  history.replaceState(null, '', `#${location.hash.slice(1).split('&').filter((part) => !part.startsWith('token=')).join('&')}`);
+  history.replaceState(null, '', `#${hash.slice(1).split('&').filter((part) => !part.startsWith('token=')).join('&')}`);
   return token;
 }
 
-let mine = taken() || stored();
+let mine = taken(location.hash) || stored();
 const tabs = new BroadcastChannel(kept);
 tabs.onmessage = ({ data }) => {
   if (data === 'who has it?' && mine) tabs.postMessage({ token: mine });
@@ -39,13 +39,19 @@ tabs.onmessage = ({ data }) => {
 function asked(): Promise<string> {
   return new Promise((resolve) => {
     const channel = new BroadcastChannel(kept);
-    const end = (token: string) => {
+    let is_late = false; // the page has begun without
+    channel.onmessage = ({ data }) => {
+      if (typeof data?.token !== 'string') return;
       channel.close();
-      resolve(token);
+      if (!is_late) return resolve(data.token);
+      store(data.token);
+      if (stored() === data.token) location.reload();
     };
-    channel.onmessage = ({ data }) => { if (typeof data?.token === 'string') end(data.token); };
     channel.postMessage('who has it?');
-    setTimeout(() => end(''), answer_limit);
+    setTimeout(() => {
+      is_late = true;
+      resolve('');
+    }, answer_limit);
   });
 }
 
@@ -67,5 +73,6 @@ export async function fetch_data(path: string): Promise<Response> {
   return fetch(path, { headers: { Authorization: `Bearer ${right}` }, credentials: 'omit', redirect: 'error' });
 }
 
-// A new URL in the address bar of a page that is open changes the '#' alone: the page begins again with its token.
-addEventListener('hashchange', () => { if (taken()) location.reload(); });
+// A new URL in the address bar of a page that is open changes the '#' alone: the page begins again with its token. The address may be another
+// already, since the page writes its view into it.
+addEventListener('hashchange', ({ newURL }) => { if (taken(new URL(newURL).hash)) location.reload(); });
