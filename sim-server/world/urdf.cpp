@@ -135,7 +135,7 @@ bool is_fixed(pugi::xml_node joint) { return std::string_view(joint.attribute("t
 
 bool is_massless(pugi::xml_node link) {
   const pugi::xml_attribute mass = link.child("inertial").child("mass").attribute("value");
-  return !link.child("inertial") || base::parse_number(mass.value()) == 0.0;
+  return base::parse_number(mass.value()).value_or(0) == 0;
 }
 
 Eigen::Isometry3d origin_of(pugi::xml_node joint) {
@@ -184,6 +184,16 @@ std::set<std::string, std::less<>> links_with_mass(pugi::xml_node robot) {
   return heavy;
 }
 
+// The library passes over such an <inertial> without a word.
+void drop_wrong_masses(pugi::xml_node robot, Complaints& complaints) {
+  for (pugi::xml_node link : robot.children("link")) {
+    const Fault fault = wrong_number(link.child("inertial"), "link " + base::in_quotes(urdf_name(link)));
+    if (!fault) continue;
+    complaints.warn(link, *fault + "; its <inertial> is ignored");
+    link.remove_child("inertial");
+  }
+}
+
 // Links that move and weigh nothing get the mass of a small ball: the library leaves them out with everything on them.
 void give_mass(pugi::xml_node robot, const Nodes& holders, Complaints& complaints) {
   const auto heavy = links_with_mass(robot);
@@ -226,6 +236,7 @@ std::string urdf_for_library(pugi::xml_node written, Complaints& complaints) {
   Nodes links, holders;
   for (const pugi::xml_node link : robot.children("link")) links.emplace(urdf_name(link), link);
   for (const pugi::xml_node joint : robot.children("joint")) holders.emplace(child_of(joint), joint);
+  drop_wrong_masses(robot, complaints);
   hang_below_frames(robot, links, holders);
   give_mass(robot, holders, complaints);
   bound_limits(robot);

@@ -41,8 +41,6 @@ TEST(Urdf, that_is_refused_has_the_reason) {
            Case{two + joint("revolute", ends + "<limit effort='nan' velocity='1'/>"),
                 "effort of <limit> of joint \"j\" must be a number, got \"nan\""},
            Case{two + joint("fixed", ends + "<origin xyz='0 0'/>"), "xyz of <origin> of joint \"j\" must be three numbers, got \"0 0\""},
-           Case{link("a", "<inertial><mass value='1kg'/></inertial>") + link("b") + joint("fixed", ends),
-                "value of <mass> of link \"a\" must be a number, got \"1kg\""},
        }) {
     const auto loaded = load(each.content, each.attributes);
     ASSERT_FALSE(loaded) << each.reason;
@@ -105,6 +103,16 @@ TEST(Urdf, links_that_move_and_have_no_mass_get_one_with_a_line) {
     EXPECT_EQ(loaded->model.joint("one")->parent, "");
     EXPECT_EQ(loaded->model.joint("two")->parent, "a");
   }
+}
+
+TEST(Urdf, an_inertial_that_is_no_number_is_ignored_with_a_line) {
+  const auto loaded = load(link("a", "<inertial><mass value='1kg'/></inertial>") + link("b") + joint("fixed", ends));
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_EQ(loaded->findings.size(), 1U);
+  EXPECT_NE(loaded->findings[0].text().find("value of <mass> of link \"a\" must be a number, got \"1kg\"; its <inertial> is ignored"),
+            std::string::npos)
+      << loaded->findings[0].text();
+  EXPECT_NEAR(loaded->model.link("a")->mass, 1, 1e-9) << "of b";
 }
 
 TEST(Urdf, infinite_limits_are_none) {
