@@ -362,7 +362,7 @@ def keys():
             for port in ("Long_out", "Long_in"):
                 done = rig.try_rtse("con", f"TopicRelay0:{port}", *words)
                 assert done.returncode != 0 and line in rig.log(host), (wrong, rig.log(host))
-                assert f"connection refused: TopicRelay0:{port}: ros2.topic" in rig.log(host), rig.log(host)
+                assert f"connection refused: TopicRelay0.{port}: ros2.topic" in rig.log(host), rig.log(host)
 
         def connections():
             rig.rtse("save", f"{rig.work}/system.yaml")
