@@ -15,7 +15,7 @@ using SharedSegment = std::shared_ptr<const shm::Segment>;
 
 class WatchedIfaces {
  public:
-  // Exactly these from now on. Nobody knows what has been seen of new ones: the next take_news() is true if there are any.
+  // Exactly these from now on. What has been seen of new ones is not known: the next take_news() is true if there are any.
   void replace(const std::vector<SharedSegment>& segments);
   // Whether one has published since the last call.
   bool take_news();

@@ -1,4 +1,4 @@
-// What the threads of DDS leave for ours: a queue with an eventfd, or a call, that says that it is not empty. Samples have a limit in
+// A queue of what the threads of DDS leave for ours, with an eventfd, or a call, that says that it is not empty. Samples have a limit in
 // number and size; those beyond it are counted. put() belongs to any thread, the rest to one at a time.
 #pragma once
 

@@ -1,8 +1,8 @@
 // A participant of DDS that writes and reads messages that are encoded already. The only part that includes Fast DDS. One thread at a time:
 // Fast DDS's own threads put what they receive into a queue, and deliver() hands it on.
 //
-// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted. What
-// nobody reads, and nobody could read later, is not encoded.
+// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted. A
+// sample that has no reader and will have none is not encoded.
 // Errors name what could not be made.
 #pragma once
 
