@@ -60,7 +60,7 @@ def used(rig, count):
     return (cpu(pid) - began) / (time.perf_counter() - seconds), (count() - messages) / (time.perf_counter() - seconds)
 
 
-# A busy machine steps in bursts, and the clock shows the last step of each: what counts is the price of a message beside that of doing nothing.
+# A busy machine steps in bursts, and the clock shows the last step of each: what counts there is the price of a message.
 def clock():
     for kind, words in (("real time", ()), ("lock step", ("--lockstep",))):
         with Rig() as rig:
@@ -71,10 +71,9 @@ def clock():
             peer.subscribe("/clock", "rosgraph_msgs/Clock", "best_effort")
             peer.message("/clock", "rosgraph_msgs/Clock")
             share, messages = used(rig, lambda: len(peer.samples["/clock"]))
-            # In lock step the gateway is called for each tick, whether somebody hears the clock or not.
-            price = share * 1000 / messages if words else idle + (share - idle) * 1000 / messages
-            row(f"/clock in {kind}: processor time of a gateway that nobody hears", idle, "")
-            row(f"/clock in {kind}, {messages:.0f} a second: that of 1000 messages a second", price, "", "" if words else "0.03")
+            row(f"gateway without subscribers, {kind}: processor time / one core", idle, "")
+            row(f"--clock-rate 1000, {kind}, one subscriber, {messages:.0f} messages a second: the same", share, "", "" if words else "0.03")
+            row("the same for 1000 messages a second", share * 1000 / messages, "")
 
 
 def images():
