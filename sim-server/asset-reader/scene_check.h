@@ -1,5 +1,5 @@
-// What Assimp hands over is what the file says: importers do not check all indexes, and steps after them, as the code here, read arrays by
-// them. One thread at a time.
+// Checks what Assimp hands over: importers do not check all indexes of a file, and steps after them, as the code here, read arrays by them.
+// One thread at a time.
 #pragma once
 
 #include <assimp/scene.h>
