@@ -277,3 +277,20 @@ def test_a_run_names_the_component_that_dies_leaves_or_stands(tmp_path, statemen
 def test_a_run_with_odd_but_harmless_components_ends_in_time(tmp_path, statement):
     result = hostile_run(tmp_path, statement)
     assert result.passed, result.why
+
+
+def test_tools_read_the_ports_of_a_component_whose_callback_keeps_the_interpreter(system, tmp_path):  # noqa: F811
+    file = written(tmp_path, "Hog", port % "TimedLong(RTC.Time(0, 0), 0)" + """
+    def onExecute(self, ec_id):
+        print("matching", flush=True)
+        re.match("(a+)+$", "a" * 60 + "b")
+        return RTC.RTC_OK
+""", extra="import re")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Hog0")
+    system.rtse("act", "Hog0")
+    says(system, process, "matching")
+    assert "out" in system.rtse("cat", "Hog0")
+    ends(process, system, 1)
+    assert "Hog0: onExecute has not returned for" in system.log(process)
+    assert "it got as far as: naming" in system.log(process)

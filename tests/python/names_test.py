@@ -112,3 +112,9 @@ def test_the_names_of_minor_codes_are_those_of_the_orb():
     assert TRANSIENT_ConnectFailed == omniORB.TRANSIENT_ConnectFailed == 0x41540002
     with pytest.raises(AttributeError):
         omniORB.TRANSIENT_NoSuchCode
+
+
+@pytest.mark.parametrize("name", ["select", "_wait"])
+def test_no_wait_of_a_manager_of_csp_ports_is_without_end(name):
+    with pytest.raises(TypeError):
+        getattr(OpenRTM_aist.CSPManager(), name)(None)

@@ -11,11 +11,13 @@
 #include "ports.h"
 #include "properties.h"
 #include "sdo.h"
+#include "serializers.h"
 #include "services.h"
 
 PYBIND11_MODULE(_openrtm_core, module) {
   python::add_properties(module);
   python::add_ports(module);
+  python::add_serializers(module);
   python::add_services(module);
   python::add_channels(module);
   python::add_components(module);

@@ -1,11 +1,14 @@
 #include "serializers.h"
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <cstring>
 #include <map>
 #include <memory>
+#include <set>
 
+#include "base/guarded.h"
 #include "coder.h"
 #include "gil.h"
 #include "ports.h"
@@ -90,17 +93,26 @@ class Stream final : public RTC::ByteDataStreamBase {
   std::string octets_;
 };
 
+// By type, "" for all types. Profiles of ports need them, also while Python code keeps the interpreter's lock for ever.
+using Names = base::Guarded<std::map<std::string, std::vector<std::string>>, base::Rank::noted>;
+Names& all_names() {
+  static auto& names = *new Names;  // ports end after main()
+  return names;
+}
+
 class Authors final : public RTC::detail::Serializers {
  public:
   explicit Authors(const Type& type) : type_(type) {}
 
   std::vector<std::string> names() const override {
-    const Locked locked;
-    return raising([&] {
-      std::vector<std::string> all{"cdr"};
-      for (const auto& name : factories().attr("_names_of")(type_.id)) all.push_back(py::cast<std::string>(name));
-      return all;
-    });
+    std::set<std::string> all;
+    auto known = all_names().lock();
+    for (const auto& id : {std::string(), type_.id})
+      if (const auto found = known->find(id); found != known->end()) all.insert(found->second.begin(), found->second.end());
+    all.erase("cdr");
+    std::vector<std::string> list{"cdr"};
+    list.insert(list.end(), all.begin(), all.end());
+    return list;
   }
   RTC::ByteDataStreamBase* create(const std::string& name) const override {
     const Locked locked;
@@ -133,6 +145,11 @@ const RTC::detail::Serializers& serializers_of(const Type& type) {
   auto& made = known[&type];
   if (!made) made = std::make_unique<Authors>(type);
   return *made;
+}
+
+void add_serializers(py::module_& module) {
+  module.def("set_serializer_names",
+             [](const std::string& id, const std::vector<std::string>& names) { (*all_names().lock())[id] = names; });
 }
 
 }  // namespace python

@@ -93,7 +93,7 @@ class CSPManager:
     def _wait(self, seconds):
         with self._csp_changed:
             self._csp_waits = True
-            self._csp_changed.wait_for(lambda: self._csp_chosen is not None, seconds)
+            self._csp_changed.wait_for(lambda: self._csp_chosen is not None, max(seconds, 0))
             self._csp_waits = False
             port, self._csp_chosen = self._csp_chosen, None
             return port

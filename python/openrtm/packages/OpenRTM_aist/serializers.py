@@ -1,6 +1,7 @@
 """Serializers of authors: how a connection turns values into octets and back. A connection chooses one by dataport.marshaling_type."""
 import threading
 
+import _openrtm_core as _core
 import omniORB
 from omniORB import tcInternal as _tc
 
@@ -89,10 +90,12 @@ class SerializerFactories:
     def _add(self, id_, name, cls):
         with self._lock:
             self._classes.setdefault(id_, {}).setdefault(name, cls)
+            _core.set_serializer_names(id_, list(self._classes[id_]))
 
     def _remove(self, id_, name):
         with self._lock:
             self._classes.get(id_, {}).pop(name, None)
+            _core.set_serializer_names(id_, list(self._classes.get(id_, {})))
 
     def _names_of(self, id_):
         with self._lock:
