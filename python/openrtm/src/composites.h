@@ -1,4 +1,4 @@
-// What components need to consist of others: the organization of their members, which is that of RTC::PeriodicECSharedComposite.
+// Composite components: the organization of their members, which is that of RTC::PeriodicECSharedComposite.
 //
 // Rights: the component has one organization, made once, before anything else is called; it ends with _rtm_members("close").
 #pragma once

@@ -94,9 +94,9 @@ class Stream final : public RTC::ByteDataStreamBase {
 };
 
 // By type, "" for all types. Profiles of ports need them, also while Python code keeps the interpreter's lock for ever.
-using Names = base::Guarded<std::map<std::string, std::vector<std::string>>, base::Rank::noted>;
-Names& all_names() {
-  static auto& names = *new Names;  // ports end after main()
+using NamesByType = base::Guarded<std::map<std::string, std::vector<std::string>>, base::Rank::noted>;
+NamesByType& all_names() {
+  static auto& names = *new NamesByType;  // ports end after main()
   return names;
 }
 
