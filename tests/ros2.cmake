@@ -13,7 +13,7 @@ if(RTMSIM_ROS2)
   set_target_properties(OwnMapping PROPERTIES PREFIX "")
   target_include_directories(OwnMapping PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/gateways/ros2/include)
   target_link_libraries(OwnMapping PRIVATE openrtm rtmsim_settings)
-  foreach(case thin_line sensors joints stamped devices seen shapes graph families services paused gateway_ends crash packets slow_subscriber lockstep demo ports)
+  foreach(case thin_line sensors joints stamped devices seen shapes damaged graph families services paused gateway_ends crash packets slow_subscriber lockstep demo ports)
     add_test(NAME ros2.${case}
       COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/ros2/ros2_gateway.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(ros2.${case} PROPERTIES LABELS integration TIMEOUT 300)

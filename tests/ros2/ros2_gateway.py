@@ -290,6 +290,37 @@ def stamped():
         await_("the refusal", lambda: "warning: ros2-gateway: /cmd_vel:" in rig.log(rig.process).replace("warn:", "warning:"))
 
 
+# Messages of other encodings, damaged ones and a graph of 100,000 nodes: counted or limited, and the gateway goes on serving.
+def damaged():
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        peer.subscribe("/leader/odom", "nav_msgs/Odometry")
+        peer.message("/leader/odom", "nav_msgs/Odometry")
+        peer.advertise("/leader/cmd_vel", "geometry_msgs/Twist")
+        peer.await_matched("/leader/cmd_vel", 2)
+        body = wire.encode("geometry_msgs/Twist", wire.twist(0.2, 0.0))
+        damaged = [bytes([0, kind, 0, 0]) + body[4:] for kind in (2, 3, 6, 7, 8, 9, 10, 11, 255)] + [body[:size] for size in (1, 4, 5, 12, len(body) - 8)]
+        for data in damaged:
+            peer.say(f"put /leader/cmd_vel {data.hex()}")
+        await_("the count", lambda: re.search(r"node /leader/robot: \d+ messages or requests could not be read", rig.log(rig.process)))
+        assert all(abs(one["twist"]["twist"]["linear"]["x"]) < 1e-3 for one in peer.messages("/leader/odom", "nav_msgs/Odometry"))
+        # Big-endian numbers are those of other machines.
+        zero = struct.pack(">d", 0)
+        peer.say(f"put /leader/cmd_vel {(bytes(4) + struct.pack('>d', 0.2) + zero * 5).hex()}")
+        peer.message("/leader/odom", "nav_msgs/Odometry", lambda m: m["twist"]["twist"]["linear"]["x"] > 0.1)
+        peer.writer("graph", "ros_discovery_info", wire.type_on_wire("rmw_dds_common/ParticipantEntitiesInfo"), durability="transient", user_data=jazzy_hash)
+        peer.await_matched("graph")
+        gid = struct.pack("<QQ", 7, 7)
+        node = struct.pack("<I4sI4sI16sI16s", 3, b"/n\0\0", 2, b"n\0\0\0", 1, gid, 1, gid)
+        for count, nodes in ((100000, node * 100000), (2**32 - 1, node), (2**31 - 1, b"")):
+            peer.say(f"put graph {(body[:4] + gid + struct.pack('<I', count) + nodes).hex()}")
+        count = len(peer.samples["/leader/odom"])
+        await_("odometry goes on", lambda: len(peer.samples["/leader/odom"]) > count + 20)
+        assert "starting again" not in rig.log(rig.process), rig.log(rig.process)
+
+
 # What peers see of the nodes: type hashes, and each endpoint in the list of its node.
 def graph():
     with Rig() as rig:
