@@ -81,7 +81,7 @@ class RowCosts {
 
 // In sixteenths of a pixel; 0: none that is clearly the best.
 std::uint16_t best_of(const RowCosts& costs, int x, int distances) {
-  constexpr int least_gain = side * side;  // a grey level for each pixel
+  constexpr int least_gain = side * side, most_cost = 16 * side * side;  // a grey level for each pixel, and 16
   const int most = std::min(distances, x - reach + 1);
   int best = 0;
   for (int d = 1; d < most; ++d) {
@@ -93,7 +93,7 @@ std::uint16_t best_of(const RowCosts& costs, int x, int distances) {
   for (int d = 0; d < most; ++d) {
     if (std::abs(d - best) > 1) other = std::min(other, costs.cost(d, x));
   }
-  if (other < least + least_gain || other * 10LL < least * 11LL) return 0;
+  if (least > most_cost || other < least + least_gain || other * 10LL < least * 11LL) return 0;
   const int before = costs.cost(best - 1, x), after = costs.cost(best + 1, x), bend = before + after - 2 * least;
   const double part = bend > 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
   return static_cast<std::uint16_t>(std::lround(16 * (best + part)));
@@ -130,7 +130,7 @@ Disparities disparities_of(const player::Image& left, const player::Image& right
   Disparities out;
   const bool is_color = left.format == player::ImageFormat::rgb888, is_grey = left.format == player::ImageFormat::mono8;
   const std::size_t size = std::size_t{left.width} * left.height * (is_color ? 3 : 1);
-  if ((!is_color && !is_grey) || left.format != right.format || left.width != right.width || left.height != right.height ||
+  if (size == 0 || (!is_color && !is_grey) || left.format != right.format || left.width != right.width || left.height != right.height ||
       left.pixels.size() != size || right.pixels.size() != size)
     return out;
   out.step = (left.width + widest - 1) / widest;

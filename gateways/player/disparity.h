@@ -2,7 +2,7 @@
 //
 // The method is block matching: the 9 x 9 pixels around a pixel of the left image are compared with those of each place of the same row of
 // the right image, up to a quarter of the width away; the least sum of absolute differences of grey wins, refined by the parabola through
-// its neighbours. A pixel has no disparity where another place is almost as good, as on walls of one colour.
+// its neighbours. A pixel has no disparity where another place is almost as good, as on walls of one colour, or where no place is good.
 #pragma once
 
 #include <cstdint>
