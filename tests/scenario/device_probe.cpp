@@ -180,7 +180,7 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     const std::string text(data->get_buffer(), data->get_buffer() + data->length());
     RTC::RFIDTagData impossible;
     impossible.length(200);
-    for (const auto& [id, bytes] : {std::pair{"other", *data}, std::pair{"E200-0017", impossible}}) {
+    for (const auto& [id, bytes] : {std::pair{"other", RTC::RFIDTagData(data.in())}, std::pair{"E200-0017", impossible}}) {
       try {
         rfid_->Write(id, bytes);
         return false;
@@ -199,7 +199,7 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
     RTC::RFIDTagData data;
     const std::string text = "shelf 4";
     data.length(static_cast<CORBA::ULong>(text.size()));
-    std::copy(text.begin(), text.end(), data.get_buffer());
+    for (CORBA::ULong i = 0; i < data.length(); ++i) data[i] = static_cast<CORBA::Octet>(text[i]);
     rfid_->Write("E200-0017", data);
     return true;
   }
