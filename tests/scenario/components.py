@@ -317,7 +317,7 @@ def others():
     rig.rtse("con", "DeviceProbe0:rfid", "RTCRfid0:rfid")
     call("tag")
     call("write_tag")
-    await_("a tag that is written", lambda: truth("rover::rfid")["tags"][0]["data"] == "shelf 4")
+    await_("a tag that is written", lambda: truth("rover::rfid")["tags"][0]["data"] == "shelf 42")
     sample("RTCRfid0:tags")  # the component has read them, too
     call("tag_written")
     assert sample("RTCWireless0:essids")["data"] == ["lab"] and -60 < sample("RTCWireless0:levels")["data"][0] < -30

@@ -197,7 +197,7 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
 
   bool write_tag() {
     RTC::RFIDTagData data;
-    const std::string text = "shelf 4";
+    const std::string text = "shelf 42";
     data.length(static_cast<CORBA::ULong>(text.size()));
     for (CORBA::ULong i = 0; i < data.length(); ++i) data[i] = static_cast<CORBA::Octet>(text[i]);
     rfid_->Write("E200-0017", data);
@@ -205,7 +205,7 @@ class DeviceProbe : public RTC::DataFlowComponentBase {
   }
   bool is_written() {
     const RTC::RFIDTagData_var data = rfid_->Read("E200-0017");
-    return std::string(data->get_buffer(), data->get_buffer() + data->length()) == "shelf 4";
+    return std::string(data->get_buffer(), data->get_buffer() + data->length()) == "shelf 42";
   }
 
   static bool is_at(const RTC::Geometry3D& geometry, double x) { return is_near(geometry.pose.position.x, x); }
