@@ -28,34 +28,42 @@ def run(system, world, *more):
     return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True, timeout=3600).stdout.splitlines()[0])
 
 
-# Processor time [s] by the name of the program, of all processes below this one, as long as the simulator runs.
+# Processor time [s] of all processes below this one, as long as its simulator runs: of the run, and of rtse-page with what it starts.
 def used_beside_run(pid):
     ticks = os.sysconf("SC_CLK_TCK")
-    used, names, is_over = {}, {}, False
+    used = {"run": {}, "page": {}}
+    simulator = None
 
-    def below(parent):
+    def look(one, part):
+        nonlocal simulator
         try:
-            with open(f"/proc/{parent}/task/{parent}/children", encoding="ascii") as file:
-                children = [int(one) for one in file.read().split()]
-            return [parent, *(one for child in children for one in below(child))]
+            with open(f"/proc/{one}/task/{one}/children", encoding="ascii") as file:
+                children = file.read().split()
+            with open(f"/proc/{one}/stat", encoding="utf8") as file:
+                name, state, rest = re.match(r"\d+ \((.*)\) (\S) (.*)", file.read()).groups()
         except OSError:
-            return []  # it has ended meanwhile
+            return  # it has ended meanwhile
+        if name == "rtse-page":
+            part = "page"
+        if name == "sim-server" and part == "run" and state != "Z":
+            simulator = one
+        used[part][one] = sum(int(value) for value in rest.split()[10:12]) / ticks
+        for child in children:
+            look(child, part)
 
-    while not is_over:
-        for one in below(pid):
-            try:
-                with open(f"/proc/{one}/stat", encoding="utf8") as file:
-                    name, rest = re.match(r"\d+ \((.*)\) (.*)", file.read()).groups()
-            except OSError:
-                continue
-            is_over = is_over or (names.get(one) == "sim-server" and rest.startswith("Z"))
-            names[one] = name
-            used[one] = sum(int(value) for value in rest.split()[11:13]) / ticks
-        is_over = is_over or ("sim-server" in names.values() and not any(os.path.exists(f"/proc/{one}") for one, name in names.items() if name == "sim-server"))
-        is_over = is_over or not os.path.exists(f"/proc/{pid}/exe")
+    def is_over():
+        if simulator is None:
+            return not os.path.exists(f"/proc/{pid}/exe")
+        try:
+            with open(f"/proc/{simulator}/stat", encoding="utf8") as file:
+                return ") Z " in file.read()
+        except OSError:
+            return True
+
+    while not is_over():
+        look(str(pid), "run")
         time.sleep(0.05)
-    of_page = sum(seconds for one, seconds in used.items() if names[one] == "rtse-page")
-    return sum(used.values()) - of_page, of_page
+    return sum(used["run"].values()), sum(used["page"].values())
 
 
 # Of one run: processor time [s] of its own processes and of rtse-page beside it, wall-clock time [s].
