@@ -2,7 +2,8 @@
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Mesh, Object3D, Plane, Quaternion, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { pose_of, type Model, type WorldScene } from './glb';
 import { Gizmo } from './gizmo';
-import type { Tip } from './tip';
+import type { Joints } from './joints';
+import { Tip } from './tip';
 import type { Eye } from './orbit';
 import { act, changed, read_only, select, selected_model, wire } from './store';
 
@@ -22,16 +23,23 @@ export class Hands {
   menu: (event: MouseEvent, model: string) => void = () => {};
 
   readonly gizmo: Gizmo;
-  tip: Tip | null = null;
-  clicked: (model: string, link: string) => void = () => {};
+  private tip: Tip | null = null;
+  private clicked: (model: string, link: string) => void = () => {};
 
-  constructor(private readonly view: Reach, scene: Scene) {
+  constructor(private readonly view: Reach, private readonly scene: Scene) {
     this.gizmo = new Gizmo(view, scene);
     this.arrow.renderOrder = 10;
     this.arrow.visible = false;
     this.arrow.frustumCulled = false;
     scene.add(this.arrow);
     this.listen();
+  }
+
+  // Arrows at the tip of the arm whose joints are shown.
+  move_tips_of(joints: Joints): void {
+    this.tip = new Tip(this.view, this.scene, joints);
+    this.clicked = (model, link) => joints.click(model, link);
+    joints.redraw = () => this.view.redraw();
   }
 
   // A press of the mouse says where, on the ground or on what is there, and a drag from it which way; Escape gives up.

@@ -51,7 +51,7 @@ const inspector = new Inspector({
   },
 });
 
-world.move_tips_of(inspector.joints);
+world.hands.move_tips_of(inspector.joints);
 
 // ---- top ----
 

@@ -16,8 +16,6 @@ import { Eye, EyeState, to_ours } from './orbit';
 import { Pace } from './pace';
 import { has_run } from './run_data';
 import { Ranges } from './ranges';
-import { Tip } from './tip';
-import type { Joints } from './joints';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
 import { type Mover, Trails } from './trails';
@@ -92,13 +90,6 @@ export class WorldView {
       }
     };
     requestAnimationFrame(loop);
-  }
-
-  // Arrows at the tip of the arm whose joints are shown.
-  move_tips_of(joints: Joints): void {
-    this.hands.tip = new Tip(this, this.scene, joints);
-    this.hands.clicked = (model, link) => joints.click(model, link);
-    joints.redraw = () => this.redraw();
   }
 
   redraw(): void {
