@@ -21,7 +21,8 @@ LoadResult load_shipped(const std::string& file) {
 }
 
 TEST(ShippedWorlds, load_without_a_finding) {
-  for (const char* file : {"empty.sdf", "obstacle_course.sdf", "maze.sdf", "leader_follower.sdf", "hundred.sdf", "devices.sdf", "power.sdf"}) {
+  for (const char* file :
+       {"empty.sdf", "obstacle_course.sdf", "maze.sdf", "leader_follower.sdf", "hundred.sdf", "devices.sdf", "power.sdf"}) {
     const LoadResult result = load_shipped("worlds/" + std::string(file));
     EXPECT_TRUE(result.findings.empty()) << file << "\n" << all_findings(result);
     EXPECT_EQ(result.world.lights.size(), 1U) << file;
