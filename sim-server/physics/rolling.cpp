@@ -20,6 +20,7 @@ constexpr double off_axle = 1e-3;        // [m] of its middle and its centre of 
 constexpr double least_distance = 0.02;  // [m] to what is near
 constexpr double braking = 4;            // [m/s^2] of what has to stop
 constexpr double furthest = 1e7;         // [m] from the world's origin
+constexpr double longest_step = 0.01;    // [s]; ODE and the rolling step are 5 mm apart at 0.02
 
 const Eigen::Vector3d world_up(0, 0, 1);
 
@@ -102,6 +103,7 @@ bool is_level_ground(const ShapeInstance& shape) {
 
 std::unique_ptr<Rolling> Rolling::of(const ModelInstance& model, const PhysicsDef& physics) {
   const auto& g = physics.gravity;
+  if (physics.step > longest_step) return nullptr;
   if (g.x() != 0 || g.y() != 0 || !(g.z() < 0) || model.joints().size() < 2 || model.body_count() != model.joints().size() + 1)
     return nullptr;
   if (!model.forces().is_empty() || !model.mimics().empty()) return nullptr;

@@ -205,6 +205,7 @@ std::string stats_text(Simulation& simulation, const LoopState& loop) {
                {"models", models},
                {"bodies", s.bodies},
                {"awake", s.awake},
+               {"rolling", s.rolling},
                {"joints", s.joints},
                {"contacts", s.contacts},
                {"shards", s.shards},

@@ -39,7 +39,7 @@ struct Options {
   std::optional<double> hash_period{};  // [s]
   std::uint64_t seed = 1;
   std::vector<std::string> resource_paths, faults, gains, spawned;
-  std::string record, hash_log, shm_mode = "0600", shm_group, rolling = "off";
+  std::string record, hash_log, shm_mode = "0600", shm_group, rolling = "on";
   std::uint64_t shm_limit = shm::ServerOptions::usual_most_bytes >> 20U;  // [MiB]
   int verbosity = 1, threads = 0;
 };
@@ -303,7 +303,7 @@ int serve(int argc, char** argv) {
                  "number of threads for physics and sensors (default 0: one per core); results do not depend on it")
       ->check(base::integer_between(0, 64));
   app.add_option("--rolling", options.rolling,
-                 "on: move robots that roll alone on level ground by the rolling step, which is faster; off: by ODE (default off)")
+                 "on: move robots that roll alone on level ground by the rolling step, which is faster; off: by ODE (default on)")
       ->check([](const std::string& text) { return text == "on" || text == "off" ? std::string() : "expected on or off, got " + text; });
   app.add_option("--shm-mode", options.shm_mode, "access mode of the ifaces (default 0600)");
   app.add_option("--shm-group", options.shm_group, "group of the ifaces");

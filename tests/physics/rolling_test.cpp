@@ -50,8 +50,9 @@ std::string robot_text(const std::string& name, double x, double y, double ball_
 }
 
 const std::string floor_text =
-    "<physics type='ode'><max_step_size>0.005</max_step_size></physics><model name='floor'><static>true</static><link name='l'>"
-    "<collision name='c'><geometry><plane/></geometry></collision></link></model>";
+    "<model name='floor'><static>true</static><link name='l'><collision name='c'><geometry><plane/></geometry></collision></link></model>";
+
+std::string step_text(double step) { return fmt::format("<physics type='ode'><max_step_size>{}</max_step_size></physics>", step); }
 
 std::string wall_text(const std::string& name, double x, double y) {
   return fmt::format(
@@ -61,8 +62,8 @@ std::string wall_text(const std::string& name, double x, double y) {
 }
 
 struct Rollers : PhysicsFixture {
-  explicit Rollers(const std::string& models, int threads = 1, bool rolling = true)
-      : PhysicsFixture(world_of_text(floor_text + models), threads) {
+  explicit Rollers(const std::string& models, int threads = 1, bool rolling = true, double step = 0.005)
+      : PhysicsFixture(world_of_text(step_text(step) + floor_text + models), threads) {
     physics.let_roll(rolling);
     if (physics.find("a")) drive("a", 0, 0);
     run(1);
@@ -96,8 +97,10 @@ TEST(RollingStep, is_off_unless_it_is_asked_for) {
   EXPECT_FALSE(f.rolls());
 }
 
-TEST(RollingStep, moves_a_robot_as_ode_does) {
-  Rollers ode(robot_text("a", 0, 0, 0.3), 1, false), rolling(robot_text("a", 0, 0, 0.3));
+class RollingSteps : public ::testing::TestWithParam<double> {};
+
+TEST_P(RollingSteps, move_a_robot_as_ode_does) {
+  Rollers ode(robot_text("a", 0, 0, 0.3), 1, false, GetParam()), rolling(robot_text("a", 0, 0, 0.3), 1, true, GetParam());
   for (Rollers* f : {&ode, &rolling}) {
     f->speed_up("a", 0.5, 0);
     f->run(2);
@@ -113,6 +116,14 @@ TEST(RollingStep, moves_a_robot_as_ode_does) {
   EXPECT_NEAR(ode.physics.joint_state(ode.joint("a", "left_joint")).velocity,
               rolling.physics.joint_state(rolling.joint("a", "left_joint")).velocity, 1e-6);
   EXPECT_LT((ode.physics.link_twist(base).linear - rolling.physics.link_twist(base).linear).norm(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lengths, RollingSteps, ::testing::Values(0.001, 0.002, 0.005, 0.01),
+                         [](const auto& parameter) { return fmt::format("{:.0f}_ms", parameter.param * 1e3); });
+
+TEST(RollingStep, is_not_made_of_steps_longer_than_0_01_s) {
+  Rollers f(robot_text("a", 0, 0), 1, true, 0.02);
+  EXPECT_FALSE(f.rolls());
 }
 
 TEST(RollingStep, moves_a_robot_on_a_ball_in_a_joint_as_ode_does) {

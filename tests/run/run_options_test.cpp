@@ -21,8 +21,9 @@ RunOptions all_different() {
   options.duration_s = 12.5;
   options.expectations = "/e.yaml";
   options.seed = 123456789012345678;
-  options.one_process_each = options.in_real_time = options.rolling = options.twice = options.strict = true;
+  options.one_process_each = options.in_real_time = options.twice = options.strict = true;
   options.start = {"./alien --port 5", "two\nlines"};
+  options.rolling = "off";
   options.start_folder = "/f";
   options.run_file = "/r.yaml";
   options.lists = {"robot=a,b"};
@@ -77,6 +78,13 @@ TEST(RunOptions, those_that_repeat_a_run_are_in_a_recording_and_others_are_not) 
   EXPECT_EQ(read->keep, "");
 }
 
+TEST(RunOptions, a_recording_from_before_the_rolling_step_is_repeated_without_it) {
+  auto json = to_json(RunOptions(), RunOptionSet::repeats_run);
+  EXPECT_EQ(recorded_run_options({{"options", json.dump()}})->rolling, "on");
+  json.erase("rolling");
+  EXPECT_EQ(recorded_run_options({{"options", json.dump()}})->rolling, "off");
+}
+
 TEST(RunOptions, relative_paths_are_absolute_for_the_reader) {
   RunOptions options;
   options.module_paths = {"modules"};
@@ -114,6 +122,7 @@ TEST(RunOptions, the_texts_of_older_recordings_are_read) {
   expected.seed = 18;
   expected.start = {"./alien --fast"};
   expected.start_folder = "/home/u";
+  expected.rolling = "off";
   EXPECT_TRUE(*read == expected);
   EXPECT_FALSE(recorded_run_options({{"duration", "long"}}));
 }
@@ -125,6 +134,7 @@ TEST(RunOptions, what_is_unknown_or_beyond_its_limits_is_refused_by_name) {
   EXPECT_EQ(refusal({{"duration", "60"}}), "options of a run: duration must be from 0.001 to 1e+07, got \"60\"");
   EXPECT_EQ(refusal({{"seed", -1}}), "options of a run: seed must be from 0 to 1e+18, got -1");
   EXPECT_EQ(refusal({{"twice", 1}}), "options of a run: twice must be true or false, got 1");
+  EXPECT_EQ(refusal({{"rolling", "yes"}}), "options of a run: rolling must be on or off, got \"yes\"");
   EXPECT_EQ(refusal({{"start", "x"}}), "options of a run: start must be a list of texts, got \"x\"");
   EXPECT_EQ(refusal({{"world", nullptr}}), "options of a run: world must be a text, got null");
   EXPECT_EQ(refusal({{"hash_period", 0}, {"last", 0.0}}), "") << "0 is: not given";

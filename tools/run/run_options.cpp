@@ -66,6 +66,12 @@ std::string declared_name(const RunOptionRow& row) {
   return (row.letter.empty() ? "" : "-" + std::string(row.letter) + ",") + option_name(row);
 }
 
+bool is_choice(const RunOptionRow& row, const std::string& text) {
+  return row.choices[0].empty() || std::ranges::find(row.choices, text) != row.choices.end();
+}
+
+std::string expected_choice(const RunOptionRow& row) { return std::string(row.choices[0]) + " or " + std::string(row.choices[1]); }
+
 std::string property_problem(const std::string& text) {
   const auto parsed = parse_property(text);
   return parsed ? std::string() : parsed.error().message;
@@ -77,6 +83,11 @@ void add(base::Command& command, const RunOptionRow& row, RunOptions& options) {
   const std::string help(row.help);
   if (const auto* text = std::get_if<std::string RunOptions::*>(&row.member)) {
     option = command.add_option(name, options.*(*text), help);
+    if (!row.choices[0].empty()) {
+      option->capture_default_str()->check([&row](const std::string& given) {
+        return is_choice(row, given) ? std::string() : "expected " + expected_choice(row) + ", got " + base::in_quotes(given);
+      });
+    }
   } else if (const auto* list = std::get_if<std::vector<std::string> RunOptions::*>(&row.member)) {
     option = command.add_option(name, options.*(*list), help)->allow_extra_args(false);
     if (*list == &RunOptions::properties) option->check(property_problem);
@@ -124,6 +135,7 @@ std::string problem_of(const Json& value, const RunOptionRow& row, RunOptions& o
           if (!value.is_boolean()) return " must be true or false, got " + value.dump();
         } else if constexpr (std::is_same_v<Value, std::string>) {
           if (!value.is_string()) return " must be a text, got " + value.dump();
+          if (!is_choice(row, value.template get<std::string>())) return " must be " + expected_choice(row) + ", got " + value.dump();
         } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
           if (!value.is_array() || !std::all_of(value.begin(), value.end(), [](const Json& one) { return one.is_string(); }))
             return " must be a list of texts, got " + value.dump();
@@ -193,7 +205,7 @@ Result<RunOptions> run_options_from(const Json& json) {
 namespace {
 
 // The texts of recordings that were made before there was one for all options: numbers, "yes", and lists with an option in each line.
-Result<RunOptions> options_from_texts(const std::map<std::string, std::string>& notes) {
+Json json_from_texts(const std::map<std::string, std::string>& notes) {
   Json json = Json::object();
   for (const auto& row : run_option_rows) {
     // Two lists had names of their own.
@@ -211,14 +223,16 @@ Result<RunOptions> options_from_texts(const std::map<std::string, std::string>& 
     if (std::holds_alternative<std::uint64_t RunOptions::*>(row.member))
       value = static_cast<std::uint64_t>(base::parse_integer(text).value_or(0));
   }
-  return run_options_from(json);
+  return json;
 }
 
 }  // namespace
 
 Result<RunOptions> recorded_run_options(const std::map<std::string, std::string>& notes) {
   const auto text = notes.find(options_note);
-  return text == notes.end() ? options_from_texts(notes) : parse_run_options(text->second);
+  Json json = text == notes.end() ? json_from_texts(notes) : Json::parse(text->second, nullptr, false);
+  if (json.is_object() && !json.contains("rolling")) json["rolling"] = "off";
+  return run_options_from(json);
 }
 
 Result<RunOptions> parse_run_options(const std::string& text) { return run_options_from(Json::parse(text, nullptr, false)); }

@@ -30,7 +30,7 @@ struct RunOptions {
   bool one_process_each = false;   // a host for every component, instead of one for all
   std::uint64_t hosts = 1;         // that the components are distributed over, neighbours of the profile together
   bool in_real_time = false;       // else as fast as possible
-  bool rolling = false;            // sim-server --rolling on
+  std::string rolling = "on";      // sim-server --rolling
   std::vector<std::string> start;  // commands that start third-party components
   std::string start_folder;        // working directory of these commands; empty: that of rtse
   std::string run_file;            // YAML, see run_file.h
@@ -64,12 +64,13 @@ struct RunOptionRow {
   std::string_view help;
   double low = 0, high = 0;  // of a number
   enum class Unit { none, simulated_seconds, wall_seconds } unit = Unit::none;
-  std::string_view letter = {};  // "w": -w
-  std::string_view group = {};   // of the help
-  std::string_view needs = {};   // another option
-  bool must_exist = false;       // names a file that is read
-  bool is_path = false;          // relative to the working directory
-  bool repeats_run = false;      // makes the same run again: part of a recording
+  std::string_view letter = {};                  // "w": -w
+  std::string_view group = {};                   // of the help
+  std::string_view needs = {};                   // another option
+  std::array<std::string_view, 2> choices = {};  // the values that it takes
+  bool must_exist = false;                       // names a file that is read
+  bool is_path = false;                          // relative to the working directory
+  bool repeats_run = false;                      // makes the same run again: part of a recording
 };
 
 // In the order of the help. `system` is the positional SYSTEM.
@@ -104,7 +105,8 @@ inline constexpr auto run_option_rows = [] {
       {.name = "realtime", .member = &O::in_real_time, .help = "Run in real time"},
       {.name = "rolling",
        .member = &O::rolling,
-       .help = "Move robots that roll alone on level ground by the rolling step, which is faster",
+       .help = "on: move robots that roll alone on level ground by the rolling step, which is faster; off: by ODE",
+       .choices = {"on", "off"},
        .repeats_run = true},
       {.name = "for",
        .member = &O::lists,
@@ -204,7 +206,8 @@ nlohmann::ordered_json to_json(const RunOptions& options, RunOptionSet set);
 base::Result<RunOptions> run_options_from(const nlohmann::ordered_json& json);
 base::Result<RunOptions> parse_run_options(const std::string& text);
 
-// A recording has them as a text of its metadata `run` under this key. Older recordings have a text for each option.
+// A recording has them as a text of its metadata `run` under this key. Older recordings have a text for each option. An option that a
+// recording has not is what the run was without it.
 inline constexpr const char* options_note = "options";
 base::Result<RunOptions> recorded_run_options(const std::map<std::string, std::string>& notes);
 

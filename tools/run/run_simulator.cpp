@@ -60,7 +60,7 @@ Result<void> RunSimulator::try_start(std::uint32_t id, const Wait& wait_until, b
   if (hashes_.is_wanted() && options_.hash_period_s > 0)
     call.words.insert(call.words.end(), {"--hash-period", base::format_number(options_.hash_period_s)});
   if (hashes_.is_wanted()) call.words.insert(call.words.end(), {"--hash-log", hashes_.world_part()});
-  if (options_.rolling) call.words.insert(call.words.end(), {"--rolling", "on"});
+  call.words.insert(call.words.end(), {"--rolling", options_.rolling});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), hooks_.simulator_options.begin(), hooks_.simulator_options.end());
   auto started = start_program(hooks_.warm, call);

@@ -163,9 +163,9 @@ void stats(Control& control) {
               static_cast<unsigned long long>(json.value("steps", 0ULL)), json.value("step", 0.0), state_text(json).c_str());
   std::printf("real-time factor %.2f (wanted %g)  load %.0f %%  state hash %s\n", json.value("rtf", 0.0), json.value("rtf_wanted", 0.0),
               100 * json.value("load", 0.0), json.value("hash", "?").c_str());
-  std::printf("%d models, %d bodies (%d awake), %d joints, %d contacts, %d ifaces (%d subscribed), %.0f MiB\n\n", json.value("models", 0),
-              json.value("bodies", 0), json.value("awake", 0), json.value("joints", 0), json.value("contacts", 0), json.value("ifaces", 0),
-              json.value("subscribed", 0), json.value("memory_mib", 0.0));
+  std::printf("%d models (%d in the rolling step), %d bodies (%d awake), %d joints, %d contacts, %d ifaces (%d subscribed), %.0f MiB\n\n",
+              json.value("models", 0), json.value("rolling", 0), json.value("bodies", 0), json.value("awake", 0), json.value("joints", 0),
+              json.value("contacts", 0), json.value("ifaces", 0), json.value("subscribed", 0), json.value("memory_mib", 0.0));
   std::printf("%-12s %12s %12s %12s %8s\n", "PART", "CALLS", "MEAN us", "MAX us", "SHARE");
   for (const auto& part : json.value("parts", Json::array())) {
     std::printf("%-12s %12llu %12.2f %12.1f %7.1f%%\n", part.value("name", "?").c_str(),
