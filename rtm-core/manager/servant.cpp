@@ -142,7 +142,9 @@ bool ManagerServant::may_change(const std::string& what, bool needs_everything) 
 }
 
 void ManagerServant::refuse(const std::string& what, const std::string& why) const {
-  base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}", corba::caller(), what, why);
+  if (const auto left_out = manager_.impl_->refusals.next())
+    base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}{}", corba::caller(), what, why,
+              RTC::RefusalLog::words_for(*left_out));
 }
 
 // --- modules

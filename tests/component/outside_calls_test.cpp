@@ -55,4 +55,19 @@ TEST(OutsideCalls, the_log_has_one_line_a_second_and_counts_the_others) {
   EXPECT_EQ(log.next(start + 2s), 0u);
 }
 
+TEST(OutsideCalls, a_log_with_a_burst_has_so_many_lines_at_once_and_again_after_so_many_quiet_seconds) {
+  RTC::RefusalLog log(3);
+  const std::chrono::steady_clock::time_point start{};
+  const auto lines = [&](std::chrono::seconds at) {
+    int count = 0;
+    for (int i = 0; i < 100; ++i) count += log.next(start + at) ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(lines(0s), 3);
+  EXPECT_EQ(lines(1s), 1);
+  EXPECT_EQ(lines(3s), 2);
+  EXPECT_EQ(log.next(start + 100s), 98u);
+  EXPECT_EQ(lines(100s), 2);
+}
+
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rtm/NVUtil.h>
 
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -71,6 +72,22 @@ TEST_F(RemoteRightsOf, a_caller_sets_no_protected_key_and_the_log_says_who_tried
   EXPECT_FALSE(can_create("SinkAll?config_file=/etc/hostname"));
   EXPECT_TRUE(can_create("SinkAll"));
   EXPECT_NE(rtcd_->output().find("giop:"), std::string::npos) << "where the caller is";
+}
+
+TEST_F(RemoteRightsOf, a_caller_that_is_refused_again_and_again_does_not_fill_the_log) {
+  start({});
+  const auto begun = std::chrono::steady_clock::now();
+  for (int i = 0; i < 3000; ++i) ASSERT_EQ(manager_->set_configuration("config_file", "YES"), RTC::RTC_ERROR);
+  const std::string text = rtcd_->output();
+  const auto seconds = std::chrono::ceil<std::chrono::seconds>(std::chrono::steady_clock::now() - begun).count();
+  std::ptrdiff_t lines = 0;
+  for (std::size_t at = text.find(": refused"); at != std::string::npos; at = text.find(": refused", at + 1)) ++lines;
+  EXPECT_GT(lines, 0);
+  EXPECT_LE(lines, 32 + seconds) << "a burst, then one a second";
+  EXPECT_TRUE(eventually([&] {
+    static_cast<void>(manager_->set_configuration("config_file", "YES"));
+    return rtcd_->output().find("more refused calls are not in the log") != std::string::npos;
+  }));
 }
 
 // A type that is not known is looked for as a module of that name, and another manager would see a caller of our account.

@@ -78,8 +78,7 @@ _CORBA_Boolean RTObject_impl::_dispatch(omniCallHandle& call) {
 
 ReturnCode_t RTObject_impl::refuse(const char* operation, const std::string& why, ReturnCode_t code) const {
   if (const auto left_out = impl_->refusals.next()) {
-    const std::string more = *left_out == 0 ? "" : " (" + std::to_string(*left_out) + " more refused calls are not in the log)";
-    RTC_WARN(("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), more.c_str()));
+    RTC_WARN(("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), RefusalLog::words_for(*left_out).c_str()));
   }
   return code;
 }
