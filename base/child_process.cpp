@@ -20,11 +20,8 @@
 #include "base/interrupt.h"
 #include "base/text.h"
 
-namespace tools {
+namespace base {
 namespace {
-
-using base::Error;
-using base::Result;
 
 constexpr std::chrono::milliseconds ending_limit{5000};
 constexpr std::chrono::milliseconds killing_limit{5000};  // the kernel takes its time only when memory or a disk is stuck
@@ -54,12 +51,12 @@ int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 +
 }  // namespace
 
 Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
-  base::expect_no_data_held();
+  expect_no_data_held();
   const bool collects = call.output.empty();
   const int output = collects                    ? memfd_create("output", MFD_CLOEXEC)
                      : call.output == own_output ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)  // opened anew it would have a place of its own
                                                  : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (output < 0) return Error{"program " + call.words[0] + ": its output file " + base::in_quotes(call.output) + " cannot be written"};
+  if (output < 0) return Error{"program " + call.words[0] + ": its output file " + in_quotes(call.output) + " cannot be written"};
   std::vector<std::string> variables;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -79,6 +76,12 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   if (child < 0) return Error{"program " + call.words[0] + ": no process can be made"};
   setpgid(child, child);  // as it does itself: whoever comes first
   return ChildProcess(child, collects ? output : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
+}
+
+ChildProcess ChildProcess::made_elsewhere(pid_t pid, int watched, int collected, std::string program, bool ends_as_group) {
+  ChildProcess made(pid, collected, std::move(program), ends_as_group);
+  made.watched_ = watched;
+  return made;
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
@@ -202,7 +205,7 @@ void ChildProcess::end() {
 Result<std::string> output_of(const ChildProcess& ended) {
   auto text = ended.said();
   if (ended.exit_code() == 0) return text;
-  auto lines = base::split_list(text, '\n');
+  auto lines = split_list(text, '\n');
   return Error{lines.empty() ? "program " + ended.program() + ": " + ended.how_it_ended() : lines.back()};
 }
 
@@ -246,4 +249,4 @@ std::string own_program(const std::string& name) {
   return name;
 }
 
-}  // namespace tools
+}  // namespace base

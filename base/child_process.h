@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 
-namespace tools {
+namespace base {
 
 inline constexpr const char* own_output = "/dev/stdout";
 
@@ -28,7 +28,10 @@ enum class Ending { ended, timed_out, interrupted };
 
 class ChildProcess {
  public:
-  static base::Result<ChildProcess> start(const ProgramCall& call);
+  static Result<ChildProcess> start(const ProgramCall& call);
+  // One that another process has made for us. `watched`: a pipe that its status comes by, ours from now on; `collected`: a file with what
+  // it writes, ours too, or -1.
+  static ChildProcess made_elsewhere(pid_t pid, int watched, int collected, std::string program, bool ends_as_group);
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
   ~ChildProcess();  // SIGTERM, and SIGKILL after five seconds
@@ -49,7 +52,6 @@ class ChildProcess {
   const std::string& program() const { return program_; }
 
  private:
-  friend class WarmProgram;
   ChildProcess(pid_t pid, int collected, std::string program, bool ends_as_group)
       : pid_(pid), started_(pid), ends_as_group_(ends_as_group), collected_(collected), program_(std::move(program)) {}
   bool reap();
@@ -60,18 +62,18 @@ class ChildProcess {
   pid_t started_ = -1;
   bool ends_as_group_ = false;
   bool is_told_ = false;  // to end: programs may take a second time for impatience
-  int watched_ = -1;      // of one that another process has made: a pipe that its status comes by; see warm_program.h
+  int watched_ = -1;      // of one that another process has made, see made_elsewhere()
   int collected_ = -1;
   int exit_code_ = -1;
   std::string program_;
 };
 
 // Runs a program to its end, at most `limit`, and returns what it wrote. An error when it fails: the last line it wrote.
-base::Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit);
+Result<std::string> output_of(const ProgramCall& call, std::chrono::milliseconds limit);
 // The same of one that was started by the caller.
-base::Result<std::string> output_of(ChildProcess& started, std::chrono::milliseconds limit);
+Result<std::string> output_of(ChildProcess& started, std::chrono::milliseconds limit);
 // The same of one that has ended.
-base::Result<std::string> output_of(const ChildProcess& ended);
+Result<std::string> output_of(const ChildProcess& ended);
 
 // A command line of the user's for a run: sh finds the programs beside this one before those of the path, and in its environment the run's
 // RTMSIM_RECORD, RTMSIM_SERVER_ID and RTCTREE_NAMESERVERS.
@@ -80,4 +82,4 @@ ProgramCall shell_call(const std::string& line, const std::string& record, const
 // One of our own programs: beside this one, else from the path.
 std::string own_program(const std::string& name);
 
-}  // namespace tools
+}  // namespace base

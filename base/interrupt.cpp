@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace tools {
+namespace base {
 namespace {
 
 std::atomic<bool> interrupted{false};
@@ -51,4 +51,4 @@ OnInterrupt::~OnInterrupt() {
   ::close(end_);
 }
 
-}  // namespace tools
+}  // namespace base

@@ -4,7 +4,7 @@
 #include <functional>
 #include <thread>
 
-namespace tools {
+namespace base {
 
 // From now on the signals set the mark and do nothing else.
 void catch_interrupts();
@@ -25,4 +25,4 @@ class OnInterrupt {
   std::thread thread_;
 };
 
-}  // namespace tools
+}  // namespace base

@@ -126,7 +126,7 @@ const std::vector<std::pair<std::string, std::function<void()>>>& slow_operation
        }},
       {"ChildProcess::start",
        [=] {
-         static_cast<void>(tools::ChildProcess::start({{none}, {}}));
+         static_cast<void>(base::ChildProcess::start({{none}, {}}));
        }},
   };
   return all;

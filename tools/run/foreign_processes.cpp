@@ -172,9 +172,9 @@ Result<void> ForeignProcesses::start(const std::string& naming, const std::strin
   for (const auto& process : processes_) {
     const auto components = base::join(components_of(process), ", ");
     const auto log = place_.new_file("foreign-" + std::to_string(running_.size()) + ".log");
-    ProgramCall call{{"sh", "-c", process.command}, process.environment, log, process.folder, true};
+    base::ProgramCall call{{"sh", "-c", process.command}, process.environment, log, process.folder, true};
     call.environment.insert(usual.begin(), usual.end());
-    auto started = ChildProcess::start(call);
+    auto started = base::ChildProcess::start(call);
     if (!started) return started.error();
     running_.push_back({std::move(*started), components, log});
   }

@@ -74,7 +74,7 @@ class ForeignProcesses {
 
  private:
   struct Running {
-    ChildProcess process;
+    base::ChildProcess process;
     std::string components;
     std::string log;
   };

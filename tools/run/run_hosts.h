@@ -68,7 +68,7 @@ class RunHosts {
 
  private:
   struct Host {
-    ChildProcess process;
+    base::ChildProcess process;
     Members members;
     std::string components;  // their names
     std::string log;

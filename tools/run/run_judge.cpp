@@ -167,14 +167,14 @@ Result<void> RunJudge::run_commands(const std::string& naming) {
   for (const auto& expectation : expectations_) {
     if (expectation.kind != Expectation::Kind::command) continue;
     auto& seen = seen_.commands[expectation.command];
-    auto started = ChildProcess::start(shell_call(expectation.command, place_.file("record.txt"), simulator_.id(), naming));
+    auto started = base::ChildProcess::start(base::shell_call(expectation.command, place_.file("record.txt"), simulator_.id(), naming));
     if (!started) return started.error();
     const auto ending = started->wait_or_interrupt(command_limit);
-    if (ending == Ending::interrupted) return Error{"run: interrupted"};
+    if (ending == base::Ending::interrupted) return Error{"run: interrupted"};
     const auto lines = base::split_list(started->said(), '\n');
     seen.text = lines.empty() ? "" : printable(lines.back());
     seen.output = tail_of(lines);
-    if (ending == Ending::ended) {
+    if (ending == base::Ending::ended) {
       seen.exit_code = started->exit_code();
     } else {
       seen.text = "it did not end within " + std::to_string(command_limit.count()) + " s";

@@ -51,11 +51,12 @@ Result<void> RunNaming::start(CORBA::ORB_ptr orb, const RunSimulator::Wait& wait
   if (port == 0) return Error{"no free port on 127.0.0.1"};
   orb_ = CORBA::ORB::_duplicate(orb);
   address_ = "127.0.0.1:" + std::to_string(port);
-  auto started = ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.scratch("names"), "-errlog",
-                                       place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:" + address_, base::naming_options[0],
-                                       base::naming_options[1], base::naming_options[2], base::naming_options[3]},
-                                      {{"LD_PRELOAD", base::own_account_door()}},
-                                      place_.new_file("omninames.log")});
+  auto started =
+      base::ChildProcess::start({{"omniNames", "-start", std::to_string(port), "-datadir", place_.scratch("names"), "-errlog",
+                                  place_.new_file("omninames.err"), "-ORBendPoint", "giop:tcp:" + address_, base::naming_options[0],
+                                  base::naming_options[1], base::naming_options[2], base::naming_options[3]},
+                                 {{"LD_PRELOAD", base::own_account_door()}},
+                                 place_.new_file("omninames.log")});
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   return wait_until("name server", [&] { return answers(orb_, address_, 1000ms).ok(); });

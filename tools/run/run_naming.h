@@ -46,7 +46,7 @@ class RunNaming {
   const std::chrono::duration<double> hang_timeout_;
   CORBA::ORB_var orb_;
   std::string address_;
-  std::optional<ChildProcess> process_;
+  std::optional<base::ChildProcess> process_;
   bool is_stopped_ = false;  // by set_running
   bool is_silent_ = false;   // when it was asked
   std::optional<std::chrono::steady_clock::time_point> silent_since_, stopped_since_;

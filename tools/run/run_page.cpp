@@ -30,7 +30,7 @@ Json failure(const std::string& text, const std::optional<double>& time, const s
 }
 
 std::vector<std::string> words_of(const PageCall& call) {
-  return {own_program("rtse-page"),
+  return {base::own_program("rtse-page"),
           call.recording,
           "--output",
           call.file,
@@ -45,10 +45,10 @@ std::string text_of(const Json& summary) { return summary.dump(-1, ' ', false, J
 std::string without(std::string text, const std::string& prefix) { return text.starts_with(prefix) ? text.substr(prefix.size()) : text; }
 
 // What it printed, once it has ended.
-Result<std::string> answer_of(ChildProcess& child, const PageCall& call) {
+Result<std::string> answer_of(base::ChildProcess& child, const PageCall& call) {
   const auto ending = child.wait_or_interrupt(longest_writing);
-  if (ending == Ending::interrupted) return about(call.file, "not written, since the run was interrupted");
-  if (ending == Ending::ended && child.exit_code() == 0) return child.said();
+  if (ending == base::Ending::interrupted) return about(call.file, "not written, since the run was interrupted");
+  if (ending == base::Ending::ended && child.exit_code() == 0) return child.said();
   const auto said = base::split_list(child.said(), '\n');
   if (said.empty()) return about(call.file, "rtse-page " + child.how_it_ended());
   auto text = without(without(said.back(), "rtse-page: "), call.file + ": ");
@@ -113,7 +113,7 @@ Result<PageBesideRun> PageBesideRun::start(const PageCall& call, const std::vect
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return about(call.file, "no socket for rtse-page");
   base::FileHandle ours(ends[0]), theirs(ends[1]);
-  auto child = ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
+  auto child = base::ChildProcess::start({.words = words, .environment = {}, .input = theirs.get()});
   if (!child) return about(call.file, child.error().message);
   return PageBesideRun(call, std::move(*child), std::move(ours));
 }

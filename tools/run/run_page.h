@@ -45,11 +45,11 @@ class PageBesideRun {
   friend Result<std::string> write_run_page(const PageCall& call, const nlohmann::ordered_json& summary);
   static Result<PageBesideRun> start(const PageCall& call, const std::vector<std::string>& words);
   Result<std::string> written(const nlohmann::ordered_json& summary);
-  PageBesideRun(PageCall call, ChildProcess process, base::FileHandle line)
+  PageBesideRun(PageCall call, base::ChildProcess process, base::FileHandle line)
       : call_(std::move(call)), process_(std::move(process)), line_(std::move(line)) {}
 
   PageCall call_;
-  ChildProcess process_;
+  base::ChildProcess process_;
   base::FileHandle line_;
 };
 

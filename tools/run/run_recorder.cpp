@@ -46,10 +46,10 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   log_ = place_.new_file("recorder.log");
   file_ = call.file;
   is_ring_ = call.last_s > 0;
-  ProgramCall program{{own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o", call.file,
-                       "--controlled", "--attach", "system.xml=" + call.system},
-                      {},
-                      log_};
+  base::ProgramCall program{{base::own_program("rtse-recorder"), "--ns", call.server, "record", "--all", "-s", call.simulator, "-o",
+                             call.file, "--controlled", "--attach", "system.xml=" + call.system},
+                            {},
+                            log_};
   if (!call.script.empty()) program.words.insert(program.words.end(), {"--attach", "script.yaml=" + call.script});
   if (call.last_s > 0) program.words.insert(program.words.end(), {"--last", base::format_number(call.last_s)});
   takes_hashes_ = !call.hashes.empty();
@@ -58,7 +58,7 @@ base::Result<void> RunRecorder::start(const RecorderCall& call, const Wait& wait
   auto line = recorder::RecorderLine::make();
   if (!line) return line.error();
   program.input = line->second.get();
-  auto started = ChildProcess::start(program);
+  auto started = base::ChildProcess::start(program);
   if (!started) return started.error();
   line_.emplace(std::move(line->first));
   process_.emplace(std::move(*started));

@@ -49,7 +49,7 @@ class RunRecorder {
   bool tell(recorder::RecorderMessage message);
 
   const Workplace& place_;
-  std::optional<ChildProcess> process_;
+  std::optional<base::ChildProcess> process_;
   std::optional<recorder::RecorderLine> line_;
   std::string log_;
   std::string file_;

@@ -52,10 +52,10 @@ Result<void> RunSimulator::start(const Wait& wait_until, bool writes_poses) {
 }
 
 Result<void> RunSimulator::try_start(std::uint32_t id, const Wait& wait_until, bool writes_poses) {
-  ProgramCall call{{own_program("sim-server"), options_.world, "--server-id", std::to_string(id), "--paused", "--lockstep", "--rtf",
-                    options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed)},
-                   {same_math()},
-                   place_.new_file(log_name)};
+  base::ProgramCall call{{base::own_program("sim-server"), options_.world, "--server-id", std::to_string(id), "--paused", "--lockstep",
+                          "--rtf", options_.in_real_time ? "1" : "0", "--seed", std::to_string(options_.seed)},
+                         {same_math()},
+                         place_.new_file(log_name)};
   if (writes_poses) call.words.insert(call.words.end(), {"--record", place_.new_file("record.txt")});
   if (hashes_.is_wanted() && options_.hash_period_s > 0)
     call.words.insert(call.words.end(), {"--hash-period", base::format_number(options_.hash_period_s)});

@@ -47,7 +47,7 @@ class RunSimulator {
   const RunHooks& hooks_;
   const Workplace& place_;
   const RunHashes& hashes_;
-  std::optional<ChildProcess> process_;
+  std::optional<base::ChildProcess> process_;
   std::uint32_t id_ = 0;
   ShmSimulator control_;
 };

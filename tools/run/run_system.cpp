@@ -103,7 +103,7 @@ class Run final : public RunningSystem {
                       &Run::begin_script, &Run::drive, &Run::look, &Run::run_commands, &Run::judge_all}) {
       const auto done = (this->*step)();
       if (!done && result_.refusal != RunResult::Refusal::none) return done;
-      if (!done) return is_interrupted() ? fail("run: interrupted") : lost_.with_reason(done.error());
+      if (!done) return base::is_interrupted() ? fail("run: interrupted") : lost_.with_reason(done.error());
       if (hooks_.driver && step == &Run::drive) return done;
     }
     return {};
@@ -135,7 +135,7 @@ class Run final : public RunningSystem {
   Result<void> check_values() { return refused(RunResult::Refusal::expectations, judge_.check_values(wiring_.session())); }
 
   Result<void> refused(RunResult::Refusal refusal, Result<void> checked) {
-    if (!checked && !is_interrupted()) result_.refusal = refusal;
+    if (!checked && !base::is_interrupted()) result_.refusal = refusal;
     return checked;
   }
 
@@ -146,7 +146,7 @@ class Run final : public RunningSystem {
 
   // A problem that has a reason: what needs the naming service cannot be found without it.
   std::string with_naming(const std::string& problem) {
-    const auto answer = is_interrupted() ? Result<void>() : naming_.ask();
+    const auto answer = base::is_interrupted() ? Result<void>() : naming_.ask();
     return answer || problem == answer.error().message ? problem : answer.error().message + "; " + problem;
   }
 
@@ -158,7 +158,7 @@ class Run final : public RunningSystem {
     auto told = began;
     while (!ready()) {
       const auto now = Clock::now();
-      if (is_interrupted()) return fail("run: interrupted");
+      if (base::is_interrupted()) return fail("run: interrupted");
       if (const auto alive = check_children(); !alive) return alive;
       if (now - began > limit) return fail(what + ": not ready after " + base::format_number(limit.count()) + " s (--start-timeout)");
       if (now - told > limit / 3) {
@@ -302,7 +302,7 @@ class Run final : public RunningSystem {
     };
     const auto waited = wait_until("components", are_there, limit);
     // A host that has ended has been named already.
-    if (waited || missing.empty() || is_interrupted() || !check_children()) return waited;
+    if (waited || missing.empty() || base::is_interrupted() || !check_children()) return waited;
     const auto why = hosts_.about(missing);
     return fail("component " + missing + ": is not there after " + base::format_number(limit.count()) + " s" +
                 (why.empty() ? foreign_.about(missing) : why));
@@ -460,7 +460,8 @@ class Run final : public RunningSystem {
   // A member of others that is told to end gets no onDeactivated, as our own do. Where a tick hangs, or a process has gone, nobody could
   // be deactivated.
   void rest_foreign() {
-    if (foreign_.empty() || !wiring_.has_session() || is_interrupted() || !late_participants(simulator_).empty() || !naming_.ask()) return;
+    if (foreign_.empty() || !wiring_.has_session() || base::is_interrupted() || !late_participants(simulator_).empty() || !naming_.ask())
+      return;
     if (!lost_.check()) return;
     for (const auto& problem : foreign_.rest(wiring_.session(), system_)) reporter_.warn(problem);
   }

@@ -24,7 +24,7 @@ bool is_among(const std::vector<LockstepParticipant>& participants, const std::s
 // Who joins or is activated may hang in it: an interrupt kills it.
 Result<void> RunWiring::wire(std::vector<std::string>& notes) {
   auto& [orb, options, hooks, reporter, place, naming, simulator, hosts, foreign, system] = parts_;
-  const OnInterrupt early([this] { parts_.foreign.kill(), parts_.hosts.kill(); });
+  const base::OnInterrupt early([this] { parts_.foreign.kill(), parts_.hosts.kill(); });
   for (auto& component : system.components) {
     for (auto& set : component.configuration_sets) {
       if (set.is_hidden()) continue;
@@ -104,7 +104,7 @@ Result<void> RunWiring::wait_for_participants() {
     }
     return missing.empty();
   });
-  if (waited || missing.empty() || is_interrupted() || !check_children_()) return waited;
+  if (waited || missing.empty() || base::is_interrupted() || !check_children_()) return waited;
   return Error{"component " + missing + ": does not participate in simulated time after " +
                base::format_number(parts_.options.start_timeout_s) + " s"};
 }

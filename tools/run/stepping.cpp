@@ -50,7 +50,7 @@ base::Result<void> make_steps(Simulator& simulator, std::int64_t steps, const St
   bool is_told = false;
   for (;;) {
     const auto done = simulator.await_steps(look_period);
-    if (is_interrupted()) return base::Error{"run: interrupted"};
+    if (base::is_interrupted()) return base::Error{"run: interrupted"};
     if (const auto good = stepping.alive(); !good) return good;
     if (!done) return with_reason(done.error(), stepping.alive);
     if (*done) return {};

@@ -111,7 +111,7 @@ std::optional<TimeMember::How> parse_how(const std::string& text) {
 }
 
 std::vector<std::string> module_paths(const std::vector<std::string>& before) {
-  const auto libraries = std::filesystem::path(own_program("rtcd")).parent_path().parent_path() / "lib";
+  const auto libraries = std::filesystem::path(base::own_program("rtcd")).parent_path().parent_path() / "lib";
   auto paths = before;
   paths.push_back(libraries.string());
   paths.push_back((libraries / "rtm-sim").string());
@@ -129,7 +129,7 @@ std::vector<std::string> host_words(const HostSettings& settings) {
                                       "manager.instance_name:" + settings.name,
                                       "logger.log_level:INFO"};
   options.insert(options.end(), settings.options.begin(), settings.options.end());
-  std::vector<std::string> words = {own_program("rtcd"), "-f", settings.empty_file};
+  std::vector<std::string> words = {base::own_program("rtcd"), "-f", settings.empty_file};
   for (const auto& option : options) words.insert(words.end(), {"-o", option});
   words.insert(words.end(), settings.creations.begin(), settings.creations.end());
   return words;

@@ -27,7 +27,7 @@ using base::Result;
 
 constexpr int answer_limit = 5'000;  // [ms] for a process to be made
 
-std::string request_of(const ProgramCall& call) {
+std::string request_of(const base::ProgramCall& call) {
   std::string text;
   for (const auto& word : call.words) text += word + '\0';
   text += '\0';
@@ -46,9 +46,9 @@ std::optional<WarmProgram> WarmProgram::start(const std::string& name, std::map<
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return std::nullopt;
   base::FileHandle ours(ends[0]);
   const base::FileHandle theirs(ends[1]);
-  ProgramCall call{{own_program(name), "--warm"}, std::move(environment), ""};
+  base::ProgramCall call{{base::own_program(name), "--warm"}, std::move(environment), ""};
   call.input = theirs.get();
-  auto started = ChildProcess::start(call);
+  auto started = base::ChildProcess::start(call);
   if (!started) return std::nullopt;
   return WarmProgram(std::move(*started), call.words.front(), ours.release(), reporter);
 }
@@ -64,18 +64,18 @@ bool WarmProgram::is_there() const {
   return poll(&end, 1, 0) == 0;
 }
 
-Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
-  if (*is_silent_ || !call.folder.empty() || call.input >= 0) return ChildProcess::start(call);
+Result<base::ChildProcess> WarmProgram::make(const base::ProgramCall& call) const {
+  if (*is_silent_ || !call.folder.empty() || call.input >= 0) return base::ChildProcess::start(call);
   const bool collects = call.output.empty();
   base::FileHandle output(collects ? memfd_create("output", MFD_CLOEXEC)
                                    : open(call.output.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
   std::array<int, 2> ends{-1, -1};
-  if (output.get() < 0 || pipe2(ends.data(), O_CLOEXEC) != 0) return ChildProcess::start(call);
+  if (output.get() < 0 || pipe2(ends.data(), O_CLOEXEC) != 0) return base::ChildProcess::start(call);
   base::FileHandle watched(ends[0]);
   base::FileHandle watcher(ends[1]);
   const std::string request = request_of(call);
   const std::array sent{output.get(), watcher.get()};
-  if (!base::send_packet(line_, std::as_bytes(std::span(request)), sent)) return ChildProcess::start(call);
+  if (!base::send_packet(line_, std::as_bytes(std::span(request)), sent)) return base::ChildProcess::start(call);
   watcher = base::FileHandle();  // theirs alone: its end is theirs
   pollfd event{watched.get(), POLLIN, 0};
   int pid = 0;
@@ -83,10 +83,9 @@ Result<ChildProcess> WarmProgram::make(const ProgramCall& call) const {
   if (answers == 0 && !is_silent_->exchange(true))
     reporter_->warn(std::filesystem::path(path_).filename().string() + ": the prefork server did not respond within " +
                     std::to_string(answer_limit / 1000) + " s; processes are started directly");
-  if (answers <= 0 || read(watched.get(), &pid, sizeof pid) != sizeof pid) return ChildProcess::start(call);
-  ChildProcess made(pid, collects ? output.release() : -1, std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
-  made.watched_ = watched.release();
-  return made;
+  if (answers <= 0 || read(watched.get(), &pid, sizeof pid) != sizeof pid) return base::ChildProcess::start(call);
+  return base::ChildProcess::made_elsewhere(pid, watched.release(), collects ? output.release() : -1,
+                                            std::filesystem::path(call.words[0]).filename().string(), call.ends_as_group);
 }
 
 WarmPrograms::WarmPrograms(Reporter& reporter) {
@@ -97,17 +96,17 @@ WarmPrograms::WarmPrograms(Reporter& reporter) {
   }
 }
 
-Result<ChildProcess> WarmPrograms::make(const ProgramCall& call) const {
+Result<base::ChildProcess> WarmPrograms::make(const base::ProgramCall& call) const {
   const auto program = std::ranges::find_if(programs_, [&](const WarmProgram& one) { return one.path() == call.words.front(); });
-  return program == programs_.end() ? ChildProcess::start(call) : program->make(call);
+  return program == programs_.end() ? base::ChildProcess::start(call) : program->make(call);
 }
 
 std::size_t WarmPrograms::count() const {
   return static_cast<std::size_t>(std::ranges::count_if(programs_, [](const WarmProgram& one) { return one.is_there(); }));
 }
 
-Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& call) {
-  return warm != nullptr ? warm->make(call) : ChildProcess::start(call);
+Result<base::ChildProcess> start_program(const WarmPrograms* warm, const base::ProgramCall& call) {
+  return warm != nullptr ? warm->make(call) : base::ChildProcess::start(call);
 }
 
 }  // namespace tools

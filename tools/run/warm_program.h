@@ -26,15 +26,15 @@ class WarmProgram {
 
   // As ChildProcess::start(call), whose first word is the program; by that when it cannot be made here. A program that is asked and says
   // nothing for five seconds is not asked again.
-  base::Result<ChildProcess> make(const ProgramCall& call) const;
+  base::Result<base::ChildProcess> make(const base::ProgramCall& call) const;
   // False when it has ended; the kernel has told what it made to end, too, before any of that has ended.
   bool is_there() const;
   const std::string& path() const { return path_; }
 
  private:
-  WarmProgram(ChildProcess program, std::string path, int line, Reporter& reporter)
-      : program_(std::make_unique<ChildProcess>(std::move(program))), path_(std::move(path)), line_(line), reporter_(&reporter) {}
-  std::unique_ptr<ChildProcess> program_;
+  WarmProgram(base::ChildProcess program, std::string path, int line, Reporter& reporter)
+      : program_(std::make_unique<base::ChildProcess>(std::move(program))), path_(std::move(path)), line_(line), reporter_(&reporter) {}
+  std::unique_ptr<base::ChildProcess> program_;
   std::string path_;
   std::unique_ptr<std::atomic<bool>> is_silent_ = std::make_unique<std::atomic<bool>>(false);
   int line_;
@@ -46,7 +46,7 @@ class WarmPrograms {
  public:
   explicit WarmPrograms(Reporter& reporter);  // must live as long
   // As ChildProcess::start(call), by the one whose program it is.
-  base::Result<ChildProcess> make(const ProgramCall& call) const;
+  base::Result<base::ChildProcess> make(const base::ProgramCall& call) const;
   std::size_t count() const;  // of those that are there
 
  private:
@@ -54,6 +54,6 @@ class WarmPrograms {
 };
 
 // By the warm programs, if there are some.
-base::Result<ChildProcess> start_program(const WarmPrograms* warm, const ProgramCall& call);
+base::Result<base::ChildProcess> start_program(const WarmPrograms* warm, const base::ProgramCall& call);
 
 }  // namespace tools

@@ -20,8 +20,8 @@ constexpr std::chrono::minutes campaign_limit{1};             // the end of the 
 
 // Without the name of the program before it.
 Result<std::string> output_of_rtse(std::vector<std::string> words) {
-  words.insert(words.begin(), tools::own_program("rtse"));
-  auto said = tools::output_of({std::move(words), {}, ""}, campaign_limit);
+  words.insert(words.begin(), base::own_program("rtse"));
+  auto said = base::output_of({std::move(words), {}, ""}, campaign_limit);
   if (said) return said;
   auto message = said.error().message;
   if (const auto own = message.find("rtse: "); own != std::string::npos) message.erase(0, own + 6);

@@ -115,7 +115,7 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
     return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
   const tools::Orb orb;
   ErrorStream errors;
-  std::optional<tools::ChildProcess> host;
+  std::optional<base::ChildProcess> host;
   if (settings.opens && settings.start.system.empty()) {
     if (settings.start.world.empty() && !shm::Requester::open(settings.studio.server_id)) settings.start.world = studio::usual_world();
     if (!tools::NamingTree::read(orb.get(), settings.studio.name_server, settings.studio.call_limit)) {

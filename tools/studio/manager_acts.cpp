@@ -28,7 +28,7 @@ using tools::highest_phase;
 using tools::highest_turn;
 
 std::vector<std::string> rtse_words(const ActContext& context, const std::vector<std::string>& words, bool json) {
-  std::vector<std::string> all{tools::own_program("rtse"), "--ns", context.name_server};
+  std::vector<std::string> all{base::own_program("rtse"), "--ns", context.name_server};
   if (json) all.emplace_back("--json");
   all.insert(all.end(), words.begin(), words.end());
   return all;
@@ -43,7 +43,7 @@ std::string rtse_line(const ActContext& context, const std::vector<std::string>&
 
 // What it wrote, or the last line that it wrote, without its own name before it.
 Result<std::string> rtse(const ActContext& context, const std::vector<std::string>& words, bool json = false) {
-  auto said = tools::output_of({rtse_words(context, words, json), {}, ""}, program_limit);
+  auto said = base::output_of({rtse_words(context, words, json), {}, ""}, program_limit);
   if (said) return said;
   auto message = said.error().message;
   if (const auto own = message.find("rtse: "); own != std::string::npos) message.erase(0, own + 6);
@@ -340,7 +340,7 @@ Result<Plan> check_profile(const ActContext& context, const Json& args) {
   return Plan{rtse_line(context, {"check", "system.xml"}), [context, xml = *xml]() -> Result<Json> {
                 const auto file = ScratchFile::with(xml);
                 if (!file) return file.error();
-                auto check = tools::ChildProcess::start({rtse_words(context, {"check", file->name()}, false), {}, ""});
+                auto check = base::ChildProcess::start({rtse_words(context, {"check", file->name()}, false), {}, ""});
                 if (!check) return check.error();
                 if (!check->wait(program_limit)) return Error{"rtse check: has not ended after 30 s"};
                 Json lines = Json::array();

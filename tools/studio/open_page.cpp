@@ -26,11 +26,11 @@ base::Result<OpenPage> OpenPage::open(const std::string& url) {
   const char* wanted = std::getenv("BROWSER");
   const std::string browser = wanted != nullptr && *wanted != '\0' ? wanted : "xdg-open";
   // In a session of its own, which it is in before this call's process group ends: it is not ended with this process.
-  const tools::ProgramCall call{
+  const base::ProgramCall call{
       {"/bin/sh", "-c", R"(command -v "$0" >/dev/null || exit 127; setsid /bin/sh -c '"$0" "$1" >/dev/null 2>&1 &' "$0" "$1")", browser,
        "file://" + file.string()},
       {}};
-  auto started = tools::ChildProcess::start(call);
+  auto started = base::ChildProcess::start(call);
   if (!started) return started.error();
   if (!started->wait(std::chrono::seconds(10)) || started->exit_code() != 0)
     return Error{"cannot start the browser " + base::in_quotes(browser) + " (" + (started->exit_code() == 127 ? "not found" : "failed") +

@@ -28,7 +28,7 @@ bool is_there(const fs::path& path) {
 
 // By its name alone when a shell finds this one.
 std::string program(const std::string& name) {
-  const fs::path own = tools::own_program(name);
+  const fs::path own = base::own_program(name);
   const char* path = std::getenv("PATH");
   for (const auto& folder : base::split_list(path == nullptr ? "" : path, ':')) {
     std::error_code error;
@@ -39,7 +39,7 @@ std::string program(const std::string& name) {
   return shown(own);
 }
 
-fs::path prefix() { return fs::path(tools::own_program("rtcd")).parent_path().parent_path(); }
+fs::path prefix() { return fs::path(base::own_program("rtcd")).parent_path().parent_path(); }
 
 }  // namespace
 

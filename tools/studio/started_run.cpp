@@ -105,7 +105,7 @@ class SystemRun final : public StartedRun {
 
 class WorldRun final : public StartedRun {
  public:
-  WorldRun(tools::ChildProcess process, std::uint32_t server_id) : process_(std::move(process)), server_id_(server_id) {}
+  WorldRun(base::ChildProcess process, std::uint32_t server_id) : process_(std::move(process)), server_id_(server_id) {}
   std::string name_server() const override { return {}; }
   std::uint32_t server_id() const override { return server_id_; }
 
@@ -126,18 +126,18 @@ class WorldRun final : public StartedRun {
   }
 
  private:
-  tools::ChildProcess process_;
+  base::ChildProcess process_;
   const std::uint32_t server_id_;
 };
 
 }  // namespace
 
-Result<tools::ChildProcess> start_host(const std::string& name_server) {
+Result<base::ChildProcess> start_host(const std::string& name_server) {
   // Its modules are looked for where it runs; the manager's own log is for its folder.
-  return tools::ChildProcess::start({{tools::own_program("rtcd"), "--with-naming", "-o", "corba.nameservers:" + name_server, "-o",
-                                      "manager.modules.load_path:" + own_modules(), "-o", "naming.update.interval:1"},
-                                     {},
-                                     "/dev/null"});
+  return base::ChildProcess::start({{base::own_program("rtcd"), "--with-naming", "-o", "corba.nameservers:" + name_server, "-o",
+                                     "manager.modules.load_path:" + own_modules(), "-o", "naming.update.interval:1"},
+                                    {},
+                                    "/dev/null"});
 }
 
 Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
@@ -149,9 +149,9 @@ Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const 
   }
   if (shm::Requester::open(server_id))
     return Error{"simulator " + std::to_string(server_id) + ": runs already; leave --world out to attach to it, or choose another -s"};
-  tools::ProgramCall call{{tools::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""};
+  base::ProgramCall call{{base::own_program("sim-server"), options.world, "--paused", "--server-id", std::to_string(server_id)}, {}, ""};
   for (const auto& path : options.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
-  auto process = tools::ChildProcess::start(call);
+  auto process = base::ChildProcess::start(call);
   if (!process) return process.error();
   auto run = std::make_unique<WorldRun>(std::move(*process), server_id);
   if (const auto there = run->wait(); !there) return there.error();

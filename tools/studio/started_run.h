@@ -22,7 +22,7 @@ struct StartOptions {
 };
 
 // An empty component host with a name server at `name_server`. Ends both with this object.
-base::Result<tools::ChildProcess> start_host(const std::string& name_server);
+base::Result<base::ChildProcess> start_host(const std::string& name_server);
 
 class StartedRun {
  public:

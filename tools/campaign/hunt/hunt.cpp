@@ -48,14 +48,14 @@ class Hunt {
       tools::in_parallel(
           cases.size(), options_.call_limit,
           [&](std::size_t i) {
-            if (!tools::is_interrupted()) outcomes[i] = run(cases[i], "case-" + std::to_string(i));
+            if (!base::is_interrupted()) outcomes[i] = run(cases[i], "case-" + std::to_string(i));
           },
           static_cast<std::size_t>(options_.jobs));
-      if (tools::is_interrupted()) break;
+      if (base::is_interrupted()) break;
       for (std::size_t i = 0; i < cases.size() && goes_on(); ++i) take(cases[i], outcomes[i]);
     }
     if (!problem_.empty()) return Error{problem_};
-    result_.is_interrupted = tools::is_interrupted();
+    result_.is_interrupted = base::is_interrupted();
     result_.corpus = corpus_.size();
     result_.features = features_.size();
     result_.wall_s = wall();
@@ -65,7 +65,7 @@ class Hunt {
  private:
   double wall() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool goes_on() const {
-    if (tools::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
+    if (base::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
     if (options_.most_finds > 0 && result_.finds.size() >= options_.most_finds) return false;
     return options_.most_cases == 0 || result_.cases < options_.most_cases;
   }
@@ -144,7 +144,7 @@ class Hunt {
 
   // How, if it does.
   std::optional<Broken> still_breaks(const HuntCase& tried, const std::string& kind) {
-    if (tools::is_interrupted()) return std::nullopt;
+    if (base::is_interrupted()) return std::nullopt;
     const auto outcome = run(tried, "shrinking");
     return signature(outcome) == kind ? std::optional(Broken{outcome.run.first_problem(), outcome.run.state_hash}) : std::nullopt;
   }
@@ -217,11 +217,11 @@ class Hunt {
     find.problem = broken_.problem;
     find.state_hash = broken_.state_hash;
     const auto first = run(find.tried, "again"), second = run(find.tried, "again", find.file);
-    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !tools::is_interrupted()) {
+    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !base::is_interrupted()) {
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.run.problem;
       return false;
     }
-    find.was_repeated = !tools::is_interrupted();
+    find.was_repeated = !base::is_interrupted();
     if (find.was_repeated) {
       find.state_hash = first.run.state_hash;
       if (!first.run.first_problem().empty()) find.problem = first.run.first_problem();

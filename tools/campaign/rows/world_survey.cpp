@@ -99,12 +99,12 @@ WorldSurvey to_survey(const nlohmann::json& json) {
 
 Result<WorldSurvey> survey_world(const std::string& world, const std::vector<std::string>& resource_paths,
                                  const std::vector<std::string>& spawned) {
-  tools::ProgramCall call{{tools::own_program("sim-server"), world, "--check", "--json"}, {}, ""};
+  base::ProgramCall call{{base::own_program("sim-server"), world, "--check", "--json"}, {}, ""};
   for (const auto& path : resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   for (const auto& model : spawned) call.words.insert(call.words.end(), {"--spawn", model});
-  auto started = tools::ChildProcess::start(call);
+  auto started = base::ChildProcess::start(call);
   if (!started) return started.error();
-  const auto said = tools::output_of(*started, longest_check);
+  const auto said = base::output_of(*started, longest_check);
   // A world with findings is a world; they are told when it runs. The JSON is the only line that begins so.
   for (const auto& line : base::split_list(started->said(), '\n')) {
     if (!line.starts_with("{\"models\"")) continue;

@@ -150,8 +150,8 @@ bool is_list_path(const std::string& path) { return path.starts_with("for/"); }
 // The files that a row needs, in order: programs and libraries.
 std::vector<std::string> programs_of(const Plan& plan) {
   std::vector<std::string> files;
-  for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(tools::own_program(name));
-  const auto libraries = fs::path(tools::own_program("rtcd")).parent_path().parent_path() / "lib";
+  for (const char* name : {"sim-server", "rtcd", "rtse-campaign"}) files.push_back(base::own_program(name));
+  const auto libraries = fs::path(base::own_program("rtcd")).parent_path().parent_path() / "lib";
   auto folders = plan.run.module_paths;
   folders.push_back(libraries.string());
   folders.push_back((libraries / "rtm-sim").string());
@@ -195,7 +195,7 @@ std::vector<std::string> spawned_models(Plan& plan) {
 }  // namespace
 
 bool can_be_started(const std::string& name) {
-  const auto program = tools::own_program(name);
+  const auto program = base::own_program(name);
   if (program.find('/') != std::string::npos) return access(program.c_str(), X_OK) == 0;
   const char* path = std::getenv("PATH");
   return std::ranges::any_of(base::split_list(path != nullptr ? path : "", ':'),

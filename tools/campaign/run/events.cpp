@@ -108,7 +108,7 @@ std::string away_of(const tools::RunScene& scene, const Event& event) {
 
 Result<void> command(tools::RunScene& scene, const Event& event) {
   const auto said =
-      tools::output_of(tools::shell_call(event.target, scene.place.file("record.txt"), scene.simulator.id(), scene.naming), command_limit);
+      base::output_of(base::shell_call(event.target, scene.place.file("record.txt"), scene.simulator.id(), scene.naming), command_limit);
   return said ? Result<void>() : said.error();
 }
 

@@ -58,10 +58,10 @@ Result<std::string> refused(const Plan& plan, std::vector<Fault> faults) {
   constexpr auto limit = 60s;
   const auto options = DeedsRunner({.events = {}, .faults = std::move(faults), .never = {}, .eventually = {}}, 1, 0).simulator_options();
   if (options.empty()) return std::string();
-  tools::ProgramCall call{{tools::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
+  base::ProgramCall call{{base::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
   for (const auto& path : plan.run.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), options.begin(), options.end());
-  auto started = tools::ChildProcess::start(call);
+  auto started = base::ChildProcess::start(call);
   if (!started) return started.error();
   if (!started->wait(limit)) return std::string();  // a world that takes so long is loaded once more, and says so then
   constexpr std::string_view mark = "sim-server: fault ";

@@ -39,7 +39,7 @@ bool RowLocks::take(std::size_t row) const {
   if (descriptor_ < 0) return true;
   while (!set_lock(descriptor_, F_WRLCK, row)) {
     if (errno != EAGAIN && errno != EACCES && errno != EINTR) return true;
-    if (tools::is_interrupted()) return false;
+    if (base::is_interrupted()) return false;
     std::this_thread::sleep_for(50ms);  // a wait for a lock cannot be ended by an interrupt
   }
   return true;

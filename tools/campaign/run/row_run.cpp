@@ -111,7 +111,7 @@ Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const st
 Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, tools::Reporter& reporter) {
   const auto warm = options.warm != nullptr ? options.warm->count() : 0;
   auto outcome = run_once(orb, campaign, row, options, reporter);
-  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || tools::is_interrupted()) return outcome;
+  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || base::is_interrupted()) return outcome;
   // Who made a program of it was killed and took that along: that says nothing about the row.
   std::error_code ignored;
   fs::remove_all(options.folder, ignored);

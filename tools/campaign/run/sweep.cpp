@@ -28,7 +28,7 @@ void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRo
   const auto outcome = run(*row, folder);
   const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
   if (!room) tally.give_up(room.error().message);
-  if (!room || (tools::is_interrupted() && !outcome.run.problem.empty())) {
+  if (!room || (base::is_interrupted() && !outcome.run.problem.empty())) {
     fs::remove_all(folder, ignored);
     return;
   }
@@ -37,7 +37,7 @@ void run_todo(const Campaign& campaign, const SweepOptions& options, const RunRo
 
 void work(const Campaign& campaign, const SweepOptions& options, const RunRow& run, Tally& tally, const RowLocks& locks,
           const Tally::Todo& todo) {
-  if (tools::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
+  if (base::is_interrupted() || tally.is_stopped() || !locks.take(todo.number)) return;
   run_todo(campaign, options, run, tally, todo);
   locks.give_back(todo.number);
 }

@@ -127,7 +127,7 @@ void Tally::keep(const std::string& key, const Outcome& outcome, const std::stri
 Result<SweepResult> Tally::result() {
   const auto mine = telling_.take();
   if (!problem_.empty()) return Error{problem_};
-  result_.is_interrupted = tools::is_interrupted();
+  result_.is_interrupted = base::is_interrupted();
   result_.progress.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
   std::ranges::sort(result_.failed, {}, &FailedRow::number);
   return result_;

@@ -17,10 +17,10 @@ constexpr auto limit = 60s;
 
 // Also after an interrupt, which is when jobs are cancelled.
 Result<std::string> said_by(std::vector<std::string> words) {
-  auto started = tools::ChildProcess::start({std::move(words), {}, ""});
+  auto started = base::ChildProcess::start({std::move(words), {}, ""});
   if (!started) return started.error();
   if (!started->wait(limit)) return Error{"program " + started->program() + ": did not end within " + std::to_string(limit.count()) + " s"};
-  return tools::output_of(*started);
+  return base::output_of(*started);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds shortest_pause = 200ms, longest_pause = 10s;
 
 // Nobody tells when a job of Slurm has ended, or a file of another machine has grown.
 void pause(std::chrono::milliseconds time, bool ends_on_interrupt) {
-  pollfd event{ends_on_interrupt ? tools::interrupt_handle() : -1, POLLIN, 0};
+  pollfd event{ends_on_interrupt ? base::interrupt_handle() : -1, POLLIN, 0};
   poll(&event, 1, static_cast<int>(time.count()));
 }
 
@@ -53,11 +53,11 @@ class SlurmSweep {
       chunk = std::max<std::size_t>(1, chunk / 10);  // a row that takes its task down takes fewer others with it
     }
     if (missing_.empty()) folder_.remove();
-    return missing_.empty() || tools::is_interrupted() ? std::string() : what_is_missing();
+    return missing_.empty() || base::is_interrupted() ? std::string() : what_is_missing();
   }
 
  private:
-  bool is_over() { return tools::is_interrupted() || tally_.is_stopped(); }
+  bool is_over() { return base::is_interrupted() || tally_.is_stopped(); }
   std::size_t least_chunk() const { return (missing_.size() + slurm::most_tasks - 1) / slurm::most_tasks; }
 
   Result<void> list_missing() {

@@ -97,14 +97,14 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   if (!scratch) return scratch.error();
   const auto warm = rows->size() > 1 ? std::make_optional<tools::WarmPrograms>(reporter) : std::nullopt;
   const auto work = [&](std::size_t number) {
-    if (tools::is_interrupted() || !part.problem().empty()) return;
+    if (base::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
     if (!row) return;  // the caller has made it
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = fs::path(scratch->path()) / name;
     auto outcome = run_row(orb, campaign, *row, row_options(campaign, options, number, folder.string(), warm ? &*warm : nullptr), reporter);
-    if (tools::is_interrupted() && !outcome.run.problem.empty()) return;
+    if (base::is_interrupted() && !outcome.run.problem.empty()) return;
     const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);
     if (!outcome.run.has_begun && !outcome.run.problem.empty()) return part.give_up(outcome.run.problem);  // another machine may let it
@@ -120,7 +120,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   tools::in_parallel(
       rows->size(), options.call_limit, [&](std::size_t i) { work((*rows)[i]); }, static_cast<std::size_t>(options.jobs));
   if (const auto problem = part.problem(); !problem.empty()) return Error{problem};
-  if (tools::is_interrupted()) return Error{"interrupted"};
+  if (base::is_interrupted()) return Error{"interrupted"};
   return {};
 }
 

@@ -88,7 +88,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   if (call.seed >= 0) plan->hunt.seed = static_cast<std::uint64_t>(call.seed);
   const auto campaign = Campaign::prepare(std::move(*plan));
   if (!campaign) return console.fail(campaign.error());
-  tools::catch_interrupts();
+  base::catch_interrupts();
   HuntOptions options;
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
   options.jobs = call.jobs;
@@ -115,7 +115,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
                                         {"states", result->features},
                                         {"wall", result->wall_s},
                                         {"finds", finds},
-                                        {"interrupted", tools::is_interrupted()}}
+                                        {"interrupted", base::is_interrupted()}}
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
@@ -123,7 +123,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
                 result->features);
   }
   if (!result->finds.empty()) console.set_failed();
-  if (tools::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
+  if (base::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
 }
 
 }  // namespace

@@ -192,7 +192,7 @@ void print_commands(const Campaign& campaign, const SweepCall& call) {
   const auto word = isatty(STDOUT_FILENO) ? base::shell_word : base::script_word;
   for (std::size_t first = 1; first <= campaign.rows(); first += call.chunk) {
     const auto last = std::min(campaign.rows(), first + call.chunk - 1);
-    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(tools::own_program("rtse")).c_str(),
+    std::printf("%s sweep %s --rows %zu..%zu -o %s\n", word(base::own_program("rtse")).c_str(),
                 word(fs::absolute(call.plan).string()).c_str(), first, last, word(fs::absolute(results_of(call)).string()).c_str());
   }
 }
@@ -218,7 +218,7 @@ SlurmOptions slurm_options_of(const SweepCall& call, const SweepOptions& options
   slurm.chunk = call.chunk;
   slurm.tries = call.tries;
   slurm.options = call.sbatch;
-  slurm.command = {tools::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
+  slurm.command = {base::own_program("rtse"), "sweep", fs::absolute(call.plan).string(), "--keep", options.kept, "-j",
                    std::to_string(call.jobs)};
   if (call.records) slurm.command.emplace_back("--record");
   if (call.pages) slurm.command.emplace_back("--page");
@@ -234,7 +234,7 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
   if (!plan) return console.fail(plan.error());
   const auto campaign = Campaign::prepare(std::move(*plan));
   if (!campaign) return console.fail(campaign.error());
-  tools::catch_interrupts();
+  base::catch_interrupts();
   if (call.engine == "parallel") return print_commands(*campaign, call);
   if (call.row > 0) return run_one(session, console, *campaign, call);
   const auto options = options_of(session, call);

@@ -23,7 +23,7 @@ bool is_recording(const std::string& file) {
 
 void diff(Console& console, const std::string& a, const std::string& b) {
   if (is_recording(a) && is_recording(b)) {
-    const auto program = own_program("rtse-recorder");
+    const auto program = base::own_program("rtse-recorder");
     std::vector<const char*> words = {program.c_str(), "recording", "compare", a.c_str(), b.c_str(), nullptr};
     if (console.json()) words.insert(words.begin() + 1, "--json");
     execv(program.c_str(), const_cast<char* const*>(words.data()));  // it changes none of them

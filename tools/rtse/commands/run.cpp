@@ -125,16 +125,16 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
     failed.problem = input.error().message;
     return failed;
   }
-  auto child =
-      ChildProcess::start({.words = {own_program("rtse"), "--json", "run", options.system, "--world", options.world, options_from_input},
-                           .environment = {},
-                           .input = input->get()});
+  auto child = base::ChildProcess::start(
+      {.words = {base::own_program("rtse"), "--json", "run", options.system, "--world", options.world, options_from_input},
+       .environment = {},
+       .input = input->get()});
   if (!child) {
     failed.problem = child.error().message;
     return failed;
   }
   // A run that is interrupted takes its processes down and says so itself.
-  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) == Ending::interrupted) {
+  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) == base::Ending::interrupted) {
     child->terminate();
     child->wait(interrupted_limit);
   }
@@ -199,7 +199,7 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
   in_parallel(
       seeds.size(), session.call_timeout(),
       [&](std::size_t i) {
-        if (is_interrupted() || is_refused) return;
+        if (base::is_interrupted() || is_refused) return;
         auto result = run_apart(options, seeds[i]);
         const auto mine = telling.take();
         if (result.refusal != RunResult::Refusal::none) {
@@ -265,7 +265,7 @@ class RunProgress final : public Reporter {
 // `jobs` of them at a time.
 void run(const Session& session, Console& console, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
   if (const auto good = check_files(options); !good) return console.fail(good.error());
-  catch_interrupts();
+  base::catch_interrupts();
   std::vector<RunResult> results;
   if (seeds_text) {
     const auto seeds = parse_seeds(*seeds_text);

@@ -69,7 +69,7 @@ void WrittenPage::end(Console& console, const RunResult& result) {
   }
   const auto summary = page_summary(result, repeating_command(given_));
   const auto written = beside_ ? beside_->finish(summary) : write_run_page(call(), summary);
-  const bool is_kept = !written && !is_interrupted();
+  const bool is_kept = !written && !base::is_interrupted();
   if (given_.record.empty() && !is_kept) std::filesystem::remove(made_.record, error);
   if (!written) {
     const bool names_it = given_.record.empty() && is_kept;

@@ -122,11 +122,11 @@ void Stand::say() const {
 base::Result<void> Stand::then() {
   std::cout.flush();
   std::fflush(stdout);
-  auto child = tools::ChildProcess::start({{"sh", "-c", options_.then},
-                                           {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
-                                           tools::own_output});
+  auto child = base::ChildProcess::start({{"sh", "-c", options_.then},
+                                          {{"RTMSIM_SERVER_ID", system_->simulator()}, {"RTCTREE_NAMESERVERS", system_->naming()}},
+                                          base::own_output});
   if (!child) return child.error();
-  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != tools::Ending::ended) return base::Error{"goto: interrupted"};
+  if (child->wait_or_interrupt(std::chrono::hours(24 * 365)) != base::Ending::ended) return base::Error{"goto: interrupted"};
   if (child->exit_code() != 0) return base::Error{"command " + base::in_quotes(options_.then) + ": " + child->how_it_ended()};
   return {};
 }
@@ -167,9 +167,9 @@ base::Result<void> Stand::listen() {
       if (*is_over) return {};
       say();
     }
-    pollfd handles[2] = {{tools::interrupt_handle(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
+    pollfd handles[2] = {{base::interrupt_handle(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
     (void)::poll(handles, 2, -1);
-    if (tools::is_interrupted()) return {};
+    if (base::is_interrupted()) return {};
     char piece[512];
     const auto size = ::read(STDIN_FILENO, piece, sizeof piece);
     if (size <= 0) return {};
@@ -246,7 +246,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
   auto given = options.run;
   given.world = call.world, given.seed = call.seed;  // options of this command that have the names of a run's
   call = tools::with_given(std::move(call), given, command);
-  tools::catch_interrupts();
+  base::catch_interrupts();
   GotoOptions wanted = options;
   double time_s = options.time_s.value_or(call.duration_s);
   std::string input;

@@ -121,10 +121,10 @@ class Pace {
 };
 
 bool wait_until(WallClock::time_point due) {
-  while (!tools::is_interrupted()) {
+  while (!base::is_interrupted()) {
     const auto left = due - WallClock::now();
     if (left <= WallClock::duration::zero()) return true;
-    pollfd handle{tools::interrupt_handle(), POLLIN, 0};
+    pollfd handle{base::interrupt_handle(), POLLIN, 0};
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
     const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
     (void)::ppoll(&handle, 1, &limit, nullptr);
@@ -152,7 +152,7 @@ class SimulatedPace final : public Pace {
   }
   bool wait(std::chrono::nanoseconds moment) override {
     while (!start_ || now_ - *start_ < moment) {
-      if (tools::is_interrupted()) return false;
+      if (base::is_interrupted()) return false;
       shm::Tick tick;
       const auto what = participant_.wait(tick, std::chrono::milliseconds(100));
       if (what == shm::Participant::State::timed_out) continue;
@@ -221,7 +221,7 @@ void play(const Session& session, Console& console, const PlayOptions& options) 
   if (options.links.empty()) {
     if (const auto added = add_recorded_routes(session, console, *reader, routes); !added) return console.fail(added.error());
   }
-  tools::catch_interrupts();
+  base::catch_interrupts();
   const tools::CallLimit limited(session.call_timeout());
   const auto sent = [&] {
     std::uint64_t sum = 0;

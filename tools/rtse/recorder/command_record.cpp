@@ -246,14 +246,14 @@ void wait_for_end(const RecordOptions& options, channels::Exchange& exchange, co
                   const std::function<void()>& look) {
   exchange.on_failure([handle] { handle->raise(); });
   const auto start = std::chrono::steady_clock::now();
-  while (!tools::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
+  while (!base::is_interrupted() && !exchange.failure() && !handle->is_raised()) {
     int wait_ms = -1;
     if (options.duration_s > 0) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
       if (passed.count() >= options.duration_s) return;
       wait_ms = static_cast<int>(std::clamp((options.duration_s - passed.count()) * 1000 + 1, 0.0, 1e9));
     }
-    pollfd handles[3] = {{tools::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
+    pollfd handles[3] = {{base::interrupt_handle(), POLLIN, 0}, {handle->descriptor(), POLLIN, 0}, {orders.descriptor(), POLLIN, 0}};
     (void)::poll(handles, 3, wait_ms);
     const auto order = orders.next(std::chrono::milliseconds(0));
     if (order == RecorderMessage::stop) return;
@@ -326,7 +326,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
   ComponentSource components(session.orb(), exchange, clock);
   auto facts = lockstep_facts(options);
   for (const auto& [component, port] : ports) {
-    if (tools::is_interrupted()) return false;
+    if (base::is_interrupted()) return false;
     if (const auto added = source.add(component, port, facts[component.instance]); !added) console.fail(added.error());
   }
   if (options.until_error) {
@@ -335,7 +335,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
     });
   }
   for (const auto& component : chosen_components(session, options, ports)) {
-    if (tools::is_interrupted()) return false;
+    if (base::is_interrupted()) return false;
     if (const auto added = components.add(component); !added) console.fail(added.error());
   }
   // On the thread of the views, which end before the others.
@@ -428,7 +428,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
   if (!stale) return console.fail(stale.error());
   auto sinks = open_sinks(options, clock);
   if (!sinks) return console.fail(sinks.error());
-  tools::catch_interrupts();
+  base::catch_interrupts();
   Orders orders(options.controlled);
   base::Result<void> written;
   {

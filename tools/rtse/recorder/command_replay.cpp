@@ -324,7 +324,7 @@ void replay_file(const Session& session, Console& console, const Options& option
     result = std::move(*done);
     return {};
   };
-  tools::catch_interrupts();
+  base::catch_interrupts();
   const auto made = tools::run_system(session.orb(), call, console, hooks);
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
