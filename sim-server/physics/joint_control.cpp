@@ -12,12 +12,14 @@ constexpr double hardly_any = 1e-5;          // [rad] or [m] of error that nothi
 constexpr double arrived = 1e-3;             // [rad] or [m] from the target
 constexpr double still = 1e-3;               // [rad/s] or [m/s]
 constexpr double most_ahead = 0.05;          // [s] that a target goes on without a new command
+constexpr double furthest_ahead = 1;         // [rad] within a turn
 constexpr double time_to_full_speed = 0.25;  // [s] of a target that jumped
 constexpr double far = 0.05;                 // [s] of the way at full speed: further is a jump
 constexpr double time_to_settle = 0.5;       // [s] that a joint stands beside its target before it has arrived
 constexpr double time_to_stall = 0.5;        // [s]
 constexpr double brake_strength = 2;         // times the highest effort
 constexpr double brake_stiffness = 10;       // times the gains
+constexpr double as_told = 1e-6;             // [rad/s / N m] or [m/s / N] by which a motor that turns as told gives way
 constexpr double hard = 100;                 // times the stiffness of the spring: where the highest velocity is kept
 
 }  // namespace
@@ -35,6 +37,11 @@ JointGains derived_gains(double inertia) {
 double JointServo::clamped(double position) const {
   const double margin = std::min(near_stop, 0.1 * (setup_.high - setup_.low));
   return std::clamp(position, setup_.low + margin, setup_.high - margin);
+}
+
+double JointServo::way_to(double target, const JointState& now) const {
+  const double way = target - now.position;
+  return setup_.goes_round ? std::remainder(way, 2 * std::numbers::pi) : way;
 }
 
 double JointServo::most_effort() const {
@@ -80,10 +87,11 @@ bool JointServo::wants_gravity() const {
 void JointServo::move_target(const JointState& now, double dt) {
   const double before = reference_;
   if (mode_ == JointMode::velocity) {
-    // Not further ahead than the motor can pull.
-    const double ahead = stiffness() > 0 ? most_effort() / stiffness() : 0;
+    // Not further ahead than the motor can pull, nor than is known of a joint that goes round.
+    const double ahead = stiffness() > 0 && !setup_.turns_as_told ? most_effort() / stiffness() : 0;
     // Beyond a stop as well, so that it presses with all its effort.
-    const double lead = ahead + std::abs(order_.value) * dt;
+    const double lead = std::min(ahead + std::abs(order_.value) * dt, setup_.goes_round ? furthest_ahead : infinite);
+    if (setup_.goes_round) reference_ = now.position + way_to(reference_, now);
     reference_ = std::clamp(reference_ + order_.value * dt, now.position - lead, now.position + lead);
     reference_velocity_ = order_.value;
     return;
@@ -115,8 +123,14 @@ JointRow JointServo::spring(const JointState& now, double gravity, double dt) co
     row.push = std::clamp(added, -most, most);
     return row;
   }
+  if (setup_.turns_as_told && mode_ == JointMode::velocity) {
+    row.most = most;
+    row.give = as_told;
+    row.velocity = order_.value;
+    return row;
+  }
   const double speed = std::max(setup_.velocity, std::abs(reference_velocity_));
-  const double wanted = (p * (reference_ - now.position) + d * reference_velocity_) / stiffness;
+  const double wanted = (p * way_to(reference_, now) + d * reference_velocity_) / stiffness;
   row.most = most;
   row.give = 1 / stiffness;
   row.velocity = wanted + added / stiffness;
@@ -135,12 +149,12 @@ JointRow JointServo::brake(const JointState& now, double dt) {
   row.most = brake_strength * setup_.effort;
   if (is_latched_) {
     const double p = brake_stiffness * setup_.gains.p, stiffness = dt * p + brake_stiffness * setup_.gains.d;
-    row.velocity = p * (reference_ - now.position) / stiffness;
+    row.velocity = p * way_to(reference_, now) / stiffness;
     row.give = 1 / stiffness;
     return row;
   }
   if (std::abs(now.velocity) > 10 * still) reference_ = now.position;
-  row.velocity = 0.2 * (reference_ - now.position) / dt;
+  row.velocity = 0.2 * way_to(reference_, now) / dt;
   row.give = 1e-9;
   return row;
 }
@@ -153,7 +167,7 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
       move_target(now, dt);
       row = spring(now, gravity, dt);
       // The last: it has become too weak for what it held while the model slept.
-      row.keeps_awake = reference_velocity_ != 0 || std::abs(reference_ - now.position) > hardly_any || std::abs(effort_) > most_effort();
+      row.keeps_awake = reference_velocity_ != 0 || std::abs(way_to(reference_, now)) > hardly_any || std::abs(effort_) > most_effort();
       break;
     case JointMode::effort:
       row.push = std::clamp(order_.value + order_.effort + gravity, -motor_effort(), motor_effort());
@@ -176,7 +190,7 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
 }
 
 void JointServo::integrate(const JointState& now, double dt) {
-  const double error = reference_ - now.position;
+  const double error = way_to(reference_, now);
   const bool is_saturated = std::abs(effort_) >= 0.99 * most_effort() && error * effort_ > 0;
   if (setup_.gains.i == 0 || reference_velocity_ != 0 || std::abs(error) <= hardly_any || is_saturated) return;
   const double low = std::max(setup_.gains.i_low, -motor_effort()), high = std::min(setup_.gains.i_high, motor_effort());
@@ -195,7 +209,7 @@ void JointServo::follow(const JointState& now, double dt) {
   stalled_for_ = is_controlled && is_slow && is_at_limit ? stalled_for_ + dt : 0;
   const bool is_still = std::abs(now.velocity) < 10 * still;
   still_for_ = is_still ? still_for_ + dt : 0;
-  const bool is_close = std::abs(order_.value - now.position) < arrived || still_for_ >= time_to_settle;
+  const bool is_close = std::abs(way_to(order_.value, now)) < arrived || still_for_ >= time_to_settle;
   const bool has_arrived = is_still && (mode_ != JointMode::position || (reference_ == order_.value && is_close));
   if (mode_ == JointMode::brake) {
     status_ = JointStatus::braked;

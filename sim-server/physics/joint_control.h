@@ -41,6 +41,8 @@ class JointServo {
     double velocity = 2, effort = 100;  // highest
     bool slides = false;
     bool is_compensated = false;  // gravity, while position or velocity are controlled
+    bool goes_round = false;      // its position is known within a turn
+    bool turns_as_told = false;   // a velocity is kept by all the effort, without spring and damper
   };
 
   explicit JointServo(const Setup& setup) : setup_(setup) {}
@@ -74,6 +76,7 @@ class JointServo {
   JointRow brake(const JointState& now, double dt);
   void integrate(const JointState& now, double dt);
   double clamped(double position) const;
+  double way_to(double target, const JointState& now) const;  // the shorter one of a joint that goes round
   double stiffness() const { return order_.gain * setup_.gains.p; }
   double motor_effort() const { return strength_ * setup_.effort; }
   double most_effort() const;  // now

@@ -176,6 +176,9 @@ std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<st
     if (def.kind != JointDef::Kind::continuous) setup.low = axis.lower, setup.high = axis.upper;
     const bool has_limits = axis.upper - axis.lower < 1e6;
     const bool is_perfect = !has_limits && has_perfect_motor(model, joints[i]);
+    setup.turns_as_told = is_perfect;
+    setup.goes_round = !setup.slides && def.kind != JointDef::Kind::screw && setup.low == -infinite && setup.high == infinite &&
+                       axis.spring_stiffness == 0;
     const double usual = is_perfect ? perfect_speed : setup.slides ? usual_slide : usual_speed;
     setup.velocity = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual;
     const double least = is_perfect ? perfect_effort : setup.slides ? least_force : least_torque;
