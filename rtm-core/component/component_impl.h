@@ -21,6 +21,7 @@
 #include "component/execute_fault.h"
 #include "component/outside_calls.h"
 #include "core/callback_gate.h"
+#include "core/refusal_log.h"
 
 namespace RTC {
 
@@ -86,7 +87,7 @@ struct RTObject_impl::Impl {
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
   rt::CallbackGate gate;                      // all callbacks pass it
-  RefusalLog refusals;
+  rt::RefusalLog refusals;
   base::Guarded<std::thread, base::Rank::tasks> exiter;  // runs exit() when a callback asked for it
 };
 

@@ -13,10 +13,10 @@
 
 #include "base/guarded.h"
 #include "component/managed.h"
-#include "component/outside_calls.h"
 #include "corba/orb/orb.h"
 #include "core/component_argument.h"
 #include "core/key_limits.h"
+#include "core/refusal_log.h"
 #include "core/signal_watcher.h"
 #include "core/task_runner.h"
 #include "rtm/LogstreamBase.h"
@@ -158,7 +158,7 @@ class ManagerImpl {
   std::unique_ptr<rt::TaskRunner> cleaner;
   std::unique_ptr<rt::TaskRunner> peers;
   std::unique_ptr<NamingManager> naming;
-  RefusalLog refusals{32};  // of what callers over the wire may not have done
+  rt::RefusalLog refusals{32};  // of what callers over the wire may not have done
   std::unique_ptr<ModuleManager> modules;
   RTM::ManagerServant* servant = nullptr;  // we hold one reference
   std::thread::id home;                    // the thread that called init

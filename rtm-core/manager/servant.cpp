@@ -144,7 +144,7 @@ bool ManagerServant::may_change(const std::string& what, bool needs_everything) 
 void ManagerServant::refuse(const std::string& what, const std::string& why) const {
   if (const auto left_out = manager_.impl_->refusals.next())
     base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}{}", corba::caller(), what, why,
-              RTC::RefusalLog::words_for(*left_out));
+              rt::RefusalLog::words_for(*left_out));
 }
 
 // --- modules

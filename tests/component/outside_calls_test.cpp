@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/refusal_log.h"
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -47,7 +49,7 @@ TEST(OutsideCalls, the_life_cycle_of_a_context_is_allowed_whatever_fails) {
 }
 
 TEST(OutsideCalls, the_log_has_one_line_a_second_and_counts_the_others) {
-  RTC::RefusalLog log;
+  rt::RefusalLog log;
   const std::chrono::steady_clock::time_point start{};
   EXPECT_EQ(log.next(start), 0u);
   for (int i = 0; i < 1999; ++i) EXPECT_EQ(log.next(start + 100us * i), std::nullopt);
@@ -56,7 +58,7 @@ TEST(OutsideCalls, the_log_has_one_line_a_second_and_counts_the_others) {
 }
 
 TEST(OutsideCalls, a_log_with_a_burst_has_so_many_lines_at_once_and_again_after_so_many_quiet_seconds) {
-  RTC::RefusalLog log(3);
+  rt::RefusalLog log(3);
   const std::chrono::steady_clock::time_point start{};
   const auto lines = [&](std::chrono::seconds at) {
     int count = 0;

@@ -78,7 +78,8 @@ _CORBA_Boolean RTObject_impl::_dispatch(omniCallHandle& call) {
 
 ReturnCode_t RTObject_impl::refuse(const char* operation, const std::string& why, ReturnCode_t code) const {
   if (const auto left_out = impl_->refusals.next()) {
-    RTC_WARN(("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), RefusalLog::words_for(*left_out).c_str()));
+    RTC_WARN(
+        ("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), rt::RefusalLog::words_for(*left_out).c_str()));
   }
   return code;
 }
