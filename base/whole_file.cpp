@@ -56,14 +56,20 @@ int make_file(const fs::path& file, std::string_view octets, const struct stat* 
 
 }  // namespace
 
-Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
-  expect_no_data_held();
+Result<fs::path> replaceable_file(const fs::path& file) {
   const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
   std::error_code error;
   const auto status = fs::status(file, error);
   if (fs::is_directory(status)) return bad("is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status)) return bad("is no ordinary file");
-  const fs::path target = behind_links(file);
+  return behind_links(file);
+}
+
+Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
+  expect_no_data_held();
+  const auto place = replaceable_file(file);
+  if (!place) return place.error();
+  const fs::path& target = *place;
   const fs::path part = target.string() + ".part" + std::to_string(::getpid());
   struct stat before {};
   const bool has_before = ::stat(target.c_str(), &before) == 0;
@@ -71,7 +77,7 @@ Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
   if (problem == 0 && ::rename(part.c_str(), target.c_str()) != 0) problem = errno;
   if (problem == 0) return {};
   ::unlink(part.c_str());
-  return bad(std::string("cannot be written: ") + std::strerror(problem));
+  return Error{"file " + in_quotes(file.string()) + ": cannot be written: " + std::strerror(problem)};
 }
 
 }  // namespace base

@@ -56,5 +56,19 @@ TEST_F(WholeFile, a_new_file_has_the_mode_of_new_files) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);  // nothing is left behind
 }
 
+TEST_F(WholeFile, pipes_and_folders_are_not_replaced) {
+  const auto pipe = folder_ / "pipe", link = folder_ / "link";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink("pipe", link);
+  for (const auto& file : {pipe, link, folder_}) {
+    EXPECT_FALSE(write_whole_file(file, "new")) << file;
+    EXPECT_FALSE(replaceable_file(file)) << file;
+  }
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  const auto missing = folder_ / "missing", to_missing = folder_ / "to_missing";
+  fs::create_symlink("missing", to_missing);
+  EXPECT_EQ(*replaceable_file(to_missing), missing);
+}
+
 }  // namespace
 }  // namespace base

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -143,6 +144,13 @@ def messages(folder):
     assert done(rtse, "page", bad, "-o", page, code=1) == f'rtse: page "{page}": "{bad}": is not an MCAP file: it does not start with the magic bytes\n'
     assert done(rtse, "page", bad, "-o", bad, code=1) == f'rtse: page "{bad}": is the recording; expected another file\n'
     assert done(*run_words(1, "--page", nowhere), code=1) == f'rtse: file "{nowhere}": there is no folder {os.path.dirname(nowhere)}\n'
+    pipe, link = (os.path.join(folder, name) for name in ("pipe", "link"))
+    os.mkfifo(pipe)
+    os.symlink(pipe, link)
+    for file in (pipe, link):
+        assert done(rtse, "page", bad, "-o", file, code=1) == f'rtse: page "{file}": is no ordinary file\n'
+    assert stat.S_ISFIFO(os.lstat(pipe).st_mode) and os.path.islink(link)
+    os.remove(pipe), os.remove(link)
     viewer = done(f"{bin_dir}/rtse-page", bad, "-o", page, "--viewer", nowhere, code=1)
     assert viewer.startswith(f"rtse-page: the viewer is missing: {nowhere}; "), viewer
     assert sorted(os.listdir(folder)) == ["bad.mcap"], os.listdir(folder)

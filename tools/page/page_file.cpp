@@ -10,6 +10,7 @@
 
 #include "base/base64.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 
 namespace page {
 namespace {
@@ -38,10 +39,13 @@ PageFile::~PageFile() {
 Result<void> PageFile::fail(int error) const { return Error{path_ + ": " + std::generic_category().message(error)}; }
 
 Result<void> PageFile::open() {
-  const auto folder = std::filesystem::path(path_).parent_path();
+  auto place = base::replaceable_file(path_);
+  if (!place) return place.error();
+  target_ = place->string();
+  const auto folder = place->parent_path();
   int file = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode_of_files);
   if (file < 0) {
-    part_path_ = path_ + "." + std::to_string(::getpid()) + ".part";
+    part_path_ = target_ + "." + std::to_string(::getpid()) + ".part";
     file = ::open(part_path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, mode_of_files);
   }
   if (file < 0) return fail(errno);
@@ -74,13 +78,13 @@ Result<void> PageFile::cut(std::uint64_t size) {
 Result<void> PageFile::finish() {
   if (std::fflush(out_.get()) != 0 || std::ferror(out_.get()) != 0) return fail(errno != 0 ? errno : EIO);
   if (part_path_.empty()) {
-    part_path_ = path_ + "." + std::to_string(::getpid()) + ".part";
+    part_path_ = target_ + "." + std::to_string(::getpid()) + ".part";
     const auto there = "/proc/self/fd/" + std::to_string(::fileno(out_.get()));
     if (::linkat(AT_FDCWD, there.c_str(), AT_FDCWD, part_path_.c_str(), AT_SYMLINK_FOLLOW) != 0) return fail(errno);
   }
   out_.reset();
   std::error_code problem;
-  std::filesystem::rename(part_path_, path_, problem);
+  std::filesystem::rename(part_path_, target_, problem);
   if (problem) return Error{path_ + ": " + problem.message()};
   part_path_.clear();
   return {};

@@ -41,6 +41,7 @@ class PageFile {
   base::Result<void> fail(int error) const;
 
   const std::string path_;
+  std::string target_;  // behind symbolic links
   const std::uint64_t limit_;
   std::uint64_t reserved_ = 0;
   std::string part_path_;  // empty: it has no name
