@@ -19,6 +19,7 @@ enum class Must {
   number,
   gain,
   positive,
+  amount,  // 0 or more, and finite
   not_negative,
   not_positive,
   not_zero,
@@ -178,12 +179,8 @@ constexpr std::array hull_rows{
     NumberRow{"fluid_density", positive},
 };
 constexpr std::array bladder_rows{
-    NumberRow{"min_volume", not_negative},
-    NumberRow{"max_volume", not_negative},
-    NumberRow{"neutral_volume", not_negative},
-    NumberRow{"default_volume", not_negative},
-    NumberRow{"fluid_density", positive},
-    NumberRow{"max_inflation_rate", positive},
+    NumberRow{"min_volume", amount},     NumberRow{"max_volume", amount},      NumberRow{"neutral_volume", amount},
+    NumberRow{"default_volume", amount}, NumberRow{"fluid_density", positive}, NumberRow{"max_inflation_rate", positive},
     NumberRow{"surface", number},
 };
 
@@ -305,6 +302,8 @@ std::string_view expectation_failed(Must must, const std::string& text) {
       return is_number && value >= 0 && value <= largest_gain ? "" : "a number from 0 to 1e12";
     case positive:
       return is_number && value > 0 ? "" : "a positive number";
+    case amount:
+      return is_number && value >= 0 ? "" : "a number of 0 or more";
     case not_negative:
       return is_number && value >= 0 ? "" : "a number of 0 or more";
     case not_positive:

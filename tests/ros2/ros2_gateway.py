@@ -157,7 +157,7 @@ def devices():
 def seen():
     with Rig() as rig:
         rig.sim(f"{source}/worlds/devices.sdf")
-        rig.gateway()
+        rig.gateway(robots=7)
         peer = rig.peer()
         flat, solid, models, marks = "/mast/boxes/detections", "/mast/oriented_boxes/detections", "/mast/models/models", "/mast/marks/markers"
         peer.subscribe(flat, "vision_msgs/Detection2DArray")
