@@ -57,18 +57,18 @@ int make_file(const fs::path& file, std::string_view octets, const struct stat* 
 }  // namespace
 
 Result<fs::path> replaceable_file(const fs::path& file) {
-  const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
   std::error_code error;
   const auto status = fs::status(file, error);
-  if (fs::is_directory(status)) return bad("is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return bad("is no ordinary file");
+  if (fs::is_directory(status)) return Error{"is a folder"};
+  if (fs::exists(status) && !fs::is_regular_file(status)) return Error{"is no ordinary file"};
   return behind_links(file);
 }
 
 Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
   expect_no_data_held();
   const auto place = replaceable_file(file);
-  if (!place) return place.error();
+  const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
+  if (!place) return bad(place.error().message);
   const fs::path& target = *place;
   const fs::path part = target.string() + ".part" + std::to_string(::getpid());
   struct stat before {};
@@ -77,7 +77,7 @@ Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
   if (problem == 0 && ::rename(part.c_str(), target.c_str()) != 0) problem = errno;
   if (problem == 0) return {};
   ::unlink(part.c_str());
-  return Error{"file " + in_quotes(file.string()) + ": cannot be written: " + std::strerror(problem)};
+  return bad(std::string("cannot be written: ") + std::strerror(problem));
 }
 
 }  // namespace base

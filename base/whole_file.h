@@ -12,7 +12,8 @@ namespace base {
 // refused. On failure nothing is left behind.
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view octets);
 
-// Where a file is to be put by rename(), behind symbolic links. An Error for what must not be replaced: a folder, a device, a pipe.
+// Where a file is to be put by rename(), behind symbolic links. An Error, without the name, for what must not be
+// replaced: a folder, a device, a pipe.
 Result<std::filesystem::path> replaceable_file(const std::filesystem::path& file);
 
 }  // namespace base

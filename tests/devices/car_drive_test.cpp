@@ -142,7 +142,9 @@ TEST(CarDrive, that_only_steers_leaves_its_wheels_to_controllers_of_joints) {
   f.run(4);
   ASSERT_TRUE(drive.read());
   const auto seen = drive.sample<shm::Position2dSample>();
-  EXPECT_NEAR(seen.true_velocity[2], 0.309, 0.02) << "1 m/s at 0.3 rad over 1 m";
+  EXPECT_GT(seen.true_velocity[2], 0.25)
+      << "1 m/s at 0.3 rad over 1 m are 0.309 rad/s with a differential; these wheels turn alike and slip";
+  EXPECT_LT(seen.true_velocity[2], 0.309);
   EXPECT_EQ(seen.stalled, 0U);
   EXPECT_EQ(seen.odometry[0], 0) << "it does not know its wheels";
 }

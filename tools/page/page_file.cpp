@@ -40,7 +40,7 @@ Result<void> PageFile::fail(int error) const { return Error{path_ + ": " + std::
 
 Result<void> PageFile::open() {
   auto place = base::replaceable_file(path_);
-  if (!place) return place.error();
+  if (!place) return Error{path_ + ": " + place.error().message};
   target_ = place->string();
   const auto folder = place->parent_path();
   int file = ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode_of_files);
