@@ -45,8 +45,10 @@ Result<void> RunSimulator::start(const Wait& wait_until, bool writes_poses) {
     id_ = lowest_server + next.fetch_add(1) % (highest_server - lowest_server + 1);
     if (owner(id_)) continue;  // somebody's
     const auto started = try_start(id_, wait_until, writes_poses);
-    if (started || !owner(id_)) return started;
-    process_.reset();  // somebody was quicker
+    // Somebody was quicker, who may have ended since.
+    const bool was_taken = owner(id_) || telling_line(place_.file(log_name)).find("is already running as pid") != std::string::npos;
+    if (started || !was_taken) return started;
+    process_.reset();
   }
   return Error{"no server id is free"};
 }
