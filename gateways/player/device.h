@@ -98,11 +98,11 @@ class Device {
   // A client that was subscribed no longer is.
   virtual void forget(Client&) {}
   virtual void on_attach() {}
-  // Nobody is subscribed any more.
+  // The last subscriber has left.
   virtual void on_unused() {}
   // False for devices that never have data.
   virtual bool has_data() const { return true; }
-  // Why nobody can subscribe.
+  // The reason that subscriptions are refused for; none: they are accepted.
   virtual base::Result<void> check() const { return {}; }
 
   std::uint32_t port() const { return robot_; }

@@ -33,7 +33,7 @@ Disparities disparities_of(const player::Image& left, const player::Image& right
 
 // MONO16, the high byte first.
 player::Image to_image(const Disparities& disparities);
-// In the frame of the left camera (x forward, y left, z up), with the colours of its image; at most so many, the first rows first.
+// In the frame of the left camera (x forward, y left, z up), with the colours of its image: at most `most` points, the first rows first.
 std::vector<player::ColoredPoint> to_points(const Disparities& disparities, const StereoPair& pair, const player::Image& left,
                                             std::size_t most);
 

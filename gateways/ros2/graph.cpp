@@ -31,7 +31,7 @@ Guid first_16(const auto& data) {
   return guid;
 }
 
-// At most so many.
+// Stops when `names` would have more than `most` entries.
 template <class Message>
 void add_names(const Message& message, std::size_t most, std::map<Guid, std::string>& names) {
   for (const auto& node : message.node_entities_info_seq) {

@@ -170,8 +170,8 @@ class Plain : public RTC::ExecutionContextServant<POA_OpenRTM::ExtTrigExecutionC
 template <class Base>
 constexpr bool has_loop = std::is_base_of_v<RTC::PeriodicExecutionContext, Base>;
 
-// The one operation that differs: the loop of a periodic context, the tick of the others. When the loop has returned although nobody has
-// stopped the context, who waits for a component to rest makes the transition.
+// The one operation that differs: the loop of a periodic context, the tick of the others. When the loop has returned before the
+// context is stopped, the thread that waits for a component to rest makes the transition.
 template <class Base>
 class Driven : public Base {
  public:

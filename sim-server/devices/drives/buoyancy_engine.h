@@ -49,7 +49,7 @@ class BuoyancyEngine final : public Sensor, public Drive {
   std::optional<double> halted_at_;
   Eigen::Isometry3d odometry_origin_ = Eigen::Isometry3d::Identity();
   double strength_ = 1;
-  bool is_idle_ = true;  // nobody has commanded it yet
+  bool is_idle_ = true;  // before the first command
   bool motors_enabled_ = true, has_power_ = true, is_commanded_ = false;
 };
 

@@ -69,7 +69,7 @@ std::vector<std::uint32_t> joints_of(const ModelDef& model, const PluginDef& plu
   return joints;
 }
 
-// Who has the joint before this controller; empty: nobody.
+// The plugin that drives the joint before this controller; empty: none.
 std::string other_of(const ModelDef& model, const PluginDef& plugin, std::uint32_t joint,
                      const std::map<std::uint32_t, std::string>& holders) {
   if (const auto holder = holders.find(joint); holder != holders.end()) return holder->second;

@@ -112,8 +112,8 @@ Configuration = ConfigAdmin
 
 
 class _Made:
-    """An attribute that is made anew each time: what refers to the component and is kept by it would keep it in memory. An author's
-    attribute of the same name takes its place."""
+    """An attribute that is created at each access. A stored object that refers to its component would be a reference cycle, which keeps
+    both in memory. An author's attribute of the same name replaces it."""
 
     def __init__(self, function):
         self._function = function
