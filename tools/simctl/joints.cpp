@@ -178,9 +178,12 @@ void joints(Control& control, const JointOptions& options) {
   // A sample of now. While time stands still, a new one comes only if nobody else is subscribed; then the one that is there is of now.
   const std::uint64_t old = iface->sequence();
   if (const auto done = iface->subscribe(); !done) return control.fail(done.error().message);
-  const auto limit = old > 0 && is_paused(control.server_id()) ? std::chrono::milliseconds(200) : std::chrono::milliseconds(2000);
+  const bool stands = is_paused(control.server_id());
+  const auto limit = old > 0 && stands ? std::chrono::milliseconds(200) : std::chrono::milliseconds(2000);
   if (iface->wait(old, limit) != shm::Wait::fresh && !iface->read())
     return control.fail("joints of " + options.model + ": no sample arrives");
+  // That one may be of a step that had begun before: what another client did last (it left, say, and its joints brake) is in the next.
+  if (!stands) static_cast<void>(iface->wait(iface->sequence(), std::chrono::milliseconds(500)));
   if (options.settings.empty()) return show(control, *iface);
   command(control, *iface, options);
 }
