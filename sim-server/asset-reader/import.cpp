@@ -2,6 +2,7 @@
 
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
+#include <assimp/DefaultLogger.hpp>
 
 #include <algorithm>
 #include <array>
@@ -37,6 +38,14 @@ Import::Import(std::string path, FileLog& files) : path_(std::move(path)) {
   }
   importer_.SetIOHandler(new MeshIo(files));  // the importer's from now on
   importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  if (Assimp::DefaultLogger::isNullLogger()) Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+  Assimp::DefaultLogger::get()->attachStream(&losses_, Assimp::Logger::Warn);
+}
+
+Import::~Import() { Assimp::DefaultLogger::get()->detachStream(&losses_, Assimp::Logger::Warn); }
+
+void Import::Losses::write(const char* message) {
+  has_lost_faces = has_lost_faces || std::string_view(message).find("faces had out-of-range indices") != std::string_view::npos;
 }
 
 base::Result<const aiScene*> Import::read(unsigned flags) {
@@ -47,6 +56,7 @@ base::Result<const aiScene*> Import::read(unsigned flags) {
   }
   const auto checked = [this](const aiScene* scene) -> base::Result<const aiScene*> {
     if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};
+    if (losses_.has_lost_faces) return base::Error{"is damaged: a face names a vertex that is not there"};
     if (const auto whole = check_scene(*scene); !whole) return whole.error();
     return scene;
   };

@@ -5,6 +5,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <string>
 
 #include "asset-reader/jobs.h"
@@ -15,6 +16,9 @@ namespace sim {
 class Import {
  public:
   Import(std::string path, FileLog& files);
+  ~Import();
+  Import(const Import&) = delete;
+  Import& operator=(const Import&) = delete;
 
   // For its properties.
   Assimp::Importer& importer() { return importer_; }
@@ -25,6 +29,13 @@ class Import {
   std::string path_;
   bool is_known_ = false;
   Assimp::Importer importer_;
+  // An importer that leaves out a face with a wrong index says so in its log alone.
+  class Losses final : public Assimp::LogStream {
+   public:
+    void write(const char* message) override;
+    bool has_lost_faces = false;
+  };
+  Losses losses_;
 };
 
 }  // namespace sim

@@ -12,6 +12,7 @@
 
 #include "asset-reader/import.h"
 #include "asset-reader/jobs.h"
+#include "asset-reader/scene_check.h"
 #include "base/text.h"
 #include "render/mesh_arrays.h"
 #include "world/triangle_arrays.h"
@@ -32,9 +33,11 @@ class MeshReader {
   // With a skin the vertices are taken as they hang on the skeleton at rest.
   MeshReader(const aiScene& scene, const MeshShape& shape, Skin* skin) : scene_(scene), shape_(shape), skin_(skin) {}
 
-  MeshFile read() {
+  // An error for a triangle with a corner that has no place.
+  base::Result<MeshFile> read() {
     if (skin_ != nullptr) add_nodes(*scene_.mRootNode, -1);
     collect(*scene_.mRootNode, aiMatrix4x4(), false);
+    if (lost_) return *lost_;
     for (auto& [index, indices] : indices_by_material_) {
       mend_normals(indices);
       MeshPart part{
@@ -151,6 +154,7 @@ class MeshReader {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3 || indices.size() >= most_triangles * 3) continue;
       const std::uint32_t corners[3] = {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]};
+      note_lost(corners);
       if (!is_triangle(corners)) continue;
       indices.push_back(first + face.mIndices[0]);
       indices.push_back(first + face.mIndices[is_mirrored ? 2 : 1]);
@@ -158,9 +162,14 @@ class MeshReader {
     }
   }
 
-  // False for what has no area or no place.
+  void note_lost(const std::uint32_t (&corners)[3]) {
+    for (const std::uint32_t corner : corners)
+      if (!lost_ && !is_finite(corner))
+        lost_ = lost_corner(Eigen::Map<const Eigen::Vector3f>(out_.mesh.vertices[corner].position.data()).cast<double>());
+  }
+
+  // False for what has no area.
   bool is_triangle(const std::uint32_t (&corners)[3]) const {
-    if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2])) return false;
     const auto& a = out_.mesh.vertices[corners[0]].position;
     const auto& b = out_.mesh.vertices[corners[1]].position;
     const auto& c = out_.mesh.vertices[corners[2]].position;
@@ -264,6 +273,7 @@ class MeshReader {
   std::map<const aiNode*, std::uint32_t> node_by_place_;
   MeshFile out_;
   std::map<unsigned, std::vector<std::uint32_t>> indices_by_material_;
+  std::optional<base::Error> lost_;
 };
 
 base::Result<MeshFile> read_file(const MeshShape& shape, FileLog& files, Skin* skin, bool by_id = false) {
@@ -275,7 +285,9 @@ base::Result<MeshFile> read_file(const MeshShape& shape, FileLog& files, Skin* s
   const auto scene = import.read(aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
                                  aiProcess_SortByPType | aiProcess_FlipUVs | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
   if (!scene) return scene.error();
-  MeshFile file = MeshReader(**scene, shape, skin).read();
+  auto read = MeshReader(**scene, shape, skin).read();
+  if (!read) return read.error();
+  MeshFile file = std::move(*read);
   if (file.mesh.indices.empty() && !shape.submesh.empty() && !by_id) return read_file(shape, files, skin, true);
   if (file.mesh.indices.empty())
     return base::Error{shape.submesh.empty() ? "has no triangle" : fmt::format("has no submesh {}", base::in_quotes(shape.submesh))};

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "world/triangle_arrays.h"
 
 namespace sim {
 namespace {
@@ -93,6 +94,11 @@ Fault fault_of(const aiScene& scene) {
 base::Result<void> check_scene(const aiScene& scene) {
   if (const Fault fault = fault_of(scene); !fault.empty()) return base::Error{"is damaged: " + fault};
   return {};
+}
+
+base::Error lost_corner(const Eigen::Vector3d& at) {
+  return {fmt::format("is damaged: a triangle has a corner at {} {} {}, expected numbers up to {} m", at.x(), at.y(), at.z(),
+                      largest_coordinate)};
 }
 
 void drop_empty_faces(const aiScene& scene) {

@@ -4,6 +4,8 @@
 
 #include <assimp/scene.h>
 
+#include <Eigen/Core>
+
 #include "base/result.h"
 
 namespace sim {
@@ -12,6 +14,9 @@ namespace sim {
 // for what does not hold.
 inline constexpr unsigned deepest_node = 1000;
 base::Result<void> check_scene(const aiScene& scene);
+
+// A triangle has a corner there: not a number, or too far away. The line of its file.
+base::Error lost_corner(const Eigen::Vector3d& at);
 
 // Faces without corners: Assimp takes them for polygons, and the step that makes triangles ends the process over them. For a scene that was
 // checked, before its steps.

@@ -9,6 +9,7 @@
 
 #include "asset-reader/import.h"
 #include "asset-reader/jobs.h"
+#include "asset-reader/scene_check.h"
 #include "base/text.h"
 #include "world/triangle_arrays.h"
 
@@ -39,10 +40,11 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent
     collect(scene, *node.mChildren[i], transform, shape, wanted && !shape.submesh.empty(), out);
 }
 
-void finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
-  std::erase_if(mesh.triangles, [&](const auto& t) {
-    return !is_finite(mesh.vertices[t[0]]) || !is_finite(mesh.vertices[t[1]]) || !is_finite(mesh.vertices[t[2]]);
-  });
+// An error for a triangle with a corner that has no place.
+base::Result<void> finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t corner : t)
+      if (!is_finite(mesh.vertices[corner])) return lost_corner(mesh.vertices[corner]);
   for (auto& vertex : mesh.vertices) {
     if (!is_finite(vertex)) vertex.setZero();
   }
@@ -55,6 +57,7 @@ void finish_mesh(const MeshShape& shape, TriangleMesh& mesh) {
   if (shape.scale.prod() < 0) {  // mirrored: keep the outside outside
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   }
+  return {};
 }
 
 base::Result<TriangleMesh> read_mesh(const MeshShape& shape, FileLog& files, bool by_id = false) {
@@ -72,7 +75,7 @@ base::Result<TriangleMesh> read_mesh(const MeshShape& shape, FileLog& files, boo
   TriangleMesh mesh;
   collect(**scene, *(*scene)->mRootNode, aiMatrix4x4(), shape, false, mesh);
   if (mesh.triangles.empty() && !shape.submesh.empty() && !by_id) return read_mesh(shape, files, true);
-  finish_mesh(shape, mesh);
+  if (const auto finished = finish_mesh(shape, mesh); !finished) return finished.error();
   if (mesh.triangles.empty())
     return base::Error{shape.submesh.empty() ? "has no triangle" : fmt::format("has no submesh {}", base::in_quotes(shape.submesh))};
   return mesh;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "world/told_faults.h"
+
 namespace sim {
 
 namespace {
@@ -44,6 +46,12 @@ void fill(ShapeStore::Mesh& mesh, const TriangleMesh& from) {
   }
   for (const auto& t : from.triangles)
     if (has_corners(t)) mesh.indexes.insert(mesh.indexes.end(), {places[t[0]], places[t[1]], places[t[2]]});
+}
+
+// The line about a collision is the one about its file.
+base::Error missed(const std::string& path, const base::Error& why) {
+  static_cast<void>(is_first_fault(path));
+  return why;
 }
 
 }  // namespace
@@ -103,14 +111,14 @@ base::Result<ShapeInstance> make_shape(const CollisionDef& collision, ShapeStore
     shape.geom = ode::Geom(dCreatePlane(nullptr, plane->normal.x(), plane->normal.y(), plane->normal.z(), 0));
   } else if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
     auto field = shapes.field(*map);
-    if (!field) return field.error();
+    if (!field) return missed(map->path, field.error());
     shape.geom = ode::Geom(dCreateHeightfield(nullptr, (*field)->data.id(), 1));
     shape.data = *field;
     dGeomSetData(shape.geom.id(), field->get());  // for box_of; lives as long as the shape
     shape.needs_lock = true;
   } else {
     auto mesh = shapes.mesh(geometry);
-    if (!mesh) return mesh.error();
+    if (!mesh) return std::holds_alternative<MeshShape>(geometry) ? missed(std::get<MeshShape>(geometry).path, mesh.error()) : mesh.error();
     shape.geom = ode::Geom(dCreateTriMesh(nullptr, (*mesh)->data.id(), nullptr, nullptr, nullptr));
     shape.data = *mesh;
     shape.needs_lock = true;

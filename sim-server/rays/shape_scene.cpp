@@ -5,6 +5,8 @@
 #include <array>
 #include <cstring>
 
+#include "world/told_faults.h"
+
 namespace sim {
 namespace {
 
@@ -104,7 +106,8 @@ Geometry make_geometry(RTCDevice device, const GeometryDef& g, const Eigen::Isom
   }
   const auto mesh = cache.triangles(g);
   if (!mesh) {
-    notes.push_back(mesh.error().message + "; rays do not see it");
+    const auto* file = std::get_if<MeshShape>(&g);
+    if (file == nullptr || is_first_fault(file->path)) notes.push_back(mesh.error().message + "; rays do not see it");
     return nullptr;
   }
   return triangles(device, (*mesh)->vertices, (*mesh)->triangles, pose);

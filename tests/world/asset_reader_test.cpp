@@ -14,6 +14,7 @@
 #include "render/mesh_arrays.h"
 #include "support/paths.h"
 #include "support/world_files.h"
+#include "world/told_faults.h"
 #include "world/triangle_arrays.h"
 
 namespace sim {
@@ -225,6 +226,57 @@ TEST(AssetReader, a_face_that_names_a_vertex_that_is_not_there_is_told_and_ends_
       EXPECT_THAT(error.message, testing::HasSubstr("is damaged: mesh 0 \"\": face 1 names vertex " + corner + " of 3"));
   }
   EXPECT_EQ(AssetReader::mine().started(), readers);
+}
+
+// The text with the first `old` replaced.
+std::string changed(std::string text, const std::string& old, const std::string& now) {
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), now);
+}
+
+TEST(AssetReader, a_mesh_with_a_corner_that_is_no_number_or_too_far_away_is_refused_in_each_format) {
+  const WorldFiles files;
+  const std::string nan = std::string("\0\0\xc0\x7f", 4), one = std::string("\0\0\0\x3f", 4);
+  for (const auto& [file, old, now] : {std::tuple<std::string, std::string, std::string>{"cube.obj", "0.5", "nan"},
+                                       {"cube.obj", "0.5", "3e7"},
+                                       {"text.stl", "0.5", "nan"},
+                                       {"text.ply", "0.5", "nan"},
+                                       {"limb.dae", ">0 0 0 1 0 0", ">0 0 nan 1 0 0"},
+                                       {"cube.fbx", "0.5", "nan"},
+                                       {"binary.stl", one, nan},
+                                       {"binary.ply", one, nan},
+                                       {"cube.glb", one, nan}}) {
+    std::ifstream in(std::filesystem::path(paths::source_dir) / "tests/fuzz/assets" / file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const MeshShape shape{files.write("bad_" + file, changed(text, old, now)), "", false, {1, 1, 1}};
+    const auto triangles = TriangleCache().triangles(shape);
+    const auto mesh = read_mesh_file(shape);
+    ASSERT_FALSE(triangles) << file << " " << now;
+    ASSERT_FALSE(mesh) << file << " " << now;
+    for (const auto& error : {triangles.error(), mesh.error()})
+      EXPECT_THAT(error.message, testing::HasSubstr("is damaged: a triangle has a corner at ")) << file << " " << now;
+  }
+}
+
+TEST(AssetReader, a_gltf_face_that_names_a_vertex_that_is_not_there_is_told) {
+  const MeshShape shape{std::string(paths::source_dir) + "/tests/worlds/damaged_meshes/index_beyond.gltf", "", false, {1, 1, 1}};
+  const auto triangles = TriangleCache().triangles(shape);
+  const auto mesh = read_mesh_file(shape);
+  ASSERT_FALSE(triangles);
+  ASSERT_FALSE(mesh);
+  for (const auto& error : {triangles.error(), mesh.error()})
+    EXPECT_THAT(error.message, testing::HasSubstr("is damaged: a face names a vertex that is not there"));
+}
+
+TEST(AssetReader, the_first_fault_of_a_file_is_told_until_it_changes) {
+  const WorldFiles files;
+  const auto path = files.write("a.obj", "v");
+  EXPECT_TRUE(is_first_fault(path));
+  EXPECT_FALSE(is_first_fault(path));
+  std::filesystem::remove(path);
+  EXPECT_TRUE(is_first_fault(path));  // another state of it
+  EXPECT_FALSE(is_first_fault(path));
 }
 
 TEST(AssetReader, a_face_without_corners_is_left_out) {
