@@ -146,8 +146,15 @@ base::Result<void> add_named_gains(const std::vector<std::string>& files, sim::W
   return {};
 }
 
+int reject(const std::string& message) {
+  fail(message);
+  return 2;
+}
+
 int run(const Options& options, Signals& signals) {
   using namespace sim;
+  auto access = shm::parse_access(options.shm_mode, options.shm_group);
+  if (!access) return reject(access.error().message);
   const ModelPath model_path = ModelPath::from_environment(options.resource_paths, installed_worlds());
   auto loaded = load_world(options.world, model_path);
   if (!loaded) return fail(loaded.error().message);
@@ -160,8 +167,6 @@ int run(const Options& options, Signals& signals) {
   if (const auto added = add_named_gains(options.gains, loaded->world); !added) return fail(added.error().message);
   auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
 
-  auto access = shm::parse_access(options.shm_mode, options.shm_group);
-  if (!access) return fail(access.error().message);
   // Who only looks takes no server's place; ids of this kind cannot be asked for.
   const std::uint32_t server_id = options.check ? shm::first_unnamed_server + static_cast<std::uint32_t>(getpid()) : options.server_id;
   if (options.check) shm::remove_stale(shm::first_unnamed_server);
@@ -316,7 +321,7 @@ int serve(int argc, char** argv) {
   base::set_log_level(levels[options.verbosity]);
   try {
     Signals signals;
-    if (options.ends_with_input && !signals.follow_input()) return fail("--ends-with-input: expected a pipe as standard input");
+    if (options.ends_with_input && !signals.follow_input()) return reject("--ends-with-input: expected a pipe as standard input");
     return run(options, signals);
   } catch (const std::bad_alloc&) {
     return fail(options.world + ": not enough memory for this world");

@@ -84,10 +84,11 @@ def bad_requests():
     before = state()
     for words in (["pose", "nobody"], ["pose", "nobody", "1", "2", "0"], ["delete", "nobody"], ["contacts", "nobody"], ["echo", "nobody"],
                   ["info", "nobody"], ["velocity", "nobody", "1", "0", "0"], ["pose", robot, "nan", "0", "0"], ["pose", robot, "inf", "0", "0"],
-                  ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"], ["spawn", "/no/such/file.sdf"],
+                  ["velocity", f"{robot}::position2d", "nan", "0", "0"], ["spawn", "<sdf version='1.9'><model"],
                   ["velocity", f"{robot}::position2d", "1e308", "0", "0"], ["pose", robot, "1e9", "0", "0"],
                   ["spawn", "<sdf version='1.9'><model name='m'><pose>nan 0 0 0 0 0</pose><link name='l'/></model></sdf>"]):
         refused(*words)
+    refused("spawn", "/no/such/file.sdf", code=2, says="no such file")
     refused("screenshot", f"{work.name}/x.png", "--from", "1 2 3", code=2, says="expected 6 numbers")
     refused("spawn", course, "--pose", "1 2", code=2, says="expected X Y YAW")
     refused("pose", robot, "1", code=2)

@@ -39,6 +39,11 @@ void Control::fail(const std::string& message) {
   failed_ = true;
 }
 
+void Control::reject(const std::string& message) {
+  fail(message);
+  is_rejected_ = true;
+}
+
 void Control::print(const Json& value) const { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << '\n'; }
 
 std::optional<shm::Reply> Control::ask(const shm::Request& request, std::chrono::seconds limit, const std::string& command) {
@@ -100,7 +105,7 @@ void step(Control& control, std::int64_t steps, bool is_paced) {
 void pose(Control& control, const std::string& model, const std::vector<double>& values) {
   if (!values.empty()) {
     const auto request = shm::set_pose_request(model, values);
-    if (!request) return control.fail(request.error().message);
+    if (!request) return control.reject(request.error().message);
     control.ask(*request);
     return;
   }
@@ -148,12 +153,12 @@ void velocity(Control& control, const std::string& name, const std::vector<doubl
   std::vector<double> command = values;
   if (iface->type() == shm::IfaceType::position3d) {
     // vx vy vz and the yaw rate, as people fly.
-    if (values.size() != 4 && values.size() != 6) return control.fail("velocity of a position3d: expected VX VY VZ YAWRATE, or all six");
+    if (values.size() != 4 && values.size() != 6) return control.reject("velocity of a position3d: expected VX VY VZ YAWRATE, or all six");
     if (values.size() == 4) command = {values[0], values[1], values[2], 0, 0, values[3]};
   } else if (iface->type() != shm::IfaceType::position2d) {
     return control.fail("iface " + name + ": is a " + std::string(shm::to_text(iface->type())) + ", which takes no velocity");
   } else if (values.size() != 3) {
-    return control.fail("velocity of a position2d: expected VX VY VA, got " + std::to_string(values.size()) + " numbers");
+    return control.reject("velocity of a position2d: expected VX VY VA, got " + std::to_string(values.size()) + " numbers");
   }
   auto simulation = control.open(shm::IfaceType::simulation, "world");
   if (!simulation) return;
@@ -176,14 +181,14 @@ shm::Pose in_grid(shm::Pose first, std::size_t number, std::size_t count, double
 std::optional<std::string> spawn_one(Control& control, const shm::Iface& simulation, const SpawnOptions& options,
                                      const std::optional<shm::Pose>& pose) {
   auto request = shm::spawn_request(options.file, simulation.segment().is_shared());
-  if (!request) return control.fail(request.error().message), std::nullopt;
+  if (!request) return control.reject(request.error().message), std::nullopt;
   request->name = options.name;
   request->has_pose = pose.has_value();
   if (pose) request->pose = *pose;
   if (!options.gains.empty()) {
     constexpr std::uintmax_t largest = std::uintmax_t{1} << 20U;
     auto text = base::read_plain_file(options.gains, largest);
-    if (!text) return control.fail("gains " + base::in_quotes(options.gains) + ": " + text.error().message), std::nullopt;
+    if (!text) return control.reject("gains " + base::in_quotes(options.gains) + ": " + text.error().message), std::nullopt;
     request->gains = std::move(*text);
   }
   request->joints = base::join(options.joints, "\n");
@@ -199,7 +204,7 @@ void spawn(Control& control, const SpawnOptions& options) {
   std::optional<shm::Pose> pose;
   if (!options.pose.empty()) {
     const auto given = shm::pose_of(options.pose);
-    if (!given) return control.fail(given.error().message);
+    if (!given) return control.reject(given.error().message);
     pose = *given;
   }
   if (options.list.empty()) {
@@ -209,7 +214,7 @@ void spawn(Control& control, const SpawnOptions& options) {
     return;
   }
   const auto list = base::NameList::parse(options.list);
-  if (!list) return control.fail(list.error().message);
+  if (!list) return control.reject(list.error().message);
   Json names = Json::array();
   for (std::size_t i = 0; i < list->values.size() && !is_interrupted(); ++i) {
     SpawnOptions one = options;

@@ -77,10 +77,6 @@ void show(Control& control, const shm::Iface& iface) {
 std::optional<std::vector<double>> commands_of(Control& control, const shm::Iface& iface, const JointOptions& options) {
   const auto joints = joints_of(iface);
   std::vector<double> values(RTMSIM_JOINT_VALUES * joints.size(), 0.0);
-  const auto fail = [&](const std::string& line) {
-    control.fail(line);
-    return std::optional<std::vector<double>>();
-  };
   const auto mode = static_cast<double>(std::ranges::find(modes, options.mode) - modes.begin());
   const bool has_value = options.mode != "free" && options.mode != "brake";
   for (const std::string& word : options.settings) {
@@ -88,7 +84,9 @@ std::optional<std::vector<double>> commands_of(Control& control, const shm::Ifac
     const std::string name = word.substr(0, at);
     const auto value = at == std::string::npos ? std::nullopt : base::parse_number(word.substr(at + 1));
     if (has_value != (at != std::string::npos) || (has_value && !value))
-      return fail("joint " + base::in_quotes(word) + ": expected " + (has_value ? "JOINT=NUMBER" : "JOINT") + " with mode " + options.mode);
+      return control.reject("joint " + base::in_quotes(word) + ": expected " + (has_value ? "JOINT=NUMBER" : "JOINT") + " with mode " +
+                            options.mode),
+             std::nullopt;
     bool is_known = false;
     for (const auto& joint : joints) {
       if (name != "all" && name != name_of(joint)) continue;
@@ -99,7 +97,8 @@ std::optional<std::vector<double>> commands_of(Control& control, const shm::Ifac
     if (is_known) continue;
     std::vector<std::string> names;
     for (const auto& joint : joints) names.push_back(name_of(joint));
-    return fail("model " + options.model + " has no joint " + base::in_quotes(name) + "; it has " + base::join(names, ", "));
+    return control.fail("model " + options.model + " has no joint " + base::in_quotes(name) + "; it has " + base::join(names, ", ")),
+           std::nullopt;
   }
   return values;
 }

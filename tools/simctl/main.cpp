@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "base/command_line.h"
+#include "base/name_list.h"
 #include "base/terminal.h"
 #include "base/text.h"
 #include "shm/control.h"
@@ -130,7 +131,7 @@ void add_control(base::Command& app, Work& work) {
     work = [=](Control& c) {
       if (simctl::is_position_iface(c.server_id(), *robot)) return simctl::velocity(c, *robot, *speeds, *seconds);
       if (*seconds > 0)
-        return c.fail("velocity " + base::in_quotes(*robot) + ": is no position2d or position3d iface, --for goes with these");
+        return c.reject("velocity " + base::in_quotes(*robot) + ": is no position2d or position3d iface, --for goes with these");
       simctl::model_velocity(c, *robot, *speeds);
     };
   });
@@ -211,7 +212,11 @@ void add_control(base::Command& app, Work& work) {
       ->expected(1, 6)
       ->delimiter(' ');
   spawn->add_option("--for", options->list, "NAME=LIST: a model for each value, with {NAME} in FILE and --name filled in: robot=r0..r99")
-      ->type_name("NAME=LIST");
+      ->type_name("NAME=LIST")
+      ->check([](const std::string& text) {
+        const auto list = base::NameList::parse(text);
+        return list ? std::string() : list.error().message.substr(std::string_view("--for ").size());
+      });
   spawn->add_option("--spacing", options->spacing, "With --for: distance of the models in a square grid from --pose on [m]")
       ->capture_default_str()
       ->check(base::number_between(0.0, 1e6))
@@ -421,5 +426,5 @@ int main(int argc, char** argv) {
   if (const auto end = base::parse_command_line(app, "simctl", argc, argv, simctl::offers)) return *end;
   Control server(server_id, json);
   work(server);
-  return server.failed() ? 1 : 0;
+  return server.exit_code();
 }

@@ -55,7 +55,7 @@ void model_velocity(Control& control, const std::string& model, const std::vecto
     std::copy(v.begin(), v.begin() + 3, request.linear);
     std::copy(v.begin() + 3, v.end(), request.angular);
   } else {
-    return control.fail("velocity of a model: expected VX VY VA or VX VY VZ WX WY WZ, got " + std::to_string(v.size()) + " numbers");
+    return control.reject("velocity of a model: expected VX VY VA or VX VY VZ WX WY WZ, got " + std::to_string(v.size()) + " numbers");
   }
   control.ask(request);
 }

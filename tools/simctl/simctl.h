@@ -28,13 +28,15 @@ class Control {
   std::optional<shm::Iface> open(const std::string& name, std::optional<shm::IfaceType> preferred = {});
   std::optional<shm::Iface> open(shm::IfaceType type, const std::string& name);
   void fail(const std::string& message);
-  bool failed() const { return failed_; }
+  // The same of what the user has asked for: the exit code is that of a wrong command line.
+  void reject(const std::string& message);
+  int exit_code() const { return is_rejected_ ? 2 : failed_ ? 1 : 0; }
   void print(const nlohmann::ordered_json& value) const;
 
  private:
   std::uint32_t server_id_;
   bool json_;
-  bool failed_ = false;
+  bool failed_ = false, is_rejected_ = false;
 };
 
 // ---- control ----
