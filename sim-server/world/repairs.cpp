@@ -129,7 +129,8 @@ void take_mimic(pugi::xml_node node, Complaints& complaints) {
   const pugi::xml_node written = node.child("mimic");
   if (!written || std::string_view(node.name()) != "axis") return;
   const auto number = [&](const char* key, double otherwise) {
-    return number_of_mimic(written, describe_in_context(node.parent()), key, text_at(written, key), otherwise, complaints);
+    const pugi::xml_node text = written.child(key);
+    return text ? number_of_mimic(text, describe_in_context(node.parent()), key, text_of(text), otherwise, complaints) : otherwise;
   };
   const double multiplier = number("multiplier", 1), offset = number("offset", 0), reference = number("reference", 0);
   mark_mimic(node, written.attribute("joint").value(), multiplier, offset, reference);
@@ -194,7 +195,6 @@ void repair(pugi::xml_node node, Complaints& complaints) {
 double number_of_mimic(pugi::xml_node node, const std::string& joint, const char* key, const std::string& text, double otherwise,
                        Complaints& complaints) {
   constexpr double most = 1e6;
-  if (base::trim(text).empty()) return otherwise;
   const auto value = base::parse_number(text);
   if (value && std::abs(*value) <= most) return *value;
   complaints.warn(node, std::string("the ") + key + " of the <mimic> of " + joint + " must be a number up to 1e6, got " +

@@ -38,8 +38,7 @@ inline constexpr const char* initial_mark = "_initial";
 // The same for <mimic> of an axis, of version 1.11: the leader, and three numbers.
 inline constexpr const char* mimic_mark = "_mimic";
 inline constexpr const char* mimic_numbers_mark = "_mimic_numbers";
-// Of a <mimic> in any spelling; `otherwise` without text, and with a finding for what is no number that can be simulated. `joint`: as it is
-// named there.
+// Of a <mimic> in any spelling; `otherwise`, with a finding, for what is no number that can be simulated. `joint`: as it is named there.
 double number_of_mimic(pugi::xml_node node, const std::string& joint, const char* key, const std::string& text, double otherwise,
                        Complaints& complaints);
 // Sets these attributes of an axis.

@@ -117,7 +117,8 @@ void carry_mimic_plugins(pugi::xml_node model, Complaints& complaints) {
                                   ": one of them does not exist or does not move");
     } else if (!axis.attribute(mimic_mark) && !axis.child("mimic")) {
       const auto number = [&](const char* key, double otherwise) {
-        return number_of_mimic(plugin, "joint " + base::in_quotes(follower), key, text_at(plugin, key), otherwise, complaints);
+        const pugi::xml_node text = plugin.child(key);
+        return text ? number_of_mimic(text, "joint " + base::in_quotes(follower), key, text_of(text), otherwise, complaints) : otherwise;
       };
       const double multiplier = number("multiplier", 1), offset = number("offset", 0);
       mark_mimic(axis, leader, multiplier, offset, 0);

@@ -47,6 +47,8 @@ Fault wrong_limit(pugi::xml_node joint, const std::string& who) {
   for (const char* key : {"effort", "velocity"}) {
     if (!limit.attribute(key)) return "<limit> of " + who + " has no " + key;
   }
+  const pugi::xml_node safety = joint.child("safety_controller");
+  if (safety && !safety.attribute("k_velocity")) return "<safety_controller> of " + who + " has no k_velocity";
   return {};
 }
 
@@ -184,18 +186,50 @@ std::set<std::string, std::less<>> links_with_mass(pugi::xml_node robot) {
   return heavy;
 }
 
-// The library passes over such an <inertial> without a word.
-void drop_wrong_masses(pugi::xml_node robot, Complaints& complaints) {
+// What is wrong with the shape of a collision or visual.
+Fault wrong_shape(pugi::xml_node part, const std::string& who) {
+  static const std::map<std::string_view, std::vector<const char*>> needed = {
+      {"box", {"size"}}, {"cylinder", {"radius", "length"}}, {"sphere", {"radius"}}, {"mesh", {"filename"}}};
+  const pugi::xml_node shape = part.child("geometry").find_child([](pugi::xml_node node) { return node.type() == pugi::node_element; });
+  if (!shape) return "the " + std::string(part.name()) + " of " + who + " has no shape";
+  const auto known = needed.find(shape.name());
+  if (known == needed.end()) return "the " + std::string(part.name()) + " of " + who + " has the unknown shape <" + shape.name() + ">";
+  for (const char* key : known->second)
+    if (!shape.attribute(key)) return "<" + std::string(shape.name()) + "> of " + who + " has no " + key;
+  return wrong_number(shape, who);
+}
+
+// The library passes over them without a word.
+void drop_wrong_shapes(pugi::xml_node robot, Complaints& complaints) {
+  for (pugi::xml_node link : robot.children("link")) {
+    for (const char* kind : {"collision", "visual"}) {
+      for (pugi::xml_node part = link.child(kind), next; part; part = next) {
+        next = part.next_sibling(kind);
+        const Fault fault = wrong_shape(part, "link " + base::in_quotes(urdf_name(link)));
+        if (!fault) continue;
+        complaints.drop(part, *fault + "; the " + kind + " is left out");
+        link.remove_child(part);
+      }
+    }
+  }
+}
+
+// The library passes over such an <inertial> without a word. Returns the links that had one.
+std::set<std::string, std::less<>> drop_wrong_masses(pugi::xml_node robot, Complaints& complaints) {
+  std::set<std::string, std::less<>> links;
   for (pugi::xml_node link : robot.children("link")) {
     const Fault fault = wrong_number(link.child("inertial"), "link " + base::in_quotes(urdf_name(link)));
     if (!fault) continue;
     complaints.warn(link, *fault + "; its <inertial> is ignored");
     link.remove_child("inertial");
+    links.emplace(urdf_name(link));
   }
+  return links;
 }
 
-// Links that move and weigh nothing get the mass of a small ball: the library leaves them out with everything on them.
-void give_mass(pugi::xml_node robot, const Nodes& holders, Complaints& complaints) {
+// Links that move and weigh nothing get the mass of a small ball: the library leaves them out with everything on them. `told`: those that
+// have had a line.
+void give_mass(pugi::xml_node robot, const Nodes& holders, const std::set<std::string, std::less<>>& told, Complaints& complaints) {
   const auto heavy = links_with_mass(robot);
   std::vector<pugi::xml_node> given;
   for (pugi::xml_node link : robot.children("link")) {
@@ -207,7 +241,7 @@ void give_mass(pugi::xml_node robot, const Nodes& holders, Complaints& complaint
     inertial.append_child("mass").append_attribute("value") = "0.1";
     for (const char* key : {"ixx", "iyy", "izz"}) inertia.append_attribute(key) = "1e-4";
     for (const char* key : {"ixy", "ixz", "iyz"}) inertia.append_attribute(key) = "0";
-    given.push_back(link);
+    if (!told.contains(urdf_name(link))) given.push_back(link);
   }
   if (given.empty()) return;
   const std::size_t more = given.size() - 1;
@@ -216,6 +250,53 @@ void give_mass(pugi::xml_node robot, const Nodes& holders, Complaints& complaint
                                          : " and " + std::to_string(more) + " other links have";
   complaints.warn(given.front(), "link " + base::in_quotes(urdf_name(given.front())) + others + " no mass; 0.1 kg is taken" +
                                      (more > 0 ? " for each" : ""));
+}
+
+constexpr double least_mass = 2e-6;  // [kg] The library takes less for nothing, and leaves out the link with everything on it.
+
+void raise_small_masses(pugi::xml_node robot, Complaints& complaints) {
+  for (pugi::xml_node link : robot.children("link")) {
+    pugi::xml_attribute mass = link.child("inertial").child("mass").attribute("value");
+    const double value = base::parse_number(mass.value()).value_or(0);
+    if (!(value > 0 && value < least_mass)) continue;
+    complaints.warn(link, "link " + base::in_quotes(urdf_name(link)) + " has a mass of " + base::format_number(value) + " kg; " +
+                              base::format_number(least_mass) + " kg, the least, is taken");
+    mass = base::format_number(least_mass).c_str();
+  }
+}
+
+bool has_direction(pugi::xml_node axis) {
+  const auto xyz = parse_numbers(axis.attribute("xyz").value());
+  return xyz && xyz->size() == 3 && std::hypot((*xyz)[0], (*xyz)[1], (*xyz)[2]) > 1e-9;
+}
+
+// Numbers of joints that the library passes over, or makes several errors of.
+void replace_impossible_numbers(pugi::xml_node robot, Complaints& complaints) {
+  for (const pugi::xml_node joint : robot.children("joint")) {
+    const std::string who = "joint " + base::in_quotes(urdf_name(joint));
+    if (pugi::xml_node axis = joint.child("axis"); axis && !is_fixed(joint) && !has_direction(axis)) {
+      complaints.warn(joint, "xyz of <axis> of " + who + " must be three numbers that are not all zero, got " +
+                                 base::in_quotes(axis.attribute("xyz").value()) + "; 1 0 0 is taken");
+      axis.remove_attribute("xyz");
+      axis.append_attribute("xyz") = "1 0 0";
+    }
+    pugi::xml_attribute lower = joint.child("limit").attribute("lower"), upper = joint.child("limit").attribute("upper");
+    const double least = base::parse_number(lower.value()).value_or(0), most = base::parse_number(upper.value()).value_or(0);
+    if (lower && upper && least > most) {
+      complaints.warn(joint, "lower and upper of <limit> of " + who + " must ascend, got " + base::format_number(least) + " and " +
+                                 base::format_number(most) + "; they are exchanged");
+      const std::string text = lower.value();
+      lower = upper.value();
+      upper = text.c_str();
+    }
+    for (const char* key : {"effort", "velocity"}) {
+      pugi::xml_attribute limit = joint.child("limit").attribute(key);
+      if (base::parse_number(limit.value()).value_or(0) >= 0) continue;
+      complaints.warn(joint,
+                      std::string(key) + " of <limit> of " + who + " must not be negative, got " + limit.value() + "; it is not limited");
+      limit = "1e16";
+    }
+  }
 }
 
 // The library reads no infinities.
@@ -236,9 +317,12 @@ std::string urdf_for_library(pugi::xml_node written, Complaints& complaints) {
   Nodes links, holders;
   for (const pugi::xml_node link : robot.children("link")) links.emplace(urdf_name(link), link);
   for (const pugi::xml_node joint : robot.children("joint")) holders.emplace(child_of(joint), joint);
-  drop_wrong_masses(robot, complaints);
+  drop_wrong_shapes(robot, complaints);
+  const auto told = drop_wrong_masses(robot, complaints);
+  raise_small_masses(robot, complaints);
+  replace_impossible_numbers(robot, complaints);
   hang_below_frames(robot, links, holders);
-  give_mass(robot, holders, complaints);
+  give_mass(robot, holders, told, complaints);
   bound_limits(robot);
   for (pugi::xml_node joint : robot.children("joint")) {
     joint.remove_child("mimic");  // carry_mimics() reads what was written
@@ -261,7 +345,8 @@ void carry_mimics(pugi::xml_node robot, pugi::xml_node sdf, Complaints& complain
     const std::string leader = mimic.attribute("joint").value();
     const std::string own = "joint " + base::in_quotes(urdf_name(joint));
     const auto number = [&](const char* key, double otherwise) {
-      return number_of_mimic(sdf, own, key, mimic.attribute(key).value(), otherwise, complaints);
+      const pugi::xml_attribute text = mimic.attribute(key);
+      return text ? number_of_mimic(sdf, own, key, text.value(), otherwise, complaints) : otherwise;
     };
     if (const pugi::xml_node axis = axis_of(urdf_name(joint)); axis && axis_of(leader)) {
       const double multiplier = number("multiplier", 1), offset = number("offset", 0);

@@ -106,6 +106,11 @@ TEST(Urdf, links_that_move_and_have_no_mass_get_one_with_a_line) {
 }
 
 TEST(Urdf, an_inertial_that_is_no_number_is_ignored_with_a_line) {
+  const auto moving =
+      load(link("a") + link("b", "<inertial><mass value=''/></inertial>") + joint("continuous", ends + "<axis xyz='0 0 1'/>"));
+  ASSERT_TRUE(moving) << moving.error().message;
+  EXPECT_EQ(moving->findings.size(), 1U);
+  EXPECT_NEAR(moving->model.link("b")->mass, 0.1, 1e-12);
   const auto loaded = load(link("a", "<inertial><mass value='1kg'/></inertial>") + link("b") + joint("fixed", ends));
   ASSERT_TRUE(loaded) << loaded.error().message;
   ASSERT_EQ(loaded->findings.size(), 1U);
@@ -113,6 +118,71 @@ TEST(Urdf, an_inertial_that_is_no_number_is_ignored_with_a_line) {
             std::string::npos)
       << loaded->findings[0].text();
   EXPECT_NEAR(loaded->model.link("a")->mass, 1, 1e-9) << "of b";
+}
+
+TEST(Urdf, impossible_numbers_of_a_joint_have_one_line_each_and_the_robot_stays) {
+  struct Case {
+    std::string content, line;
+  };
+  for (const Case& each :
+       {Case{"<axis xyz='0 0 0'/><limit effort='1' velocity='1'/>",
+             "xyz of <axis> of joint \"j\" must be three numbers that are not all zero, got \"0 0 0\"; 1 0 0 is taken"},
+        Case{"<axis xyz='1e-9 0 0'/><limit effort='1' velocity='1'/>", "not all zero, got \"1e-9 0 0\"; 1 0 0 is taken"},
+        Case{"<axis/><limit effort='1' velocity='1'/>", "not all zero, got \"\"; 1 0 0 is taken"},
+        Case{"<axis xyz='0 0 nan'/><limit effort='1' velocity='1'/>", "not all zero, got \"0 0 nan\"; 1 0 0 is taken"},
+        Case{"<limit effort='-50' velocity='1'/>", "effort of <limit> of joint \"j\" must not be negative, got -50; it is not limited"},
+        Case{"<limit effort='1' velocity='-2'/>", "velocity of <limit> of joint \"j\" must not be negative, got -2; it is not limited"},
+        Case{"<limit lower='2' upper='1' effort='1' velocity='1'/>",
+             "lower and upper of <limit> of joint \"j\" must ascend, got 2 and 1; they are exchanged"},
+        Case{"<limit effort='1' velocity='1'/><dynamics damping='-1'/>", "<damping>"},
+        Case{"<limit effort='1' velocity='1'/><dynamics damping='1' friction='-1'/>", "<friction>"}}) {
+    const auto loaded = load(link("a") + link("b") + joint("revolute", ends + each.content));
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->findings.size(), 1U) << each.line;
+    EXPECT_NE(loaded->findings[0].text().find(each.line), std::string::npos) << loaded->findings[0].text();
+    EXPECT_NE(loaded->model.joint("j"), nullptr) << each.line;
+    EXPECT_NE(loaded->model.link("b"), nullptr) << each.line;
+  }
+}
+
+TEST(Urdf, links_that_weigh_almost_nothing_stay_with_a_line) {
+  const auto loaded_with = [](const std::string& kilograms) {
+    return load(link("a") +
+                link("b", "<inertial><mass value='" + kilograms +
+                              "'/><inertia ixx='1e-9' iyy='1e-9' izz='1e-9' ixy='0' ixz='0' iyz='0'/></inertial>") +
+                joint("continuous", ends + "<axis xyz='0 0 1'/>"));
+  };
+  for (const std::string kilograms : {"1e-12", "1e-6", "1.9e-6"}) {
+    const auto loaded = loaded_with(kilograms);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->findings.size(), 1U) << kilograms;
+    EXPECT_NE(loaded->findings[0].text().find(" kg; 2e-06 kg, the least, is taken"), std::string::npos) << loaded->findings[0].text();
+    ASSERT_NE(loaded->model.link("b"), nullptr) << kilograms;
+  }
+  const auto light = loaded_with("2e-6");
+  ASSERT_TRUE(light && light->findings.empty());
+  ASSERT_NE(light->model.link("b"), nullptr);
+  EXPECT_NEAR(light->model.link("b")->mass, 2e-6, 1e-12);
+}
+
+TEST(Urdf, shapes_that_mean_nothing_are_left_out_with_one_line_each) {
+  struct Case {
+    std::string shape, line;
+  };
+  for (const Case& each :
+       {Case{"<box size=''/>", "size of <box> of link \"a\" must be three numbers, got \"\"; the collision is left out"},
+        Case{"<cylinder radius='1'/>", "<cylinder> of link \"a\" has no length; the collision is left out"},
+        Case{"<sphere radius='nan'/>", "radius of <sphere> of link \"a\" must be a number, got \"nan\""},
+        Case{"<sphere radius='0'/>", "must be a positive number, got \"0\"; the collision is left out"},
+        Case{"<mesh/>", "<mesh> of link \"a\" has no filename; the collision is left out"},
+        Case{"<torus radius='1'/>", "the collision of link \"a\" has the unknown shape <torus>; the collision is left out"},
+        Case{"", "the collision of link \"a\" has no shape; the collision is left out"}}) {
+    const auto loaded = load(link("a", mass + "<collision><geometry>" + each.shape + "</geometry></collision>"));
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->findings.size(), 1U) << each.line;
+    EXPECT_NE(loaded->findings[0].text().find(each.line), std::string::npos) << loaded->findings[0].text();
+    EXPECT_TRUE(loaded->model.link("a")->collisions.empty());
+  }
 }
 
 TEST(Urdf, infinite_limits_are_none) {
@@ -136,7 +206,8 @@ TEST(Urdf, impossible_numbers_of_a_mimic_have_a_line_and_the_robot_stays) {
     bool follows = true;
   };
   for (const Case& each :
-       {Case{"multiplier='one'", "the multiplier of the <mimic> of joint \"other\" must be a number up to 1e6, got \"one\"; 1 is taken"},
+       {Case{"multiplier=''", "the multiplier of the <mimic> of joint \"other\" must be a number up to 1e6, got \"\"; 1 is taken"},
+        Case{"multiplier='one'", "the multiplier of the <mimic> of joint \"other\" must be a number up to 1e6, got \"one\"; 1 is taken"},
         Case{"offset='nan'", "the offset of the <mimic> of joint \"other\" must be a number up to 1e6, got \"nan\"; 0 is taken"},
         Case{"offset='3'", "joint \"one\": it would have to be at 3 to 4, beyond its limits 0 to 1; it moves on its own", false}}) {
     const auto loaded = load_with(each.numbers);
@@ -145,7 +216,6 @@ TEST(Urdf, impossible_numbers_of_a_mimic_have_a_line_and_the_robot_stays) {
     EXPECT_NE(loaded->findings[0].text().find(each.line), std::string::npos) << loaded->findings[0].text();
     EXPECT_EQ(loaded->model.joint("other")->mimic.has_value(), each.follows);
   }
-  EXPECT_TRUE(load_with("multiplier=''")->findings.empty());
 }
 
 TEST(Urdf, joints_mimic_others) {
