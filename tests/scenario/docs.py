@@ -2,6 +2,7 @@
 #   pages       links and names of files lead somewhere; the index has every page; the table of layers is that of include_rules_test,
 #               those of bundled components are those of their sources
 #   layers      writes the table of layers into docs/ARCHITECTURE.md
+#   components  writes the tables of bundled components into docs/components.md, all but the words of their last columns
 #   promises    each promise of docs/promises.md and docs/security.md names tests that exist, in ctest or, those by hand, as files below tests/
 import pathlib
 import re
@@ -71,7 +72,7 @@ def write_layers():
     (docs / "ARCHITECTURE.md").write_text(text[:start] + "\n".join(rows_of_layers()) + "\n" + text[end:])
 
 
-# (component, phase), (component, "out port", type) and (component, parameter, default), from the sources; those of drives and rangers are in common files.
+# The table and the cells of each row that are in the sources; those of drives and rangers are in common files. Of the words no cell: None.
 def facts_of_components():
     sources = [*sorted((source / "iface-components").glob("rtc_*.cpp")), source / "clients/obstacle-avoidance/laser_obstacle_avoid.cpp",
                source / "clients/box-stacker/box_stacker.cpp", source / "clients/pilot/waypoint_pilot.cpp", source / "clients/way-points/way_points.cpp", source / "clients/warehouse/porter.cpp", source / "clients/video-player/video_player.cpp"]
@@ -80,19 +81,21 @@ def facts_of_components():
         text, header = file.read_text(), file.with_suffix(".h").read_text()
         name = re.search(r'type_name(?: = |", )"(\w+)"', text)[1]
         phase = {"sensor_phase": "0", "command_phase": "2"}.get((re.search(r"\.phase = iface::(\w+)", text) or ["", ""])[1]) or re.search(r'sim_time\.phase", "(\d+)"', text)[1]
-        yield "component", name, phase
+        device = re.search(r'\.device = "([^"]*)"', text)
+        yield "Components", [f"`{name}`", None, phase, f"`{device[1]}`" if device else ""]
         for way, port, member in re.findall(r'add(In|Out)Port\("(\w+)", (\w+)\)', text):
-            yield "port", name, f"{way.lower()} `{port}`", re.search(rf"Port<([\w:]+)> {member};", header)[1]
+            type = re.search(rf"Port<([\w:]+)> {member};", header)[1]
+            yield "Ports", [f"`{name}`", f"{way.lower()} `{port}`", f"`{type}`", None]
         if velocity := re.search(r"Drive\w*<(RTC::Timed\w+)", header):
-            yield "port", name, "in `velocity`", velocity[1]
+            yield "Ports", [f"`{name}`", "in `velocity`", f"`{velocity[1]}`", None]
         texts = text + (ranger if "RangerComponent" in header else "")
         for port, service in re.findall(r'registerProvider\("(\w+)", "([\w:]+)"', texts) + re.findall(r'registerProvider\(value\("(\w+)"\)\.c_str\(\), \(module \+ "(\w+)"', text):
-            yield "port", name, f"provides `{port}`", service
+            yield "Ports", [f"`{name}`", f"provides `{port}`", f"`{service}`", None]
         for port, service in re.findall(r'registerConsumer\("(\w+)", "([\w:]+)"', text):
-            yield "port", name, f"uses `{port}`", service
+            yield "Ports", [f"`{name}`", f"uses `{port}`", f"`{service}`", None]
         listed = drive if "drive_parameters()" in text else text
         for parameter, default in re.findall(r'\{"(\w+)", "([^"]*)", "(?:int|double|string)"', listed) + re.findall(r'"conf\.default\.(\w+)", "([^"]*)"', text):
-            yield "parameter", name, parameter, default
+            yield "Parameters", [f"`{name}`", f"`{parameter}`", default, None]
 
 
 # Types and services of the interface guidelines: the table has each, and says of those that no component has that they have no device.
@@ -107,17 +110,46 @@ def check_guideline():
         problems.append(f"docs/components.md: types of the interface guidelines: {name}: {'is no type, or a service that a component has' if name in named else 'is missing'}")
 
 
+to_be_written = "(to be written)"
+
+
+def key_of(cells):
+    return cells[0], "" if cells[1] is None else cells[1]
+
+
+# A table with the cells of the sources: its words and the order of its rows stay, new rows come after those of their component.
+def made_table(rows, facts):
+    is_list = facts[0][1] is None
+    words = {(row[0], "" if is_list else row[1]): row for row in rows}
+    keys = [key for key in words if any(key_of(row) == key for row in facts)]
+    for row in facts:
+        if (key := key_of(row)) not in keys:
+            keys.insert(max((i + 1 for i, known in enumerate(keys) if known[0] == key[0]), default=len(keys)), key)
+    lines = []
+    for key in keys:
+        fresh = next(row for row in facts if key_of(row) == key)
+        cells = [(words[key][i] if key in words else to_be_written) if cell is None else cell for i, cell in enumerate(fresh)]
+        lines.append("|" + "".join(f" {cell} |" if cell else " |" for cell in cells) + "\n")
+    return "".join(lines)
+
+
+def made_components():
+    facts, text = {}, (docs / "components.md").read_text()
+    for table, row in facts_of_components():
+        facts.setdefault(table, []).append(row)
+    for table, rows in facts.items():
+        start = text.index(f"\n## {table}\n")
+        shown = re.compile(r"^(?:\| `\w+` \|.*\n)+", re.M).search(text, start)
+        shown_rows = [[cell.strip() for cell in re.split(r"(?<!\\)\|", line[1:-1])] for line in shown[0].splitlines()]
+        text = text[:shown.start()] + made_table(shown_rows, rows) + text[shown.end():]
+    return text
+
+
 def check_components():
-    shown = set()
-    for section in (docs / "components.md").read_text().split("\n## ")[1:]:
-        if section.split("\n")[0] not in ("Components", "Ports", "Parameters"):
-            continue
-        for line in re.findall(r"^\| (`\w+` \|.*) \|$", section, re.M):
-            cells = [cell.strip() for cell in line.split("|")]
-            name, first = cells[0].strip("`"), cells[1].strip("`")
-            shown.add({"Components": ("component", name, cells[2]), "Ports": ("port", name, cells[1], cells[2].strip("`")), "Parameters": ("parameter", name, first, cells[2])}[section.split("\n")[0]])
-    for row in sorted(shown ^ set(facts_of_components())):
-        problems.append(f"docs/components.md: {row}: {'not in the sources' if row in shown else 'is missing'}")
+    shown, made = (docs / "components.md").read_text().splitlines(), made_components().splitlines()
+    for row in sorted(set(shown) ^ set(made)):
+        problems.append(f"docs/components.md: {row}: {'not as in the sources' if row in shown else 'is missing'} (docs.py components . writes it)")
+    problems.extend(f"docs/components.md: {row}: expected words instead of {to_be_written}" for row in shown if to_be_written in row)
 
 
 def check_pages():
@@ -165,6 +197,8 @@ def check_promises(build):
 
 if mode == "layers":
     write_layers()
+elif mode == "components":
+    (docs / "components.md").write_text(made_components())
 elif mode == "pages":
     check_pages()
 else:
