@@ -8,7 +8,7 @@ if(RTMSIM_SANITIZE MATCHES address)
   endforeach()
   set(python_sanitizer ";LD_PRELOAD=${python_sanitizer};ASAN_OPTIONS=detect_leaks=0:verify_asan_link_order=0")
 endif()
-foreach(file python/world_test.py python/process_test.py python/run_test.py python/env_test.py python/plugin_test.py python/page_test.py python/component_test.py python/types_test.py python/service_test.py python/fsm_test.py python/sdo_test.py python/context_test.py python/names_test.py python/hostile_test.py python/old_sources_test.py python/styles_test.py python/classic_test.py python/stubs_test.py)
+foreach(file python/world_test.py python/arguments_test.py python/process_test.py python/run_test.py python/env_test.py python/plugin_test.py python/page_test.py python/component_test.py python/types_test.py python/service_test.py python/fsm_test.py python/sdo_test.py python/context_test.py python/names_test.py python/hostile_test.py python/old_sources_test.py python/styles_test.py python/classic_test.py python/stubs_test.py)
   string(REGEX REPLACE "^python/|_test.py$" "" name ${file})
   add_test(NAME python.${name}
     COMMAND ${Python_EXECUTABLE} -B -m pytest -q -p no:cacheprovider ${CMAKE_CURRENT_SOURCE_DIR}/${file})

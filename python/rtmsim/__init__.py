@@ -10,7 +10,8 @@ Units: m, rad, s, kg, N. x is forward, y left, z up. Times are simulated seconds
 from __future__ import annotations
 
 from ._core import Error, NotFound, ServerDied, TimedOut
-from .world import Drive, Joints, Pose, World, step_all
+from .pose import Pose
+from .world import World, step_all
 
 __version__ = "0.1.0"
 __all__ = [
@@ -28,7 +29,9 @@ TimedOut.__doc__ = "The simulator did not answer in time, or simulated time did 
 # What few programs need, or what imports numpy, is imported with its first use: import rtmsim takes a few milliseconds.
 _later = {
     "BatchEnv": ".env",
+    "Drive": ".drive",
     "Env": ".env",
+    "Joints": ".joints",
     "Recording": ".recording",
     "Result": ".running",
     "run": ".running",

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import time
 
-from ._core import Error, ServerDied, Simulator, TimedOut
+from ._core import Error, ServerDied, Simulator, TimedOut, path, shown
 
 lowest_id, highest_id = 5000, 9999  # those below are for people and their scripts
 _next = [os.getpid() * 7]
@@ -40,6 +40,27 @@ def program(name: str) -> str:
     return found
 
 
+def listed(what: str, given) -> list:
+    """A list of what was given, unless that is a text or no list."""
+    if not isinstance(given, (str, bytes)):
+        try:
+            return list(given)
+        except TypeError:
+            pass
+    raise Error(f"{what}: expected a list, got {shown(given)}")
+
+
+def files(what: str, given) -> list[str]:
+    """Of one file, or of a list of them."""
+    many = [given] if isinstance(given, (str, bytes, os.PathLike)) else listed(what, given)
+    return [path(what, one) for one in many]
+
+
+def words(what: str, given) -> list[str]:
+    """Words of a command line."""
+    return [str(one) for one in listed(what, given)]
+
+
 class OwnServer:
     """Starts a simulator and waits until it answers, at most `timeout` seconds of real time."""
 
@@ -56,10 +77,10 @@ class OwnServer:
             with open(file, "w", encoding="utf-8") as out:
                 out.write(world)
             world = file
-        words = ["--paused", "--rtf", "0", "--seed", str(seed), "--ends-with-input"]
-        for path in resource_path:
-            words += ["--resource-path", os.fspath(path)]
-        words += [str(option) for option in options]
+        line = ["--paused", "--rtf", "0", "--seed", str(seed), "--ends-with-input"]
+        for folder in resource_path:
+            line += ["--resource-path", folder]
+        line += options
         deadline = time.monotonic() + timeout
         try:
             for _ in range(50):
@@ -67,7 +88,7 @@ class OwnServer:
                 _next[0] += 1
                 if os.path.exists(f"/dev/shm/rtmsim-{os.getuid()}-{self.server_id}.simulation.world"):
                     continue
-                if self._start(subprocess, world, words, deadline, timeout):
+                if self._start(subprocess, world, line, deadline, timeout):
                     return
             raise Error("no simulator ID is free")
         except BaseException:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy
 
+from . import _core
 from ._core import Error
 from .world import World, step_all
 
@@ -159,11 +160,9 @@ class Env(Base):
     def __init__(self, world, *, physics_steps: int = 10, time_limit: float | None = None, render_mode: str | None = None, **world_options):
         if render_mode not in (None, "rgb_array"):
             raise Error(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
-        if physics_steps < 1:
-            raise Error(f"physics_steps must be at least 1, got {physics_steps}")
         self.render_mode = render_mode
-        self.physics_steps = int(physics_steps)
-        self.time_limit = time_limit
+        self.physics_steps = _core.whole("physics_steps", physics_steps, 1)
+        self.time_limit = None if time_limit is None else _core.seconds("time_limit", time_limit)
         self._owns_world = not isinstance(world, World)
         self.world = World(world, **world_options) if self._owns_world else world
 
@@ -184,7 +183,7 @@ class Env(Base):
 
     def reset(self, *, seed: int | None = None, options: dict | None = None):
         """Returns (observation, info)."""
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else _core.seed(seed))
         self.world.reset(int(self.np_random.integers(1 << 62)))
         self.start(self.world, self.np_random)
         return self.observe(self.world), {"time": self.world.time}
@@ -220,9 +219,13 @@ class BatchEnv:
 
     def __init__(self, make, count: int):
         self.envs: list[Env] = []
+        count = _core.whole("count", count, 1)
         try:
             for _ in range(count):
-                self.envs.append(make())
+                env = make()
+                if not isinstance(env, Env):
+                    raise Error(f"BatchEnv: expected a function that returns an Env, got {_core.shown(env)}")
+                self.envs.append(env)
         except BaseException:
             self.close()
             raise
@@ -232,7 +235,8 @@ class BatchEnv:
 
     def reset(self, *, seed: int | None = None):
         """Environment i gets seed + i. Returns (observations, infos)."""
-        made = [env.reset(seed=None if seed is None else seed + number) for number, env in enumerate(self.envs)]
+        first = None if seed is None else _core.seed(seed)
+        made = [env.reset(seed=None if first is None else first + number) for number, env in enumerate(self.envs)]
         return _stack([one[0] for one in made]), [one[1] for one in made]
 
     def step(self, actions):

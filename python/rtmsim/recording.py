@@ -2,10 +2,10 @@
 from __future__ import annotations
 
 import fnmatch
-import os
 
 import numpy
 
+from . import _core
 from ._cdr import decoder
 from ._core import Error, NotFound
 from ._recording import File
@@ -23,10 +23,11 @@ class Recording:
     """
 
     def __init__(self, file):
-        self.file = os.fspath(file)
+        self.file = _core.path("file", file)
         self._file = File(self.file)
         self._channels = self._file.channels
         self._decoders: dict = {}
+        self._is_iterated = False
 
     def __enter__(self) -> Recording:
         return self
@@ -78,10 +79,10 @@ class Recording:
 
     def attachment(self, name: str) -> bytes:
         """Content of an attachment."""
-        return self._open().attachment(name)
+        return self._open().attachment(_core.text("name", name))
 
     def _ids(self, topic: str) -> list[int]:
-        if ":" in topic and not topic.startswith("/"):
+        if ":" in _core.text("topic", topic) and not topic.startswith("/"):
             topic = "/" + topic.replace(":", "/", 1)
         ids = [number for number, channel in self._channels.items() if fnmatch.fnmatchcase(channel["topic"], topic)]
         if not ids:
@@ -91,17 +92,26 @@ class Recording:
     def messages(self, *topics: str, start: float = 0.0, end: float | None = None):
         """Yields (topic, time [s], value) in the order of time. Values are dicts; sequences of numbers in them are numpy arrays. `topics`:
         names or patterns with *; "COMPONENT:PORT" is a name, too; none: all that can be decoded."""
-        file = self._open()
         ids = sorted({number for topic in topics for number in self._ids(topic)})
-        file.seek(ids, max(0, round(start * 1e9)), (1 << 64) - 1 if end is None else max(0, round(end * 1e9)))
-        while True:
-            batch = file.read(1000)
-            for number, time, data in batch:
-                decode = self._decoder(number, bool(topics))
-                if decode is not None:
-                    yield self._channels[number]["topic"], time / 1e9, decode(data)
-            if len(batch) < 1000:
-                return
+        first = round(_core.seconds("start", start) * 1e9)
+        last = (1 << 64) - 1 if end is None else round(_core.seconds("end", end) * 1e9)
+        # Each of several iterators at a time has a place of its own in the file.
+        own = File(self.file) if self._is_iterated else None
+        file = own or self._open()
+        self._is_iterated = True
+        try:
+            file.seek(ids, first, last)
+            while True:
+                batch = file.read(1000)
+                for number, time, data in batch:
+                    decode = self._decoder(number, bool(topics))
+                    if decode is not None:
+                        yield self._channels[number]["topic"], time / 1e9, decode(data)
+                if len(batch) < 1000:
+                    return
+        finally:
+            if own is None:
+                self._is_iterated = False
 
     def _decoder(self, number: int, is_asked_for: bool):
         if number not in self._decoders:

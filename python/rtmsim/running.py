@@ -6,8 +6,9 @@ import os
 import shlex
 from dataclasses import dataclass, field
 
-from ._core import Error, TimedOut
-from ._server import program
+from . import _core
+from ._core import Error, TimedOut, path
+from ._server import listed, program, words as words_of
 
 
 @dataclass(frozen=True)
@@ -62,36 +63,43 @@ def run(system, world, *, expect=None, seeds=None, seed: int = 1, duration: floa
         options=(), timeout: float | None = None):
     """Runs a saved system (RTSProfile) in a world in lock step and returns a Result, or with `seeds` a list of them.
 
-    `expect`: file of expectations (YAML), its text, or a list of dicts: [{"path_length": {"model": "robot", "min": 5}}]. `seeds`: whole numbers, each a run; `jobs` of them at a time. `duration`:
-    simulated seconds. `record`: file (MCAP) for all ports, logs and the world; with seeds NAME.SEED.mcap. `options`: more words for
-    rtse run. `timeout`: real seconds for each run; None: 60 and ten times the duration. A run that fails is no error: see
+    `expect`: file of expectations (YAML), its text, or a list of dicts: [{"path_length": {"model": "robot", "min": 5}}].
+    `seeds`: whole numbers, each a run; `jobs` of them at a time. `duration`: simulated seconds. `record`: file (MCAP) for all ports, logs
+    and the world; with seeds NAME.SEED.mcap. `options`: more words for rtse run. `timeout`: real seconds for each run; None: 60 and ten times the duration. A run that fails is no error: see
     Result.passed. Error: a file cannot be read, or the options do not fit. Ctrl-C ends the run and everything that it started.
     """
     import tempfile
     with tempfile.TemporaryDirectory(prefix="rtmsim-") as folder:
-        words = [program("rtse"), "run", os.fspath(system), "-w", os.fspath(world), "-d", f"{duration:.17g}", *map(str, options)]
+        duration = _core.seconds("duration", duration)
+        words = [program("rtse"), "run", path("system", system), "-w", path("world", world), "-d", f"{duration:.17g}",
+                 *words_of("options", options)]
         if expect is not None:
             words += ["-x", _expectations(expect, folder)]
-        limit = timeout if timeout is not None else 60.0 + 10.0 * duration
+        limit = _core.seconds("timeout", timeout) if timeout is not None else 60.0 + 10.0 * duration
+        record = path("record", record) if record else ""
         if seeds is None:
-            return _run_one(words, seed, os.fspath(record) if record else "", limit)
-        return _run_many(words, [int(one) for one in seeds], os.fspath(record) if record else "", limit, jobs)
+            return _run_one(words, _core.seed(seed), record, limit)
+        return _run_many(words, [_core.seed(one) for one in listed("seeds", seeds)], record, limit, _core.whole("jobs", jobs, 1))
 
 
 def _expectations(expect, folder: str) -> str:
-    if isinstance(expect, os.PathLike) or (isinstance(expect, str) and "\n" not in expect and not expect.lstrip().startswith("-")):
-        return os.fspath(expect)
+    if isinstance(expect, (bytes, os.PathLike)) or (isinstance(expect, str) and "\n" not in expect and not expect.lstrip().startswith("-")):
+        return path("expect", expect)
+    if not isinstance(expect, str):
+        try:
+            expect = json.dumps(listed("expect", expect))  # JSON is YAML
+        except (TypeError, ValueError) as problem:
+            raise Error(f"expect: expected a file, a text or a list of dicts: {problem}") from None
     file = os.path.join(folder, "expect.yaml")
     with open(file, "w", encoding="utf-8") as out:
-        # JSON is YAML.
-        out.write(expect if isinstance(expect, str) else json.dumps(expect))
+        out.write(expect)
     return file
 
 
 def _run_many(words, seeds, record, limit, jobs):
     from concurrent.futures import ThreadPoolExecutor
     stem, ending = os.path.splitext(record)
-    with ThreadPoolExecutor(max(1, jobs)) as pool:
+    with ThreadPoolExecutor(jobs) as pool:
         started = [pool.submit(_run_one, words, seed, f"{stem}.{seed}{ending or '.mcap'}" if record else "", limit) for seed in seeds]
         try:
             return [one.result() for one in started]

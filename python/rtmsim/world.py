@@ -3,11 +3,16 @@ from __future__ import annotations
 
 import atexit
 import json
-import math
 import weakref
-from collections import namedtuple
 
-from ._core import Device, Error, NotFound, Simulator
+from . import _core
+from ._core import Device, Error, NotFound, Simulator, TimedOut
+from .pose import Pose, Velocity
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .drive import Drive
+    from .joints import Joints
 
 _worlds: weakref.WeakSet = weakref.WeakSet()
 
@@ -16,157 +21,6 @@ _worlds: weakref.WeakSet = weakref.WeakSet()
 def _close_all() -> None:
     for world in list(_worlds):
         world.close()
-
-
-class Pose(namedtuple("Pose", "x y z qw qx qy qz")):
-    """A pose in the world: position [m] and unit quaternion. numpy.array(pose) has the shape (7,)."""
-
-    __slots__ = ()
-
-    @property
-    def yaw(self) -> float:
-        """Rotation about z [rad], in (-pi, pi]."""
-        return math.atan2(2 * (self.qw * self.qz + self.qx * self.qy), 1 - 2 * (self.qy * self.qy + self.qz * self.qz))
-
-    @property
-    def position(self) -> tuple:
-        """x, y, z [m]."""
-        return self[:3]
-
-
-class Velocity(namedtuple("Velocity", "vx vy vz wx wy wz")):
-    """Linear [m/s] and angular [rad/s] velocity along the axes of the world."""
-
-    __slots__ = ()
-
-
-class Drive:
-    """The drive of a robot: a position2d or position3d iface. World.drive() makes it.
-
-    The robot follows the newest command of all clients. It stops when this World closes.
-    """
-
-    def __init__(self, world: World, device: Device):
-        self._world = world
-        self._device = device
-        self._send = device.velocity
-        self.name = device.name
-        self.is_3d = device.type == "position3d"
-
-    def velocity(self, vx: float, vy: float = 0.0, va: float = 0.0, *, duration: float = 0.0) -> None:
-        """Commands a velocity along the robot's axes: vx, vy [m/s], va [rad/s] about z. `duration`: simulated seconds after which the
-        robot stops by itself; 0: until the next command. A position3d moves horizontally."""
-        if self.is_3d:
-            self._device.command(1, [vx, vy, 0.0, 0.0, 0.0, va], duration)
-        else:
-            self._send(vx, vy, va, duration)
-
-    def velocity3d(self, linear, angular=(0.0, 0.0, 0.0), *, duration: float = 0.0) -> None:
-        """The same with three numbers each, for a position3d: linear [m/s], angular [rad/s], body frame."""
-        self._device.command(1, [*linear, *angular], duration)
-
-    def stop(self) -> None:
-        """Commands the velocity 0."""
-        self.velocity(0.0)
-
-    @property
-    def odometry(self):
-        """By the wheel encoders: float64 array x y a [m, rad], shape (3,). Of a position3d a pose, shape (7,)."""
-        return self._device.value("odometry", self._world.timeout)
-
-    @property
-    def measured_velocity(self):
-        """By the encoders, robot frame: float64 array vx vy va, shape (3,). Of a position3d shape (6,)."""
-        return self._device.value("velocity", self._world.timeout)
-
-    @property
-    def stalled(self) -> bool:
-        """The robot is commanded to move, but it does not."""
-        return bool(self.read().get("stalled", False))
-
-    def read(self) -> dict:
-        """All fields of the latest sample, as World.read()."""
-        return self._device.read(self._world.timeout)
-
-    def set_odometry(self, x: float, y: float, a: float) -> None:
-        """Sets the odometry [m, rad]."""
-        self._world._line().reset_odometry(self.name, [x, y, a], self._world.timeout)
-
-    def motors(self, on: bool) -> None:
-        """Switches the motors on or off."""
-        self._world._line().set_motors(self.name, on, self._world.timeout)
-
-
-class Joints:
-    """The joints of an arm, a hand or another model: a joints iface. World.joints() makes it.
-
-    Arrays have one element per joint, in the order of `names`. Units: rad, rad/s, N m of joints that turn; m, m/s, N of those that slide.
-    """
-
-    _modes = {"position": 1, "velocity": 2, "effort": 3, "free": 4, "brake": 5}
-
-    def __init__(self, world: World, device: Device):
-        self._world = world
-        self._device = device
-        self.name = device.name
-        joints = device.info()["joints"]
-        self.names: list[str] = list(joints["name"])
-        self.lower, self.upper = joints["lower"], joints["upper"]
-        self.max_velocity, self.max_effort = joints["max_velocity"], joints["max_effort"]
-
-    def read(self) -> dict:
-        """Arrays `position`, `velocity`, `effort`, `target`, `mode`, `status`, each of the shape (joints,)."""
-        return self._device.value("joints", self._world.timeout)
-
-    @property
-    def position(self):
-        """float64 array (joints,) [rad or m]."""
-        return self.read()["position"]
-
-    @property
-    def velocity(self):
-        """float64 array (joints,) [rad/s or m/s]."""
-        return self.read()["velocity"]
-
-    @property
-    def effort(self):
-        """Of the motors in the last step: float64 array (joints,) [N m or N]."""
-        return self.read()["effort"]
-
-    def command(self, position=None, velocity=None, effort=None) -> None:
-        """Commands one of position, velocity and effort: a number for each joint, or a dict of numbers by joint name. Joints that the
-        dict does not name keep their command."""
-        given = [(mode, values) for mode, values in (("position", position), ("velocity", velocity), ("effort", effort))
-                 if values is not None]
-        if len(given) != 1:
-            raise Error("joints: expected one of position, velocity and effort")
-        mode, values = given[0]
-        self._command(mode, self._by_index(values))
-
-    def brake(self, *names: str) -> None:
-        """Stops the joints with their brakes; without names all."""
-        self._command("brake", {self._index(name): 0.0 for name in names or self.names})
-
-    def _index(self, name: str) -> int:
-        try:
-            return self.names.index(name)
-        except ValueError:
-            raise NotFound(f"{self.name} has no joint {name!r}; it has {', '.join(self.names)}") from None
-
-    def _by_index(self, values) -> dict:
-        if hasattr(values, "items"):
-            return {self._index(name): float(value) for name, value in values.items()}
-        values = [float(value) for value in values]
-        if len(values) != len(self.names):
-            raise Error(f"{self.name}: expected {len(self.names)} numbers, one per joint, got {len(values)}")
-        return dict(enumerate(values))
-
-    def _command(self, mode: str, values: dict) -> None:
-        numbers = [0.0] * (4 * len(self.names))
-        for index, value in values.items():
-            numbers[4 * index] = self._modes[mode]
-            numbers[4 * index + 1] = value
-        self._device.command(3, numbers, 0.0)
 
 
 class World:
@@ -184,7 +38,7 @@ class World:
     """
 
     def __init__(self, world=None, *, seed: int = 1, server_id: int | None = None, timeout: float = 30.0, resource_path=(), options=()):
-        self.timeout = float(timeout)
+        self.timeout = timeout
         self._own = None
         self._devices: dict = {}
         self._found: dict = {}  # ifaces by kind and model; forgotten when models come or go
@@ -192,16 +46,10 @@ class World:
         if (world is None) == (server_id is None):
             raise Error("World: expected a world, or the server_id of a running simulator")
         if world is None:
-            self._simulator = Simulator(int(server_id))
+            self._simulator = Simulator(server_id)
         else:
-            from os import PathLike, fspath
-
-            from ._server import OwnServer
-            if seed < 0 or seed >= 1 << 64:
-                raise Error(f"seed must be 0 to 2^64 - 1, got {seed}")
-            if isinstance(resource_path, (str, PathLike)):
-                resource_path = [resource_path]
-            self._own = OwnServer(fspath(world), int(seed), resource_path, options, self.timeout)
+            from ._server import OwnServer, files, words
+            self._own = OwnServer(_core.path("world", world), _core.seed(seed), files("resource_path", resource_path), words("options", options), self.timeout)
             self._simulator = self._own.simulator
         self._step = self._simulator.step
         _worlds.add(self)
@@ -246,24 +94,31 @@ class World:
             raise Error("the World is closed")
         return self._simulator
 
+    @property
+    def timeout(self) -> float:
+        """Real seconds that a call waits, as the argument of World()."""
+        return self._timeout
+
+    @timeout.setter
+    def timeout(self, seconds: float) -> None:
+        self._timeout = _core.seconds("timeout", seconds)
+
     # ---- time
 
     def step(self, count: int = 1) -> float:
         """Makes `count` physics steps as fast as possible and returns the simulated time [s]. All sensors that were due have published.
         A running simulation is paused."""
-        return self._step(count, self.timeout)
+        return self._step(count, self._timeout)
 
     def advance(self, seconds: float) -> float:
         """Makes the steps of this many simulated seconds, at least one."""
-        return self.step(max(1, round(seconds / self.step_size)))
+        return self.step(max(1, round(_core.number("seconds", seconds) / self.step_size)))
 
     def reset(self, seed: int | None = None) -> None:
         """World and time as at the start. `seed`: of all noise from now on; None: as before. The world is then the same as that of a
         simulator that was started with this seed. Spawned models are gone, deleted ones are back, faults have ended."""
-        if seed is not None and not 0 <= seed < 1 << 64:
-            raise Error(f"seed must be 0 to 2^64 - 1, got {seed}")
-        self._found.clear()
         self._line().reset(False, seed, self.timeout)
+        self._found.clear()
 
     def pause(self) -> None:
         """Pauses the simulation."""
@@ -272,7 +127,7 @@ class World:
     def run(self, rtf: float | None = None) -> None:
         """Lets time go on by itself. `rtf`: real-time factor; 0: as fast as possible; None: as before (0 with a simulator of its own)."""
         if rtf is not None:
-            self._line().set_rtf(float(rtf), self.timeout)
+            self._line().set_rtf(rtf, self.timeout)
         self._line().run(self.timeout)
 
     @property
@@ -342,7 +197,7 @@ class World:
 
     def set_pose(self, model: str, pose) -> None:
         """Moves a model. `pose`: x y yaw (height and tilt stay), x y z yaw, x y z roll pitch yaw, or a Pose. Its velocity becomes 0."""
-        self._line().set_pose(model, [float(value) for value in pose], self.timeout)
+        self._line().set_pose(model, pose, self.timeout)
 
     def velocity(self, name: str) -> Velocity:
         """Velocity of MODEL or MODEL::LINK."""
@@ -350,16 +205,16 @@ class World:
 
     def set_velocity(self, model: str, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0)) -> None:
         """Sets the velocity of a whole model: linear [m/s], angular [rad/s], world frame."""
-        self._line().set_velocity(model, list(map(float, linear)), list(map(float, angular)), self.timeout)
+        self._line().set_velocity(model, linear, angular, self.timeout)
 
     def push(self, name: str, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), duration: float = 0.0, persistent: bool = False) -> None:
         """Applies a wrench to MODEL or MODEL::LINK: force [N] at the centre of mass, torque [N m], world frame, for `duration` simulated
         seconds; 0: one step. `persistent`: until the next one of the link that is persistent, or a reset; one of zeros ends it."""
-        self._line().push(name, list(map(float, force)), list(map(float, torque)), float(duration), persistent, self.timeout)
+        self._line().push(name, force, torque, duration, persistent, self.timeout)
 
     def push_joint(self, model: str, joint: str, effort: float, duration: float = 0.0, persistent: bool = False) -> None:
         """Pushes a joint that turns or slides by `effort` [N m or N], beside what its motor does. Times as of push()."""
-        self._line().push_joint(f"{model}::{joint}", float(effort), float(duration), persistent, self.timeout)
+        self._line().push_joint(model, joint, effort, duration, persistent, self.timeout)
 
     def contacts(self, model: str) -> list[dict]:
         """Contacts of a model in the last step: link, other, position [m], normal, depth [m]."""
@@ -367,9 +222,9 @@ class World:
 
     def spawn(self, source, name: str = "", pose=None) -> str:
         """Adds a model and returns its name. `source`: SDFormat or URDF file, model folder, model://NAME, or SDFormat text."""
-        from os import fspath
+        added = self._line().spawn(source, name, pose, self.timeout)
         self._found.clear()
-        return self._line().spawn(fspath(source), name, None if pose is None else [float(value) for value in pose], self.timeout)
+        return added
 
     def delete(self, model: str) -> None:
         """Removes a model until the next reset."""
@@ -381,9 +236,11 @@ class World:
 
     def device(self, type: str, name: str) -> Device:
         """The iface with this type and name, subscribed: its sensor works from now on. Handles are kept until close()."""
-        device = self._devices.get((type, name))
-        if device is None:
-            device = self._devices[type, name] = Device(self._line(), type, name)
+        try:
+            return self._devices[type, name]
+        except (KeyError, TypeError):  # new, or no texts: then Device says so
+            device = Device(self._line(), type, name)
+        self._devices[type, name] = device
         return device
 
     def scan(self, name: str):
@@ -419,23 +276,24 @@ class World:
 
     def wait(self, name: str, type: str | None = None, timeout: float | None = None) -> dict:
         """Waits for the next sample of an iface of a running simulation and returns it as read()."""
-        from ._core import TimedOut
         device = self.device(type or self._type_of(name), name)
-        limit = self.timeout if timeout is None else timeout
+        limit = self.timeout if timeout is None else _core.seconds("timeout", timeout)
         if not device.wait(device.sequence, limit):
             raise TimedOut(f"{name}: no sample within {limit:g} s")
         return device.read(limit)
 
     def drive(self, name: str) -> Drive:
         """The drive of a model, or the position2d or position3d iface with this name."""
+        from .drive import Drive
         return Drive(self, self._find(name, ("position2d", "position3d"), "drive"))
 
     def joints(self, name: str) -> Joints:
         """The joints of a model, or the joints iface with this name."""
+        from .joints import Joints
         return Joints(self, self._find(name, ("joints",), "joints"))
 
     def _find(self, name: str, types: tuple, what: str) -> Device:
-        if (what, name) in self._found:
+        if (what, _core.text("name", name)) in self._found:
             return self.device(*self._found[what, name])
         rows = [(iface["type"], iface["name"], iface.get("model", "")) for iface in self._list()["ifaces"] if iface["type"] in types]
         for match in (lambda row: row[1] == name, lambda row: row[2] == name or row[1].startswith(name + "::")):
@@ -448,6 +306,7 @@ class World:
         raise NotFound(f"no {what} of {name!r}" + (f"; there is {', '.join(row[1] for row in rows)}" if rows else ""))
 
     def _type_of(self, name: str) -> str:
+        _core.text("name", name)
         for type, known in self._devices:
             if known == name:
                 return type
@@ -465,7 +324,7 @@ class World:
     def fault(self, iface: str, kind: str, amount: float | None = None, duration: float = 0.0) -> None:
         """Injects a fault into a sensor or drive, as simctl fault: off, stuck, bias, noise, missing, latency, dropout, weak, halted.
         `amount`: None: the usual one. `duration`: simulated seconds; 0: until end_faults() or reset()."""
-        self._line().fault(iface, kind, amount, float(duration), self.timeout)
+        self._line().fault(iface, kind, amount, duration, self.timeout)
 
     def end_faults(self, iface: str = "", kind: str = "") -> int:
         """Ends faults of an iface and of a kind; without, all. Returns how many there were."""
@@ -488,17 +347,20 @@ class World:
         if len(chosen) > 1:
             raise Error(f"screenshot: expected one view, got {' and '.join(chosen)}")
         view = chosen[0] if chosen else "whole"
-        pose = [float(value) for value in eye] if eye is not None else [*map(float, centre), 0.0] if top else []
-        return self._line().screenshot(view, int(width), int(height), follow or camera, pose, float(span if top else fov), scans,
-                                       max(self.timeout, 60.0))
+        pose = eye if eye is not None else [*_core.numbers("centre", centre, 2), 0.0] if top else None
+        return self._line().screenshot(view, width, height, follow or camera, pose, span if top else fov, scans, max(self.timeout, 60.0))
 
     def _list(self) -> dict:
-        return json.loads(self._line().list("", self.timeout))
+        return json.loads(self._line().list(self.timeout))
 
 
 def step_all(worlds, count: int = 1) -> list[float]:
     """Makes `count` steps in each of several worlds at the same time, one simulator per world, and returns their simulated times [s].
     An exception of one world is raised after all have ended their steps."""
+    worlds = list(worlds) if hasattr(worlds, "__iter__") else [worlds]
+    for world in worlds:
+        if not isinstance(world, World):
+            raise Error(f"step_all: expected a list of Worlds, got {_core.shown(world)} in it")
     begun: list = []
     problem: BaseException | None = None
     times: list[float] = []

@@ -2,20 +2,20 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstring>
 
+#include "python/src/arguments.h"
 #include "python/src/device.h"
 #include "shm/control.h"
 
 namespace python {
 namespace {
 
-using Seconds = Simulator::Seconds;
+// What Python gives, checked by the functions of arguments.h.
+using Given = const py::object&;
 
-Seconds seconds(double value) {
-  if (!(value >= 0)) throw Error("a time must not be negative, got " + std::to_string(value));
-  return Seconds(std::min(value, 1e9));
-}
+Simulator::Seconds timeout_of(Given timeout) { return seconds("timeout", timeout); }
 
 py::tuple values_of(const shm::Reply& reply, std::size_t count) {
   py::tuple values(count);
@@ -23,10 +23,7 @@ py::tuple values_of(const shm::Reply& reply, std::size_t count) {
   return values;
 }
 
-void three(const std::vector<double>& from, double (&to)[3], const char* what) {
-  if (from.size() != 3) throw Error(std::string(what) + ": expected 3 numbers, got " + std::to_string(from.size()));
-  std::copy(from.begin(), from.end(), to);
-}
+void three(const char* what, Given from, double (&to)[3]) { std::ranges::copy(numbers(what, from, {3}), to); }
 
 // x y z qw qx qy qz, or what pose_of() of shm/control.h takes.
 shm::Pose pose_from(const std::vector<double>& v) {
@@ -38,131 +35,152 @@ shm::Pose pose_from(const std::vector<double>& v) {
   return *pose;
 }
 
-std::string spawn(Simulator& s, const std::string& what, const std::string& name, const std::optional<std::vector<double>>& pose,
-                  double timeout) {
-  shm::SpawnRequest request = value_of(shm::spawn_request(what, s.is_shared()));
-  request.name = name;
-  request.has_pose = pose.has_value();
-  if (pose) request.pose = pose_from(*pose);
-  return s.ask(request, seconds(timeout)).message;
+std::string spawn(Simulator& s, Given what, Given name, Given pose, Given timeout) {
+  shm::SpawnRequest request = value_of(shm::spawn_request(path("source", what), s.is_shared()));
+  request.name = text("name", name);
+  request.has_pose = !pose.is_none();
+  if (request.has_pose) request.pose = pose_from(numbers("pose", pose));
+  return s.ask(request, timeout_of(timeout)).message;
 }
 
-py::array screenshot(Simulator& s, const std::string& view, std::uint32_t width, std::uint32_t height, const std::string& follow,
-                     const std::vector<double>& pose, double span, bool scans, double timeout) {
+std::string listed(Simulator& s, Given timeout) { return s.ask(shm::ListRequest{}, timeout_of(timeout)).text; }
+
+py::array screenshot(Simulator& s, Given view, Given width, Given height, Given follow, Given pose, Given span, Given scans,
+                     Given timeout) {
   using View = shm::ScreenshotRequest::View;
+  constexpr std::int64_t largest = 1 << 20;  // the simulator says what it can
+  const std::string named = text("view", view);
   shm::ScreenshotRequest request;
-  request.view = view == "top"      ? View::top
-                 : view == "follow" ? View::follow
-                 : view == "from"   ? View::from
-                 : view == "camera" ? View::camera
-                                    : View::whole;
-  request.width = width;
-  request.height = height;
-  request.follow = follow;
-  request.span = span;
-  request.with_scans = scans;
+  request.view = named == "top"      ? View::top
+                 : named == "follow" ? View::follow
+                 : named == "from"   ? View::from
+                 : named == "camera" ? View::camera
+                                     : View::whole;
+  request.width = static_cast<std::uint32_t>(whole("width", width, 1, largest));
+  request.height = static_cast<std::uint32_t>(whole("height", height, 1, largest));
+  request.follow = text(named == "camera" ? "camera" : "follow", follow);
+  request.span = number(named == "top" ? "span" : "fov", span);
+  request.with_scans = flag("scans", scans);
   request.as_pixels = true;
-  if (!pose.empty()) request.pose = pose_from(pose);
-  const std::string pixels = s.ask(request, seconds(timeout)).text;
-  py::array_t<std::uint8_t> image(std::vector<py::ssize_t>{height, width, 3});
+  if (!pose.is_none()) request.pose = pose_from(numbers("pose", pose));
+  const std::string pixels = s.ask(request, timeout_of(timeout)).text;
+  py::array_t<std::uint8_t> image(std::vector<py::ssize_t>{request.height, request.width, 3});
   if (pixels.size() != static_cast<std::size_t>(image.nbytes())) throw Error("screenshot: this simulator does not send pixels");
   std::memcpy(image.mutable_data(), pixels.data(), pixels.size());
   return image;
 }
 
+shm::WrenchRequest wrench(const std::string& name, Given duration, Given stays) {
+  return {name, {}, {}, flag("persistent", stays) ? shm::WrenchRequest::until_the_next : seconds("duration", duration).count()};
+}
+
 void add_requests(py::class_<Simulator>& type) {
-  const auto text_of = [](const char* name, auto make, py::class_<Simulator>& to) {
-    to.def(name, [make](Simulator& s, const std::string& what, double timeout) { return s.ask(make(what), seconds(timeout)).text; });
+  const auto text_of = [&](const char* name, const char* argument, auto make) {
+    type.def(name, [=](Simulator& s, Given what, Given timeout) { return s.ask(make(text(argument, what)), timeout_of(timeout)).text; });
   };
-  text_of(
-      "list", [](const std::string&) { return shm::ListRequest{}; }, type);
-  text_of(
-      "tree", [](const std::string& model) { return shm::TreeRequest{model}; }, type);
-  text_of(
-      "models", [](const std::string&) { return shm::ModelsRequest{}; }, type);
-  text_of(
-      "contacts", [](const std::string& model) { return shm::ContactsRequest{model}; }, type);
-  text_of(
-      "faults", [](const std::string& iface) { return shm::FaultsRequest{iface}; }, type);
-  text_of(
-      "statistics", [](const std::string&) { return shm::StatsRequest{}; }, type);
-  type.def("hash", [](Simulator& s, double timeout) { return s.ask(shm::StatsRequest{}, seconds(timeout)).hash; })
-      .def("pause", [](Simulator& s, double timeout) { s.ask(shm::PauseRequest{}, seconds(timeout)); })
-      .def("run", [](Simulator& s, double timeout) { s.ask(shm::RunRequest{}, seconds(timeout)); })
+  text_of("tree", "model", [](const std::string& model) { return shm::TreeRequest{model}; });
+  text_of("contacts", "model", [](const std::string& model) { return shm::ContactsRequest{model}; });
+  text_of("faults", "iface", [](const std::string& iface) { return shm::FaultsRequest{iface}; });
+  type.def("list", &listed)
+      .def("hash", [](Simulator& s, Given timeout) { return s.ask(shm::StatsRequest{}, timeout_of(timeout)).hash; })
+      .def("pause", [](Simulator& s, Given timeout) { s.ask(shm::PauseRequest{}, timeout_of(timeout)); })
+      .def("run", [](Simulator& s, Given timeout) { s.ask(shm::RunRequest{}, timeout_of(timeout)); })
       .def("reset",
-           [](Simulator& s, bool poses_only, std::optional<std::uint64_t> seed, double timeout) {
-             s.ask(shm::ResetRequest{poses_only, seed}, seconds(timeout));
+           [](Simulator& s, bool poses_only, Given given, Given timeout) {
+             s.ask(shm::ResetRequest{poses_only, given.is_none() ? std::nullopt : std::optional(seed(given))}, timeout_of(timeout));
            })
-      .def("set_rtf", [](Simulator& s, double factor, double timeout) { s.ask(shm::SetRtfRequest{factor}, seconds(timeout)); })
-      .def("pose", [](Simulator& s, const std::string& name,
-                      double timeout) { return values_of(s.ask(shm::GetPoseRequest{name}, seconds(timeout)), 7); })
+      .def("set_rtf",
+           [](Simulator& s, Given factor, Given timeout) { s.ask(shm::SetRtfRequest{number("rtf", factor)}, timeout_of(timeout)); })
+      .def("pose", [](Simulator& s, Given name,
+                      Given timeout) { return values_of(s.ask(shm::GetPoseRequest{text("name", name)}, timeout_of(timeout)), 7); })
       .def("set_pose",
-           [](Simulator& s, const std::string& model, const std::vector<double>& pose, double timeout) {
-             s.ask(shm::SetPoseRequest{model, pose_from(pose), pose.size() == 3}, seconds(timeout));
+           [](Simulator& s, Given model, Given pose, Given timeout) {
+             const auto values = numbers("pose", pose);
+             s.ask(shm::SetPoseRequest{text("model", model), pose_from(values), values.size() == 3}, timeout_of(timeout));
            })
-      .def("velocity", [](Simulator& s, const std::string& name,
-                          double timeout) { return values_of(s.ask(shm::GetVelocityRequest{name}, seconds(timeout)), 6); })
+      .def("velocity", [](Simulator& s, Given name,
+                          Given timeout) { return values_of(s.ask(shm::GetVelocityRequest{text("name", name)}, timeout_of(timeout)), 6); })
       .def("set_velocity",
-           [](Simulator& s, const std::string& model, const std::vector<double>& linear, const std::vector<double>& angular,
-              double timeout) {
-             shm::SetVelocityRequest request{model, {}, {}};
-             three(linear, request.linear, "linear");
-             three(angular, request.angular, "angular");
-             s.ask(request, seconds(timeout));
+           [](Simulator& s, Given model, Given linear, Given angular, Given timeout) {
+             shm::SetVelocityRequest request{text("model", model), {}, {}};
+             three("linear", linear, request.linear);
+             three("angular", angular, request.angular);
+             s.ask(request, timeout_of(timeout));
            })
       .def("push",
-           [](Simulator& s, const std::string& name, const std::vector<double>& force, const std::vector<double>& torque, double duration,
-              bool stays, double timeout) {
-             shm::WrenchRequest request{name, {}, {}, stays ? shm::WrenchRequest::until_the_next : duration};
-             three(force, request.force, "force");
-             three(torque, request.torque, "torque");
-             s.ask(request, seconds(timeout));
+           [](Simulator& s, Given name, Given force, Given torque, Given duration, Given stays, Given timeout) {
+             shm::WrenchRequest request = wrench(text("name", name), duration, stays);
+             three("force", force, request.force);
+             three("torque", torque, request.torque);
+             s.ask(request, timeout_of(timeout));
            })
       .def("push_joint",
-           [](Simulator& s, const std::string& name, double effort, double duration, bool stays, double timeout) {
-             s.ask(shm::WrenchRequest{name, {effort}, {}, stays ? shm::WrenchRequest::until_the_next : duration, true}, seconds(timeout));
+           [](Simulator& s, Given model, Given joint, Given effort, Given duration, Given stays, Given timeout) {
+             shm::WrenchRequest request = wrench(text("model", model) + "::" + text("joint", joint), duration, stays);
+             request.force[0] = number("effort", effort);
+             request.is_joint = true;
+             s.ask(request, timeout_of(timeout));
            })
       .def("spawn", &spawn)
-      .def("delete", [](Simulator& s, const std::string& model, double timeout) { s.ask(shm::DeleteRequest{model}, seconds(timeout)); })
+      .def("delete", [](Simulator& s, Given model, Given timeout) { s.ask(shm::DeleteRequest{text("model", model)}, timeout_of(timeout)); })
       .def("fault",
-           [](Simulator& s, const std::string& iface, const std::string& kind, std::optional<double> amount, double duration,
-              double timeout) {
-             s.ask(shm::FaultRequest{iface, kind, amount, duration}, seconds(timeout));
+           [](Simulator& s, Given iface, Given kind, Given amount, Given duration, Given timeout) {
+             shm::FaultRequest request{text("iface", iface), text("kind", kind), std::nullopt, seconds("duration", duration).count()};
+             if (!amount.is_none()) request.amount = number("amount", amount);
+             s.ask(request, timeout_of(timeout));
            })
       .def("end_faults",
-           [](Simulator& s, const std::string& iface, const std::string& kind, double timeout) {
-             return s.ask(shm::EndFaultsRequest{iface, kind}, seconds(timeout)).count;
+           [](Simulator& s, Given iface, Given kind, Given timeout) {
+             return s.ask(shm::EndFaultsRequest{text("iface", iface), text("kind", kind)}, timeout_of(timeout)).count;
            })
       .def("reset_odometry",
-           [](Simulator& s, const std::string& iface, const std::vector<double>& pose, double timeout) {
-             if (pose.size() == 3) {
-               s.ask(shm::ResetOdometryRequest{iface, pose[0], pose[1], pose[2], false, {}}, seconds(timeout));
-             } else {
-               s.ask(shm::ResetOdometryRequest{iface, 0, 0, 0, true, pose_from(pose)}, seconds(timeout));
-             }
+           [](Simulator& s, const std::string& iface, Given x, Given y, Given a, Given timeout) {
+             s.ask(shm::ResetOdometryRequest{iface, number("x", x), number("y", y), number("a", a), false, {}}, timeout_of(timeout));
            })
       .def("set_motors",
-           [](Simulator& s, const std::string& iface, bool on, double timeout) {
-             s.ask(shm::SetMotorsRequest{iface, on}, seconds(timeout));
+           [](Simulator& s, const std::string& iface, Given on, Given timeout) {
+             s.ask(shm::SetMotorsRequest{iface, flag("on", on)}, timeout_of(timeout));
            })
       .def("screenshot", &screenshot);
 }
 
 void add_device(py::module_& module) {
+  constexpr double usual = 30.0;
+  const auto patient = py::arg("timeout") = usual;
   py::class_<Device>(module, "Device")
-      .def(py::init<Simulator&, const std::string&, const std::string&>(), py::keep_alive<1, 2>())
+      .def(py::init(
+               [](Simulator& s, Given type, Given name) { return std::make_unique<Device>(s, text("type", type), text("name", name)); }),
+           py::keep_alive<1, 2>())
       .def_property_readonly("name", &Device::name)
       .def_property_readonly("type", &Device::type)
       .def_property_readonly("sequence", &Device::sequence)
       .def_property_readonly("is_commander", &Device::is_commander)
       .def("info", &Device::info)
-      .def("read", [](Device& d, double timeout) { return d.read(seconds(timeout)); })
-      .def("value", [](Device& d, const std::string& field, double timeout) { return d.value(field, seconds(timeout)); })
-      .def("array", [](Device& d, double timeout) { return d.array(seconds(timeout)); })
-      .def("wait", [](Device& d, std::uint64_t than, double timeout) { return d.wait(than, seconds(timeout)); })
-      .def("command", [](Device& d, std::uint32_t kind, const std::vector<double>& values,
-                         double duration) { d.command(static_cast<shm::CommandKind>(kind), values, seconds(duration)); })
-      .def("velocity", [](Device& d, double a, double b, double c, double duration) { d.velocity(a, b, c, seconds(duration)); })
+      .def(
+          "read", [](Device& d, Given timeout) { return d.read(timeout_of(timeout)); }, patient)
+      .def(
+          "value", [](Device& d, Given field, Given timeout) { return d.value(text("field", field), timeout_of(timeout)); },
+          py::arg("field"), patient)
+      .def(
+          "array", [](Device& d, Given timeout) { return d.array(timeout_of(timeout)); }, patient)
+      .def(
+          "wait",
+          [](Device& d, Given than, Given timeout) { return d.wait(static_cast<std::uint64_t>(whole("than", than)), timeout_of(timeout)); },
+          py::arg("than"), patient)
+      .def(
+          "command",
+          [](Device& d, Given kind, Given values, Given duration) {
+            constexpr std::int64_t largest = std::numeric_limits<std::uint32_t>::max();
+            d.command(static_cast<shm::CommandKind>(whole("kind", kind, 0, largest)), numbers("values", values),
+                      seconds("duration", duration));
+          },
+          py::arg("kind"), py::arg("values"), py::arg("duration") = 0.0)
+      .def(
+          "velocity",
+          [](Device& d, Given vx, Given vy, Given va, Given duration) {
+            d.velocity(number("vx", vx), number("vy", vy), number("va", va), seconds("duration", duration));
+          },
+          py::arg("vx"), py::arg("vy") = 0.0, py::arg("va") = 0.0, py::arg("duration") = 0.0)
       .def("close", &Device::close);
 }
 
@@ -180,11 +198,15 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception<ServerDied>(module, "ServerDied", bases(PyExc_ConnectionError));
 
   py::class_<Simulator> simulator(module, "Simulator");
-  simulator.def(py::init<std::uint32_t>())
+  simulator
+      .def(py::init([](Given id) {
+        return std::make_unique<Simulator>(
+            static_cast<std::uint32_t>(whole("server_id", id, 0, std::numeric_limits<std::uint32_t>::max())));
+      }))
       .def("on_death", &Simulator::on_death)
-      .def("begin_steps", &Simulator::begin_steps)
-      .def("end_steps", [](Simulator& s, double timeout) { return s.end_steps(seconds(timeout)); })
-      .def("step", [](Simulator& s, std::int64_t count, double timeout) { return s.step(count, seconds(timeout)); })
+      .def("begin_steps", [](Simulator& s, Given count) { s.begin_steps(whole("steps", count, 1)); })
+      .def("end_steps", [](Simulator& s, Given timeout) { return s.end_steps(timeout_of(timeout)); })
+      .def("step", [](Simulator& s, Given count, Given timeout) { return s.step(whole("steps", count, 1), timeout_of(timeout)); })
       .def_property_readonly("time", &Simulator::time)
       .def_property_readonly("steps", &Simulator::steps)
       .def_property_readonly("is_paused", &Simulator::is_paused)
@@ -198,4 +220,16 @@ PYBIND11_MODULE(_core, module) {
       .def("close", &Simulator::close);
   add_requests(simulator);
   add_device(module);
+  module.def("number", [](const std::string& what, Given value) { return number(what.c_str(), value); })
+      .def("seconds", [](const std::string& what, Given value) { return seconds(what.c_str(), value).count(); })
+      .def("whole", [](const std::string& what, Given value, std::int64_t lowest) { return whole(what.c_str(), value, lowest); })
+      .def("numbers", [](const std::string& what, Given value, std::size_t count) { return numbers(what.c_str(), value, {count}); })
+      .def("text", [](const std::string& what, Given value) { return text(what.c_str(), value); })
+      .def("seed", [](Given value) { return seed(value); })
+      .def("path",
+           [](const std::string& what, Given value) {
+             const std::string found = path(what.c_str(), value);
+             return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefaultAndSize(found.data(), static_cast<py::ssize_t>(found.size())));
+           })
+      .def("shown", [](Given value) { return shown(value); });
 }

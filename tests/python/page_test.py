@@ -51,7 +51,8 @@ def stubs():
                 node, ast.ClassDef) else []:
             if isinstance(one, ast.FunctionDef):
                 given = one.args
-                found[owner + one.name] = [argument.arg for argument in given.posonlyargs + given.args + given.kwonlyargs]
+                # The first one of a property is its getter.
+                found.setdefault(owner + one.name, [argument.arg for argument in given.posonlyargs + given.args + given.kwonlyargs])
     return found
 
 

@@ -89,7 +89,8 @@ with rtmsim.World({course!r}) as w:
 
 
 def test_a_stopped_simulator_is_a_timeout():
-    with rtmsim.World(course, timeout=1.0) as world:
+    with rtmsim.World(course) as world:
+        world.timeout = 1.0
         pid = world._simulator.pid
         os.kill(pid, signal.SIGSTOP)
         try:

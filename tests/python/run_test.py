@@ -96,3 +96,13 @@ def test_channels_that_do_not_exist_are_named_with_those_that_do(recorded):
     with rtmsim.Recording(file) as recording:
         with pytest.raises(rtmsim.NotFound, match="/clock"):
             recording.samples("/clocks")
+
+
+def test_two_iterators_of_a_recording_at_a_time_have_a_place_each(recorded):
+    with rtmsim.Recording(recorded[0]) as recording:
+        topic = "/sim/laser/pioneer2dx/laser"
+        alone = [time for _, time, _ in recording.messages(topic)]
+        assert len(alone) > 3
+        assert [(one[1], other[1]) for one, other in zip(recording.messages(topic), recording.messages(topic))] == [(time, time) for time in alone]
+        for _, time, _ in recording.messages(topic):
+            assert next(recording.messages(topic))[1] == alone[0]
