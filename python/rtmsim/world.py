@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import atexit
-import json
 import weakref
 
 from . import _core
@@ -21,6 +20,11 @@ _worlds: weakref.WeakSet = weakref.WeakSet()
 def _close_all() -> None:
     for world in list(_worlds):
         world.close()
+
+
+def _parsed(text: str):
+    import json  # with its expressions it takes longer to import than the rest
+    return json.loads(text)
 
 
 class World:
@@ -185,7 +189,7 @@ class World:
 
     def tree(self, model: str = "") -> dict:
         """Links, joints, sensors and plugins of a model; without a name of all models."""
-        return json.loads(self._line().tree(model, self.timeout))
+        return _parsed(self._line().tree(model, self.timeout))
 
     def pose(self, name: str) -> Pose:
         """Pose of MODEL or MODEL::LINK in the world."""
@@ -218,7 +222,7 @@ class World:
 
     def contacts(self, model: str) -> list[dict]:
         """Contacts of a model in the last step: link, other, position [m], normal, depth [m]."""
-        return json.loads(self._line().contacts(model, self.timeout))["contacts"]
+        return _parsed(self._line().contacts(model, self.timeout))["contacts"]
 
     def spawn(self, source, name: str = "", pose=None) -> str:
         """Adds a model and returns its name. `source`: SDFormat or URDF file, model folder, model://NAME, or SDFormat text."""
@@ -332,7 +336,7 @@ class World:
 
     def faults(self, iface: str = "") -> list[dict]:
         """Faults that are on or still to come: iface, kind, amount, from, until [s], on."""
-        return json.loads(self._line().faults(iface, self.timeout))["faults"]
+        return _parsed(self._line().faults(iface, self.timeout))["faults"]
 
     # ---- images
 
@@ -351,7 +355,7 @@ class World:
         return self._line().screenshot(view, width, height, follow or camera, pose, span if top else fov, scans, max(self.timeout, 60.0))
 
     def _list(self) -> dict:
-        return json.loads(self._line().list(self.timeout))
+        return _parsed(self._line().list(self.timeout))
 
 
 def step_all(worlds, count: int = 1) -> list[float]:
