@@ -57,6 +57,20 @@ Message message_of(const Guid& participant, const Nodes& nodes, ToGid to_gid) {
   return message;
 }
 
+// Why the two are not matched; empty when they are.
+std::string misfit(const EndpointSettings& own, bool is_writer, const Peer& peer) {
+  const std::string name = peer.topic.starts_with("rt/") ? peer.topic.substr(2) : peer.topic;
+  if (own.type != peer.type)
+    return name + " has type " + type_of_ros(peer.type) + ", expected " + type_of_ros(own.type) + ", in an endpoint";
+  if (is_writer && peer.is_transient && !own.is_transient)
+    return name + " is offered as volatile, but transient local is requested by a reader";
+  if (is_writer && peer.is_reliable && !own.is_reliable) return name + " is offered as best effort, but reliable is requested by a reader";
+  if (!is_writer && own.is_reliable && !peer.is_reliable) return name + " is requested as reliable, but best effort is offered by a writer";
+  if (!is_writer && own.is_transient && !peer.is_transient)
+    return name + " is requested as transient local, but volatile is offered by a writer";
+  return "";
+}
+
 template <class Message>
 void send(Writer& writer, const Message& message) {
   writer.write(ros::encoded_size(message), [&](std::span<char> room) { ros::encode(message, room); });
@@ -115,11 +129,13 @@ void Graph::tend(Time now) {
     has_changed_ = false;
     tell();
   }
+  std::set<std::string> lines;
   std::erase_if(doubts_, [&](const Doubt& doubt) {
     if (now < doubt.due) return false;
-    base::log(base::Level::warn, participant_.settings().log_name, "{} of {}", doubt.words, node_of(doubt.peer));
+    if (!is_of_twins(doubt)) lines.insert(misfit(doubt.own.settings, doubt.own.is_writer, doubt.peer) + " of " + node_of(doubt.peer.guid));
     return true;
   });
+  for (const auto& line : lines) base::log(base::Level::warn, participant_.settings().log_name, "{}", line);
 }
 
 void Graph::tell() {
@@ -188,38 +204,24 @@ void Graph::judge_family(const Peer& peer) {
   }
 }
 
-// Another reader of ours on the topic does.
-bool Graph::takes_best_effort(const EndpointSettings& topic) const {
-  return std::ranges::any_of(own_, [&](const auto& other) {
-    const auto& [settings, is_writer, node] = other.second;
-    return !is_writer && !settings.is_reliable && settings.topic == topic.topic && settings.type == topic.type;
-  });
+void Graph::judge_fit(const Peer& peer) {
+  for (const auto& [guid, own] : own_) {
+    const bool is_pair = own.settings.topic == peer.topic && own.is_writer != peer.is_writer;
+    if (is_pair && !misfit(own.settings, own.is_writer, peer).empty())
+      doubts_.push_back({peer, own, std::chrono::steady_clock::now() + name_wait});
+  }
 }
 
-void Graph::judge_fit(const Peer& peer) {
-  const std::string name = peer.topic.starts_with("rt/") ? peer.topic.substr(2) : peer.topic;
-  for (const auto& [guid, own] : own_) {
-    if (own.settings.topic != peer.topic || own.is_writer == peer.is_writer) continue;
-    std::string words;
-    if (own.settings.type != peer.type) {
-      const bool has_twin = std::ranges::any_of(own_, [&](const auto& other) {
-        return other.second.settings.topic == peer.topic && other.second.settings.type == peer.type &&
-               other.second.is_writer == own.is_writer;
-      });
-      if (!has_twin) words = "has type " + type_of_ros(peer.type) + ", expected " + type_of_ros(own.settings.type) + ", in an endpoint";
-    } else if (own.is_writer && peer.is_transient && !own.settings.is_transient) {
-      words = "is offered as volatile, but transient local is requested by a reader";
-    } else if (own.is_writer && peer.is_reliable && !own.settings.is_reliable) {
-      words = "is offered as best effort, but reliable is requested by a reader";
-    } else if (!own.is_writer && own.settings.is_reliable && !peer.is_reliable && !takes_best_effort(own.settings)) {
-      words = "is requested as reliable, but best effort is offered by a writer";
-    } else if (!own.is_writer && own.settings.is_transient && !peer.is_transient) {
-      words = "is requested as transient local, but volatile is offered by a writer";
-    }
-    if (words.empty()) continue;
-    doubts_.push_back({peer.guid, name + " " + words, std::chrono::steady_clock::now() + name_wait});
-    return;
-  }
+// A node may have endpoints of two types, or of two reliabilities, on a topic. One that fits is enough, on either side.
+bool Graph::is_of_twins(const Doubt& doubt) const {
+  const auto fits = [](const Own& own, const Peer& peer) {
+    return own.settings.topic == peer.topic && own.is_writer != peer.is_writer && misfit(own.settings, own.is_writer, peer).empty();
+  };
+  const auto is_same_node = [&](const Guid& guid) {
+    return std::equal(guid.begin(), guid.begin() + 12, doubt.peer.guid.begin()) && node_of(guid) == node_of(doubt.peer.guid);
+  };
+  return std::ranges::any_of(own_, [&](const auto& own) { return own.second.node == doubt.own.node && fits(own.second, doubt.peer); }) ||
+         std::ranges::any_of(peers_, [&](const auto& peer) { return fits(doubt.own, peer.second) && is_same_node(peer.first); });
 }
 
 void Graph::learn(const Received& message) {

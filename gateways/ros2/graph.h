@@ -67,9 +67,10 @@ class Graph {
     std::vector<Guid> readers, writers;
     int uses = 0;
   };
+  // A pair that does not fit. The peer may have another endpoint on the topic that does.
   struct Doubt {
-    Guid peer{};
-    std::string words;
+    Peer peer;
+    Own own;
     Time due;
   };
 
@@ -77,7 +78,7 @@ class Graph {
   void see(const Peer& peer);
   void judge_family(const Peer& peer);
   void judge_fit(const Peer& peer);
-  bool takes_best_effort(const EndpointSettings& topic) const;
+  bool is_of_twins(const Doubt& doubt) const;
   void learn(const Received& message);
   void tell();
 
