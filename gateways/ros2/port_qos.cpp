@@ -53,25 +53,40 @@ const std::vector<std::string>& known_keys() {
   return known;
 }
 
-bool is_qos(const std::string& key) {
-  return std::ranges::any_of(std::array{"writer_qos.", "reader_qos.", "publisher.", "subscriber."},
-                             [&](const char* node) { return key.starts_with(node); });
+// A policy of OpenRTM's transports that has no effect here.
+bool is_other_policy(std::string_view key) {
+  bool is_qos = false;
+  for (const std::string_view node : {"writer_qos.", "reader_qos.", "publisher.", "subscriber.", "qos."}) {
+    if (!key.starts_with(node)) continue;
+    key.remove_prefix(node.size());
+    is_qos = true;
+  }
+  return is_qos && std::ranges::any_of(
+                       std::array{"avoid_ros_namespace_conventions", "deadline.", "destinationOrder.", "durabilityService.",
+                                  "history_memory_policy", "latencyBudget.", "lifespan.", "liveliness.", "ownership.", "ownershipStrength.",
+                                  "presentation.", "publishMode.", "reliability.max_blocking_time", "timeBasedFilter.", "times.", "topic."},
+                       [&](const char* policy) { return key.starts_with(policy); });
 }
 
 }  // namespace
 
-void name_useless_keys(const coil::Properties& connection, const std::string& name) {
+base::Result<void> check_keys(const coil::Properties& connection, const std::string& name, bool is_own_mapping) {
   for (const auto& full : connection.propertyNames()) {
     if (!full.starts_with(name + ".")) continue;
     const std::string key = full.substr(name.size() + 1);
     if (std::ranges::find(known_keys(), key) != known_keys().end()) continue;
+    if (is_other_policy(key)) {
+      base::log(base::Level::warn, "ros2", "{}: {}={} without effect: reliability, durability and history are supported",
+                connection.getProperty("connector_name"), full, connection.getProperty(full));
+      continue;
+    }
     const std::string meant = base::nearest(key, known_keys());
-    base::log(base::Level::warn, "ros2", "{}: {}={} without effect{}", connection.getProperty("connector_name"), full,
-              connection.getProperty(full),
-              !meant.empty() ? "; did you mean " + name + "." + meant + "?"
-              : is_qos(key)  ? ": reliability, durability and history are supported"
-                             : ", unless a mapping of your own reads it");
+    if (meant.empty() && is_own_mapping) continue;
+    return base::Error{
+        "unknown property " + full +
+        (meant.empty() ? "; expected " + name + ".topic or another one of docs/ros2.md" : "; did you mean " + name + "." + meant + "?")};
   }
+  return {};
 }
 
 base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic) {

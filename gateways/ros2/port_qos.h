@@ -24,9 +24,9 @@ struct PortTopic {
   bool takes_all = false;  // a reader of reliable and of best effort writers
 };
 
-// Warns of each key below `name` that means nothing here: misspelled, a policy that OpenRTM has and this transport does not, or one that an
-// author's mapping reads. The line has the key that was most likely meant.
-void name_useless_keys(const coil::Properties& connection, const std::string& name);
+// Fails at a key below `name` that means nothing, with the key that was most likely meant. Warns of a policy that OpenRTM has and this
+// transport does not. A mapping of an author's own may read keys that are not known here.
+base::Result<void> check_keys(const coil::Properties& connection, const std::string& name, bool is_own_mapping);
 
 base::Result<void> read_qos(const coil::Properties& connection, const std::string& name, bool is_writer, PortTopic& topic);
 

@@ -5,9 +5,11 @@
 #include <rtm/Manager.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,20 @@ namespace {
 
 constexpr std::array interface_names{"ros2", "fast-rtps", "cyclone-dds"};
 
+// Names in MessageTypes that this module has added itself.
+std::set<std::string>& built_in() {
+  static std::set<std::string> names;
+  return names;
+}
+
+void add_built_in() {
+  const auto before = MessageTypes::instance().getIdentifiers();
+  add_mappings();
+  for (const auto& name : MessageTypes::instance().getIdentifiers()) {
+    if (std::ranges::find(before, name) == before.end()) built_in().insert(name);
+  }
+}
+
 std::string text_of_one_side(const coil::Properties& connection, bool is_writer, const std::string& key) {
   const std::string& own = connection.getProperty((is_writer ? "outport." : "inport.") + key);
   return std::string(base::trim(own.empty() ? connection.getProperty(key) : own));
@@ -38,19 +54,25 @@ bool is_large(const std::string& type) {
   return false;
 }
 
-// The message of a connection: that of marshaling_type, or the default one of the data type.
-base::Result<PortTopic> topic_of_type(const coil::Properties& connection, bool is_writer) {
-  std::string marshaling = text_of_one_side(connection, is_writer, "marshaling_type");
-  if (marshaling.empty()) marshaling = default_mapping;
+std::string marshaling_of(const coil::Properties& connection, bool is_writer) {
+  const std::string marshaling = text_of_one_side(connection, is_writer, "marshaling_type");
+  return marshaling.empty() ? std::string(default_mapping) : marshaling;
+}
+
+// The name in MessageTypes of a connection's message: that of marshaling_type, or the default one of the data type.
+std::string type_name_of(const coil::Properties& connection, bool is_writer) {
+  const std::string marshaling = marshaling_of(connection, is_writer);
+  if (marshaling == default_mapping) return text_of_one_side(connection, is_writer, "data_type");
   const std::string prefix = std::string(default_mapping) + ":";
-  const std::string type_name = marshaling.starts_with(prefix)  ? marshaling.substr(prefix.size())
-                                : marshaling == default_mapping ? text_of_one_side(connection, is_writer, "data_type")
-                                                                : "";
+  return marshaling.starts_with(prefix) ? marshaling.substr(prefix.size()) : "";
+}
+
+base::Result<PortTopic> topic_of_type(const coil::Properties& connection, bool is_writer, const std::string& type_name) {
   auto& types = MessageTypes::instance();
   MessageType* made = types.hasFactory(type_name) ? types.createObject(type_name) : nullptr;
   if (made == nullptr)
     return base::Error{"marshaling_type must be ros2:PKG/TYPE of a mapped message, or must be left out, got " +
-                       base::in_quotes(marshaling)};
+                       base::in_quotes(marshaling_of(connection, is_writer))};
   PortTopic topic;
   EndpointSettings& endpoint = topic.endpoint;
   endpoint.type = type_on_wire(made->name());
@@ -63,12 +85,14 @@ base::Result<PortTopic> topic_of_type(const coil::Properties& connection, bool i
 // The topic of a connection as it is on the wire.
 base::Result<PortTopic> topic_of(const coil::Properties& connection, bool is_writer) {
   const std::string name = text_of_one_side(connection, is_writer, "interface_type");
-  name_useless_keys(connection, name);
+  const std::string type_name = type_name_of(connection, is_writer);
+  const bool is_own_mapping = !built_in().contains(type_name) || !built_in().contains(text_of_one_side(connection, is_writer, "data_type"));
+  if (auto checked = check_keys(connection, name, is_own_mapping); !checked) return checked.error();
   const std::string typed = std::string(base::trim(connection.getProperty(name + ".topic")));
   if (typed.empty()) return base::Error{name + ".topic is missing: expected a topic, as in " + name + ".topic=/cmd_vel"};
   const std::string topic = typed.front() == '/' ? typed : "/" + typed;
   if (const auto problem = problem_of_name(topic)) return base::Error{name + ".topic " + *problem + ", got " + base::in_quotes(typed)};
-  auto made = topic_of_type(connection, is_writer);
+  auto made = topic_of_type(connection, is_writer, type_name);
   if (!made) return made;
   made->endpoint.topic = topic_on_wire(topic);
   if (auto read = read_qos(connection, name, is_writer, *made); !read) return read.error();
@@ -179,7 +203,7 @@ void add_end() {
 }  // namespace ros2
 
 extern "C" void ROS2TransportInit(RTC::Manager*) {
-  ros2::add_mappings();
+  ros2::add_built_in();
   ros2::add_end<RTC::InPortConsumer, ros2::TopicWriter>();
   ros2::add_end<RTC::InPortProvider, ros2::TopicReader>();
 }
