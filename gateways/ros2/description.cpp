@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <span>
 
+#include "joint_frames.h"
 #include "names.h"
 #include "ros/from_iface.h"
 
@@ -40,15 +42,16 @@ std::string geometry_of(const ListedShape& shape) {
   return "";
 }
 
-std::string shapes_of(const ListedModel& model, const std::set<std::string>& moving, const shm::Pose& base) {
+// Of the links that `link` carries, in its frame; "" is the base.
+std::string shapes_of(const ListedModel& model, const std::set<std::string>& moving, const std::string& link, const shm::Pose& frame) {
   std::string text;
-  const auto to_base = ros::inverse(base);
-  for (const auto& link : model.links) {
-    if (moving.contains(link.name)) continue;
-    for (const auto& shape : link.shapes) {
+  const auto to_frame = ros::inverse(frame);
+  for (const auto& one : model.links) {
+    if (carrier_of(model, one.name, [&](const auto& name) { return moving.contains(name); }) != link) continue;
+    for (const auto& shape : one.shapes) {
       const auto geometry = geometry_of(shape);
       if (geometry.empty()) continue;
-      const std::string body = origin_of(ros::product(to_base, shape.pose)) + "<geometry>" + geometry + "</geometry>";
+      const std::string body = origin_of(ros::product(to_frame, shape.pose)) + "<geometry>" + geometry + "</geometry>";
       text += "    <visual>" + body + "</visual>\n    <collision>" + body + "</collision>\n";
     }
   }
@@ -73,18 +76,23 @@ std::string joint_of(const shm::Joint& joint, const std::string& parent, const s
 
 std::string urdf_of(const ListedModel& model, const shm::Iface* joints, const shm::Pose& base) {
   std::set<std::string> moving;
+  const auto* first = joints == nullptr ? nullptr : reinterpret_cast<const shm::Joint*>(joints->info_followers(0));
+  const std::span<const shm::Joint> all(first, joints == nullptr ? 0 : joints->count());
+  for (const auto& joint : all) moving.insert(ros::text_of(joint.link));
+  const auto position_of = [&](const shm::Joint& joint) {
+    const auto found = model.joint_positions.find(ros::text_of(joint.name));
+    return found == model.joint_positions.end() ? 0.0 : found->second;
+  };
   std::string rest;
-  const auto* all = joints == nullptr ? nullptr : reinterpret_cast<const shm::Joint*>(joints->info_followers(0));
-  const std::size_t count = joints == nullptr ? 0 : joints->count();
-  for (std::size_t i = 0; i < count; ++i) {
-    moving.insert(ros::text_of(all[i].link));
-    const bool is_root = all[i].parent == 0 || all[i].parent > count;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string link = ros::text_of(all[i].link);
+    const bool is_root = all[i].parent == 0 || all[i].parent > all.size();
     const std::string parent = is_root ? "base_link" : token(ros::text_of(all[all[i].parent - 1].link));
-    rest += "  <link name=\"" + token(ros::text_of(all[i].link)) + "\"/>\n" +
+    rest += "  <link name=\"" + token(link) + "\">\n" + shapes_of(model, moving, link, joint_frame(all, i, position_of)) + "  </link>\n" +
             joint_of(all[i], parent, is_root ? ros::product(ros::inverse(base), all[i].pose) : all[i].pose);
   }
   return "<?xml version=\"1.0\"?>\n<robot name=\"" + token(model.name) + "\">\n  <link name=\"base_link\">\n" +
-         shapes_of(model, moving, base) + "  </link>\n" + rest + "</robot>\n";
+         shapes_of(model, moving, "", base) + "  </link>\n" + rest + "</robot>\n";
 }
 
 }  // namespace ros2

@@ -1,4 +1,4 @@
-// A model as URDF, for robot_description: the base with its shapes, and a link for each moving joint. The frame of a link is that of its
+// A model as URDF, for robot_description: the base and a link for each moving joint, with their shapes. The frame of a link is that of its
 // joint. Pure; any thread.
 #pragma once
 

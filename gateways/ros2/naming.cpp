@@ -3,7 +3,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
 #include "names.h"
@@ -22,10 +24,23 @@ std::string naming_text(const YAML::Node& node, const char* what) {
   return node.as<std::string>();
 }
 
+[[noreturn]] void throw_unknown(const YAML::Node& key_node, const std::string& key, const std::vector<std::string>& known) {
+  const auto meant = base::suggestion(key, known);
+  const auto expected = known.size() < 2 ? known : std::vector<std::string>(known.begin(), known.end() - 1);
+  throw WrongEntry{key_node.Mark(), "unknown key " + base::in_quotes(key) +
+                                        (meant.empty() ? "; expected " + base::join(expected, ", ") + " or " + known.back() : meant)};
+}
+
 double naming_number(const YAML::Node& node, double least, double most, const char* what) {
   double value = 0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= least && value <= most))
     throw WrongEntry{node.Mark(), std::string("expected ") + what};
+  return value;
+}
+
+double naming_integer(const YAML::Node& node, double least, double most, const char* what) {
+  const double value = naming_number(node, least, most, what);
+  if (value != std::floor(value)) throw WrongEntry{node.Mark(), std::string("expected ") + what};
   return value;
 }
 
@@ -53,7 +68,7 @@ RobotNames robot_names(const std::string& model, const YAML::Node& node) {
     } else if (key == "frame_prefix") {
       names.frame_prefix = naming_text(entry.second, "a prefix");
     } else {
-      throw WrongEntry{entry.first.Mark(), "expected namespace or frame_prefix, got " + base::in_quotes(key)};
+      throw_unknown(entry.first, key, {"namespace", "frame_prefix"});
     }
   }
   return names;
@@ -71,7 +86,7 @@ void read_topic_key(TopicEntry& topic, const std::string& key, const YAML::Node&
   } else if (key == "rate") {
     topic.rate = naming_number(value, 1e-3, 1e6, "a rate in Hz");
   } else if (key == "publisher_queue") {
-    topic.depth = static_cast<std::size_t>(naming_number(value, 1, 10000, "a number from 1 to 10000"));
+    topic.depth = static_cast<std::size_t>(naming_integer(value, 1, 10000, "a number from 1 to 10000"));
   } else if (key == "durability") {
     const auto text = naming_text(value, "volatile or transient_local");
     if (text != "volatile" && text != "transient_local") throw WrongEntry{value.Mark(), "expected volatile or transient_local"};
@@ -79,9 +94,8 @@ void read_topic_key(TopicEntry& topic, const std::string& key, const YAML::Node&
   } else if (key == "served") {
     topic.is_served = naming_flag(value);
   } else {
-    throw WrongEntry{key_node.Mark(),
-                     "unknown key " + base::in_quotes(key) +
-                         "; expected iface, ros_type_name, ros_topic_name, frame_id, rate, publisher_queue, durability or served"};
+    throw_unknown(key_node, key,
+                  {"iface", "ros_type_name", "ros_topic_name", "frame_id", "rate", "publisher_queue", "durability", "served"});
   }
 }
 
@@ -101,7 +115,7 @@ Naming naming_of(const YAML::Node& root) {
   for (const auto& entry : root) {
     const auto key = naming_text(entry.first, "a key");
     if (key == "domain") {
-      naming.domain = static_cast<std::uint32_t>(naming_number(entry.second, 0, 232, "a domain from 0 to 232"));
+      naming.domain = static_cast<std::uint32_t>(naming_integer(entry.second, 0, 232, "a domain from 0 to 232"));
     } else if (key == "clock_rate") {
       naming.clock_rate = naming_number(entry.second, 0, 1e6, "a rate in Hz");
     } else if (key == "robots") {
@@ -114,7 +128,7 @@ Naming naming_of(const YAML::Node& root) {
       if (!entry.second.IsSequence()) throw WrongEntry{entry.second.Mark(), "topics: expected a list"};
       for (const auto& topic : entry.second) naming.topics.push_back(topic_entry(topic));
     } else {
-      throw WrongEntry{entry.first.Mark(), "unknown key " + base::in_quotes(key) + "; expected domain, clock_rate, robots or topics"};
+      throw_unknown(entry.first, key, {"domain", "clock_rate", "robots", "topics"});
     }
   }
   return naming;
@@ -123,6 +137,8 @@ Naming naming_of(const YAML::Node& root) {
 }  // namespace
 
 RobotNames Naming::names_of(const std::string& model) const {
+  if (const auto given = spaces.find(model); given != spaces.end())
+    return {given->second, has_tf_per_robot || given->second == "/" ? "" : given->second.substr(1) + "/"};
   if (const auto found = robots.find(model); found != robots.end()) return found->second;
   if (!root_robot.empty() && model == root_robot) return {"/", ""};
   return {"/" + tokens(model), has_tf_per_robot ? "" : tokens(model) + "/"};

@@ -21,17 +21,18 @@ struct RobotNames {
 
 // One topic of an iface, as the mapping file changes it.
 struct TopicEntry {
-  std::string iface;  // "leader::laser"
-  std::string type;   // "sensor_msgs/msg/LaserScan"; empty: every topic of the iface
-  std::optional<std::string> topic, frame;
-  std::optional<double> rate;        // [Hz of simulated time] at most
-  std::optional<bool> is_transient;  // durability
-  std::optional<std::size_t> depth;
+  std::string iface{};  // "leader::laser"
+  std::string type{};   // "sensor_msgs/msg/LaserScan"; empty: every topic of the iface
+  std::optional<std::string> topic{}, frame{};
+  std::optional<double> rate{};        // [Hz of simulated time] at most
+  std::optional<bool> is_transient{};  // durability
+  std::optional<std::size_t> depth{};
   bool is_served = true;
 };
 
 struct Naming {
-  std::map<std::string, RobotNames> robots;  // by model
+  std::map<std::string, RobotNames> robots;   // by model
+  std::map<std::string, std::string> spaces;  // by model: namespaces of robots that were spawned with one
   std::vector<TopicEntry> topics;
   std::optional<double> clock_rate;
   std::optional<std::uint32_t> domain;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -63,6 +64,8 @@ class Robot {
   Commands& commands() { return commands_; }
   Node& node() { return node_; }
   std::vector<Outlet>& outlets() { return outlets_; }
+  // By iface: the types that it can have topics of.
+  const std::map<std::string, std::vector<std::string>>& types() const { return types_; }
 
  private:
   friend class RobotTopics;
@@ -78,6 +81,7 @@ class Robot {
   std::vector<ros::TransformStamped> static_transforms_;
   std::vector<Outlet*> fresh_;
   std::set<std::string> used_topics_;
+  std::map<std::string, std::vector<std::string>> types_;
   Writer* own_tf_ = nullptr;
   Writer* own_tf_static_ = nullptr;
 };

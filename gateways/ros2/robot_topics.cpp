@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "description.h"
+#include "joint_frames.h"
 #include "ros/contact_messages.h"
 #include "ros/from_device.h"
 #include "ros/rotation.h"
@@ -37,25 +38,6 @@ void publish_made(Writer& writer, const std::optional<T>& message) {
 std::vector<Writer*> without_null(std::vector<Writer*> writers) {
   std::erase(writers, nullptr);
   return writers;
-}
-
-// What moves a link along or about its joint's axis.
-shm::Pose motion_of(const shm::Joint& joint, double position) {
-  const double* a = joint.axis;
-  if (joint.kind == RTMSIM_JOINT_SLIDES) return {a[0] * position, a[1] * position, a[2] * position, 1, 0, 0, 0};
-  const double s = std::sin(position / 2);
-  return {0, 0, 0, std::cos(position / 2), a[0] * s, a[1] * s, a[2] * s};
-}
-
-// The frame of a joint on the model, with all joints at 0.
-shm::Pose rest_of(std::span<const shm::Joint> joints, std::size_t i) {
-  shm::Pose pose = joints[i].pose;
-  std::size_t parent = joints[i].parent;
-  for (std::size_t steps = 0; parent != 0 && parent <= joints.size() && steps < joints.size(); ++steps) {
-    pose = ros::product(joints[parent - 1].pose, pose);
-    parent = joints[parent - 1].parent;
-  }
-  return pose;
 }
 
 }  // namespace
@@ -163,6 +145,7 @@ void RobotTopics::add(const ListedIface& listed, bool is_only) {
 
 template <ros::Message T>
 Writer* RobotTopics::advertise(const Place& place, const std::string& topic, bool is_large) {
+  robot_.types_[place.name].emplace_back(T::name);
   const TopicEntry* entry = robot_.shared_.naming.entry(place.name, std::string(T::name));
   if (entry != nullptr && !entry->is_served) return nullptr;
   std::string name = robot_.names_.topic(entry != nullptr && entry->topic ? *entry->topic : topic);
@@ -201,14 +184,10 @@ void RobotTopics::put_sensor_frame(const Place& place, const shm::Pose& on_model
 const RobotTopics::MovingLink* RobotTopics::carrier_of(const std::string& iface) const {
   if (listed_ == nullptr) return nullptr;
   const auto sensor = listed_->sensor_links.find(iface);
-  std::string link = sensor == listed_->sensor_links.end() ? "" : sensor->second;
-  for (std::size_t i = 0; i <= listed_->links.size(); ++i) {  // a ring of fixed joints has an end, too
-    if (const auto found = moving_links_.find(link); found != moving_links_.end()) return &found->second;
-    const auto parent = listed_->fixed_to.find(link);
-    if (parent == listed_->fixed_to.end()) return nullptr;
-    link = parent->second;
-  }
-  return nullptr;
+  if (sensor == listed_->sensor_links.end()) return nullptr;
+  const auto found =
+      moving_links_.find(ros2::carrier_of(*listed_, sensor->second, [&](const auto& link) { return moving_links_.contains(link); }));
+  return found == moving_links_.end() ? nullptr : &found->second;
 }
 
 template <class Message, class Info, class Make>
@@ -330,6 +309,8 @@ void RobotTopics::add_position2d(Place& place) {
   message.header.frame_id = odom;
   message.child_frame_id = base();
   message.pose.covariance = message.twist.covariance = ros::wheel_covariance();
+  // What AMCL, Nav2's collision monitor and slam_toolbox look for. A description of the user's own has it above base_link.
+  if (robot_.shared_.has_joint_tf) put_frame(base(), robot_.names_.frame("base_footprint"), shm::identity_pose);
   Outlet& made = outlet(place, {writer, truth, tf});
   made.is_first = true;
   made.show = [=](Iface& iface, const HeldFrame*) mutable {
@@ -382,7 +363,7 @@ void RobotTopics::add_joints(Place& place) {
   for (std::size_t i = 0; i < place.source->iface().count(); ++i) {
     const std::string link = ros::text_of(joints[i].link);
     frames.push_back(robot_.names_.frame(token(link)));
-    moving_links_[link] = {frames.back(), rest_of({joints, place.source->iface().count()}, i)};
+    moving_links_[link] = {frames.back(), joint_frame({joints, place.source->iface().count()}, i)};
   }
   made.show = [writer, tf, frames, root = base(), to_base = ros::inverse(base_on_model_)](Iface& iface, const HeldFrame*) {
     publish_if(writer, ros::joints_message(iface));

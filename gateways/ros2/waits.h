@@ -36,10 +36,9 @@ class Waits {
   void give_up() { missing_.clear(); }
   // After a reset.
   void rewind();
-
- private:
   static bool is_of(const WaitFor& wanted, const std::string& topic);
 
+ private:
   const std::vector<WaitFor> wanted_;
   std::vector<std::chrono::nanoseconds> due_;
   std::chrono::nanoseconds now_{0};

@@ -32,6 +32,7 @@ ListedModel listed_model(const Json& json) {
     model.links.push_back(std::move(listed));
   }
   for (const auto& joint : json.value("joints", Json::array())) {
+    model.joint_positions[joint.value("name", "")] = joint.value("position", 0.0);
     if (joint.value("type", "") == "fixed") model.fixed_to[joint.value("child", "")] = joint.value("parent", "");
   }
   return model;

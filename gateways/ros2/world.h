@@ -39,6 +39,7 @@ struct ListedModel {
   std::vector<ListedLink> links;
   std::map<std::string, std::string> sensor_links;  // by iface: the link that carries the sensor
   std::map<std::string, std::string> fixed_to;      // by child of a fixed joint: its parent
+  std::map<std::string, double> joint_positions{};  // by joint, when it was listed, as the poses of shapes [rad, m]
 };
 struct Listed {
   std::vector<ListedIface> ifaces;
