@@ -5,12 +5,15 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <utility>
+
 #include "shm/futex.h"
 #include "shm/words.h"
 
 namespace ros2 {
 
-Bell::Bell() : epoll_(::epoll_create1(EPOLL_CLOEXEC)), over_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+Bell::Bell(std::function<void()> on_ring)
+    : on_ring_(std::move(on_ring)), epoll_(::epoll_create1(EPOLL_CLOEXEC)), over_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (ring_for(over_)) thread_ = std::thread([this] { run(); });
 }
 
@@ -33,6 +36,7 @@ bool Bell::ring_for(int descriptor) {
 void Bell::ring() {
   shm::word(rings_).fetch_add(1, std::memory_order_seq_cst);  // pairs with the load in rings()
   shm::futex_wake(rings_, 1);
+  if (on_ring_) on_ring_();
 }
 
 std::uint32_t Bell::rings() const { return shm::load(rings_, std::memory_order_seq_cst); }

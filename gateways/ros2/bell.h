@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <thread>
 
 #include "common/watched_ifaces.h"
@@ -12,7 +13,8 @@ namespace ros2 {
 
 class Bell {
  public:
-  Bell();
+  // `on_ring` is called at each ring, by the thread that rings.
+  explicit Bell(std::function<void()> on_ring = {});
   ~Bell();
   Bell(const Bell&) = delete;
   Bell& operator=(const Bell&) = delete;
@@ -28,6 +30,7 @@ class Bell {
  private:
   void run();
 
+  const std::function<void()> on_ring_;
   int epoll_ = -1, over_ = -1;
   std::uint32_t rings_ = 0;  // [atomic] futex of this process
   std::thread thread_;

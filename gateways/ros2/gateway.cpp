@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "parameters.h"
 #include "robot_topics.h"
+#include "unknown_names.h"
 
 namespace ros2 {
 namespace {
@@ -20,6 +21,10 @@ namespace {
 constexpr std::chrono::milliseconds look_period{200}, resend_period{50}, tend_period{10};
 constexpr std::chrono::seconds report_period{5}, paused_clock_period{1};
 constexpr std::chrono::milliseconds idle_wait{20};
+
+std::chrono::nanoseconds tick_period(double clock_rate) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / (clock_rate > 0 ? clock_rate : 1000)));
+}
 
 std::set<std::string> robots_in(const Listed& listed) {
   std::set<std::string> robots;
@@ -37,12 +42,16 @@ Gateway::Gateway(Options options)
     : options_(std::move(options)),
       errands_(options_.server_id),
       steps_(options_.server_id),
+      turns_(options_.is_lockstep ? std::make_unique<Turns>(options_.server_id, tick_period(options_.clock_rate)) : nullptr),
+      bell_([this] {
+        if (turns_) turns_->interrupt();
+      }),
       world_(
           options_.server_id, errands_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
       waits_(options_.waits) {}
 
 Gateway::~Gateway() {
-  turns_.reset();
+  if (turns_) turns_->leave();
   robots_.clear();
   services_.reset();
   node_.reset();
@@ -70,14 +79,9 @@ base::Result<void> Gateway::open() {
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
   if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
   if (options_.has_parameters) serve_parameters(*node_, gateway_node);
-  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, steps_, options_.service_prefix);
+  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, steps_, options_.service_prefix, namespaces());
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
                                             [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
-  if (options_.is_lockstep) {
-    const double rate = options_.clock_rate > 0 ? options_.clock_rate : 1000;
-    turns_ = std::make_unique<Turns>(options_.server_id, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / rate)),
-                                     [this] { bell_.ring(); });
-  }
   if (!bell_.ring_for(signals_) || !bell_.ring_for(errands_.descriptor()) || !bell_.ring_for(steps_.descriptor()))
     return base::Error{"no file descriptors left"};
   return {};
@@ -102,7 +106,20 @@ void Gateway::turn_loop() {
   if (now >= next_tend_) tend(now);
   if (are_sources_due_) choose_sources();
   tend_tick(now);
-  bell_.sleep(ifaces_, rings, idle_wait);
+  sleep(rings);
+}
+
+void Gateway::sleep(std::uint32_t rings) {
+  if (!turns_ || tick_ || !turns_->join()) return bell_.sleep(ifaces_, rings, idle_wait);
+  if (bell_.rings() != rings) return;
+  const auto tick = turns_->sleep(idle_wait);
+  if (!tick) return;
+  // What came before the tick is no answer to it.
+  if (const std::uint32_t news = bell_.rings(); news != answered_) {
+    answer_bell();
+    answered_ = news;
+  }
+  begin_tick(*tick);
 }
 
 void Gateway::tend(Time now) {
@@ -127,6 +144,7 @@ void Gateway::choose_sources() {
   are_sources_due_ = false;
   bool has_changed = false;
   for (const auto& robot : robots_) has_changed = robot->choose_sources() || has_changed;
+  choose_clock();
   std::vector<SharedSegment> watched;
   if (world_.clock() && clock_ != nullptr && !clock_->readers().empty()) watched.push_back(world_.clock()->segment());
   for (const auto& source : world_.sources()) {
@@ -138,6 +156,22 @@ void Gateway::choose_sources() {
   if (!has_changed && watched == watched_) return;
   ifaces_.replace(watched);
   watched_ = std::move(watched);
+}
+
+// While nobody reads its ifaces, a simulator makes several steps at once. Their clocks would come in bursts.
+void Gateway::choose_clock() {
+  constexpr double bursts = 200;  // [Hz] of steps together, at most
+  const bool is_fast = options_.clock_rate == 0 || options_.clock_rate > bursts / 2;
+  const bool is_wanted = is_fast && !turns_ && clock_ != nullptr && !clock_->readers().empty();
+  const auto wanted = is_wanted ? world_.clock() : nullptr;
+  if (wanted == read_clock_) return;
+  if (read_clock_) read_clock_->remove_reader();
+  read_clock_ = wanted;
+  if (!read_clock_) return;
+  if (const auto done = read_clock_->add_reader(); !done) {
+    base::log(base::Level::warn, "ros2-gateway", "{}", done.error().message);
+    read_clock_.reset();
+  }
 }
 
 bool Gateway::is_paused() const {
@@ -162,11 +196,21 @@ void Gateway::answer_bell() {
   if (participant_->deliver()) are_sources_due_ = true;
   errands_.deliver();
   steps_.deliver();
-  if (!turns_ || tick_) return;
-  if (const auto tick = turns_->tick()) begin_tick(*tick);
 }
 
 // ---- the world ----
+
+Namespaces Gateway::namespaces() {
+  return {[this](const std::string& space) {
+            const auto user =
+                std::ranges::find_if(robots_, [&](const auto& robot) { return options_.naming.names_of(robot->model()).space == space; });
+            return user == robots_.end() ? std::string() : (*user)->model();
+          },
+          [this](const std::string& model, const std::string& space) {
+            options_.naming.spaces.erase(model);
+            if (!space.empty()) options_.naming.spaces[model] = space;
+          }};
+}
 
 void Gateway::arrange(const Listed& listed) {
   const auto wanted = robots_in(listed);
@@ -190,8 +234,19 @@ void Gateway::arrange(const Listed& listed) {
   }
   std::printf("domain %u: %zu robots\n", options_.dds.domain, robots_.size());
   std::fflush(stdout);
+  name_unknown(listed);
   are_sources_due_ = true;
   send_static_transforms();
+}
+
+void Gateway::name_unknown(const Listed& listed) {
+  const auto models = robots_in(listed);
+  KnownNames known{{models.begin(), models.end()}, {}, command_topics(), {}};
+  for (const auto& iface : listed.ifaces) known.ifaces.push_back(iface.name);
+  for (const auto& robot : robots_) known.types.insert(robot->types().begin(), robot->types().end());
+  for (const auto& line : lines_of_unknown_names(options_.naming, options_.waits, known)) {
+    if (named_.insert(line).second) base::log(base::Level::warn, "ros2-gateway", "{}", line);
+  }
 }
 
 void Gateway::send_static_transforms() {
@@ -206,6 +261,8 @@ void Gateway::send_static_transforms() {
 
 void Gateway::lose() {
   robots_.clear();
+  options_.naming.spaces.clear();
+  read_clock_.reset();
   clock_ns_ = -1;
   are_sources_due_ = true;
 }

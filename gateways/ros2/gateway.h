@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,10 @@ class Gateway {
   base::Result<void> open();
   void turn_loop();
   void answer_bell();
+  Namespaces namespaces();
   void arrange(const Listed& listed);
   void lose();
+  void name_unknown(const Listed& listed);
   void send_static_transforms();
   void take_samples();
   void send_clock(bool is_forced);
@@ -64,14 +67,17 @@ class Gateway {
   void report_lost(const Writer& writer);
   std::uint64_t growth(const std::string& what, std::uint64_t count);
   void tend(Time now);
+  void sleep(std::uint32_t rings);
   void choose_sources();
+  void choose_clock();
   void watch_other_clocks();
   bool is_paused() const;
   std::vector<std::string> command_topics() const;
 
   Options options_;
   int signals_ = -1;
-  Errands errands_, steps_;  // steps: takes long
+  Errands errands_, steps_;       // steps: takes long
+  std::unique_ptr<Turns> turns_;  // before the bell, which interrupts it
   Bell bell_;
   gateway::WatchedIfaces ifaces_;
   World world_;
@@ -83,9 +89,9 @@ class Gateway {
   Writer* tf_static_ = nullptr;
   std::unique_ptr<Shared> shared_;
   std::vector<std::unique_ptr<Robot>> robots_;
-  std::map<std::string, std::string> shown_;  // by robot: what was printed
+  std::set<std::string> named_;  // lines about unknown names that were logged
   std::vector<SharedSegment> watched_;
-  std::unique_ptr<Turns> turns_;
+  std::shared_ptr<Source> read_clock_;  // while its steps are shown
   Waits waits_;
   std::optional<shm::Tick> tick_;
   Time tick_start_{}, clock_sent_{};

@@ -58,8 +58,7 @@ class Node {
     };
     add_readers({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>()}, take);
   }
-  // `Request2`: what newer clients send under the same name; told apart by the type hash of the client. `on_request` receives either, and
-  // the function that sends the reply, now or later.
+  // `on_request` receives the request, and the function that sends the reply, now or later.
   template <ros::Message Request, ros::Message Response>
   void serve(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request) {
     add_service(service, service_types<Request, Response>(),
@@ -70,21 +69,22 @@ class Node {
                   return true;
                 });
   }
+  // `Request2`: what newer clients send under the same name; told apart by the type hash of the client.
   template <ros::Message Request, ros::Message Request2, ros::Message Response>
   void serve_both(const std::string& service, std::function<void(const Request&, std::function<void(const Response&)>)> on_request,
-                  std::function<Request(const Request2&)> to_request) {
+                  std::function<void(const Request2&, std::function<void(const Response&)>)> on_newer) {
     add_service(service, service_types<Request, Response>(),
-                [on_request = std::move(on_request), to_request = std::move(to_request), hash = ros::TypeHash::of<Request2>()](
+                [on_request = std::move(on_request), on_newer = std::move(on_newer), hash = ros::TypeHash::of<Request2>()](
                     std::span<const std::uint8_t> bytes, const ClientHashes& client, const Reply& reply) {
-                  std::optional<Request> request;
+                  const auto answer = [reply](const Response& response) { reply(ros::encode(response)); };
                   if (client.request == hash) {
-                    if (const auto newer = ros::decode<Request2>(bytes)) request = to_request(*newer);
-                  } else {
-                    request = ros::decode<Request>(bytes);
+                    const auto newer = ros::decode<Request2>(bytes);
+                    if (newer) on_newer(*newer, answer);
+                    return newer.has_value();
                   }
-                  if (!request) return false;
-                  on_request(*request, [reply](const Response& response) { reply(ros::encode(response)); });
-                  return true;
+                  const auto request = ros::decode<Request>(bytes);
+                  if (request) on_request(*request, answer);
+                  return request.has_value();
                 });
   }
   // `Response2`: what newer clients expect for the same request; told apart by the type hash of the client's reply.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "names.h"
 #include "ros/from_iface.h"
 #include "shm/layout.h"
 
@@ -130,12 +131,16 @@ bool is_other_format(const std::string& text) {
   return !root.starts_with("<sdf") && !root.starts_with("<robot") && root.find('>') != std::string_view::npos;
 }
 
+// "robot1" is "/robot1".
+std::string full_namespace(const std::string& typed) { return typed.empty() || typed.front() == '/' ? typed : "/" + typed; }
+
 bool is_world(const std::string& frame) { return frame.empty() || frame == "world" || frame == "map"; }
 
 }  // namespace
 
-SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix)
-    : node_(node), world_(world), errands_(errands), steps_(steps), prefix_(std::move(prefix)) {
+SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix,
+                                       Namespaces namespaces)
+    : node_(node), world_(world), errands_(errands), steps_(steps), prefix_(std::move(prefix)), namespaces_(std::move(namespaces)) {
   serve_time();
   serve_entities();
   serve_spawnables();
@@ -191,16 +196,17 @@ void SimulationServices::serve_time() {
       ask(shm::ResetRequest{}, answer);
     });
   });
-  node_.serve<ros::ResetSimulationRequest, ros::ResetSimulationResponse>(
-      name("reset_simulation"), [this](const auto& request, const auto& reply) {
-        using Scope = ros::ResetSimulationRequest;
-        const auto answer = [reply](const Result& result) { reply(ros::ResetSimulationResponse{result}); };
-        const std::uint8_t scope = request.scope == 0 ? Scope::all : request.scope;
-        if ((scope & Scope::all) == Scope::all || (scope & (Scope::time | Scope::state)) == (Scope::time | Scope::state))
-          return ask(shm::ResetRequest{}, answer);
-        if (scope == Scope::state) return ask(shm::ResetRequest{.poses_only = true}, answer);
-        answer(bad(SimulationResult::unsupported, "scope " + std::to_string(scope) + " is not supported; use 0 (all) or 2 (state)"));
-      });
+  node_.serve<ros::ResetSimulationRequest, ros::ResetSimulationResponse>(name("reset_simulation"), [this](const auto& request,
+                                                                                                          const auto& reply) {
+    using Scope = ros::ResetSimulationRequest;
+    const auto answer = [reply](const Result& result) { reply(ros::ResetSimulationResponse{result}); };
+    const std::uint8_t scope = request.scope == 0 ? Scope::all : request.scope;
+    constexpr std::uint8_t whole = Scope::time | Scope::state | Scope::spawned;
+    if ((scope & whole) == whole) return ask(shm::ResetRequest{}, answer);
+    if (scope == Scope::state) return ask(shm::ResetRequest{.poses_only = true}, answer);
+    answer(bad(SimulationResult::unsupported,
+               "scope " + std::to_string(scope) + " is not supported; use 0, 7 or 255 (time, state and spawned entities) or 2 (state)"));
+  });
   node_.serve<ros::StepSimulationRequest, ros::StepSimulationResponse>(
       name("step_simulation"), [this](const auto& request, const auto& reply) {
         const auto answer = [reply](const Result& result) { reply(ros::StepSimulationResponse{result}); };
@@ -256,13 +262,9 @@ void SimulationServices::serve_entities() {
   });
   node_.serve_both<ros::SpawnEntityRequest, ros::SpawnEntityRequest2, ros::SpawnEntityResponse>(
       name("spawn_entity"), [this](const auto& request, const auto& reply) { spawn(request, reply); },
-      [](const ros::SpawnEntityRequest2& newer) {
-        return ros::SpawnEntityRequest{newer.label,
-                                       newer.allow_renaming,
-                                       newer.entity_resource.uri,
-                                       newer.entity_resource.resource_string,
-                                       newer.entity_namespace,
-                                       newer.initial_pose};
+      [this](const auto& newer, const auto& reply) {
+        const auto& [uri, text] = newer.entity_resource;
+        spawn({newer.label, newer.allow_renaming, uri, text, newer.entity_namespace, newer.initial_pose}, reply);
       });
 }
 
@@ -293,12 +295,23 @@ void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std
   const auto refuse = [&](std::uint8_t code, const std::string& why) { reply(ros::SpawnEntityResponse{bad(code, why), ""}); };
   if (request.uri.empty() && request.resource_string.empty()) return refuse(no_resource, "uri and resource_string are empty");
   if (const auto problem = problem_of_model_name(request.label, request.allow_renaming)) return refuse(name_invalid, *problem);
-  if (is_other_format(request.resource_string)) return refuse(unsupported_format, "resource_string must be sdf or urdf");
-  if (!request.entity_namespace.empty())
-    return refuse(namespace_invalid, "entity_namespace must be empty: topics have the name of the model");
+  if (request.uri.empty() && is_other_format(request.resource_string))
+    return refuse(unsupported_format, "resource_string must be sdf or urdf");
+  if (const auto problem = problem_of_namespace(request.entity_namespace)) return refuse(namespace_invalid, *problem);
   const auto pose = shm_pose(request.initial_pose.pose);
-  if (!pose || !is_world(request.initial_pose.header.frame_id))
-    return refuse(invalid_pose, "initial_pose must have a finite orientation, a position below 1e12 m, and be in the frame world");
+  const std::string frame = request.initial_pose.header.frame_id;
+  if (!pose) return refuse(invalid_pose, "initial_pose must have a finite orientation and a position below 1e12 m");
+  if (is_world(frame)) return spawn_at(request, *pose, reply);
+  errands_.post(shm::GetPoseRequest{frame}, [this, request, reply, frame, pose = *pose](const base::Result<shm::Reply>& entity) {
+    if (!entity)
+      return reply({bad(invalid_pose, "initial_pose must be in the frame world or in that of an entity, got \"" + frame + "\""), ""});
+    const double* p = entity->values;
+    spawn_at(request, ros::product({p[0], p[1], p[2], p[3], p[4], p[5], p[6]}, pose), reply);
+  });
+}
+
+void SimulationServices::spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose,
+                                  const std::function<void(const ros::SpawnEntityResponse&)>& reply) {
   ask_models({}, [this, request, reply, pose](const std::vector<std::string>& models, const Result& result) {
     if (result.result != SimulationResult::ok) return reply(ros::SpawnEntityResponse{result, ""});
     std::string wanted = request.label;
@@ -307,14 +320,26 @@ void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std
         return reply(ros::SpawnEntityResponse{bad(name_not_unique, "the world has a model \"" + wanted + "\" already"), ""});
       wanted = request.label + "_" + std::to_string(i);
     }
-    const bool is_path = request.resource_string.empty();
+    const bool is_path = !request.uri.empty();  // the text is ignored then
     // For clients that may not read all that the simulator may.
-    shm::SpawnRequest spawn{is_path ? request.uri : request.resource_string, is_path, wanted, true, *pose, true};
-    errands_.post(std::move(spawn), [reply](const base::Result<shm::Reply>& done) {
+    shm::SpawnRequest spawn{is_path ? request.uri : request.resource_string, is_path, wanted, true, pose, true};
+    errands_.post(std::move(spawn), [this, reply, space = full_namespace(request.entity_namespace)](const base::Result<shm::Reply>& done) {
       if (!done) return reply(ros::SpawnEntityResponse{bad(resource_parse_error, done.error().message), ""});
+      namespaces_.on_spawned(done->message, space);
       reply(ros::SpawnEntityResponse{good(), done->message});
     });
   });
+}
+
+std::optional<std::string> SimulationServices::problem_of_namespace(const std::string& typed) const {
+  const std::string space = full_namespace(typed);
+  if (space.empty()) return std::nullopt;
+  if (space != "/") {
+    if (const auto problem = problem_of_name(space)) return "entity_namespace \"" + typed + "\" " + *problem;
+  }
+  const std::string user = namespaces_.user_of(space);
+  if (user.empty()) return std::nullopt;
+  return "entity_namespace \"" + typed + "\" is that of the robot " + user;
 }
 
 void SimulationServices::ask_state(const std::string& entity, OnState done) {
@@ -358,36 +383,34 @@ void SimulationServices::serve_entity_states() {
           }
         });
       });
-  // A client of 1.x sets pose and velocity.
   node_.serve_both<ros::SetEntityStateRequest, ros::SetEntityStateRequest2, ros::SetEntityStateResponse>(
-      name("set_entity_state"), [this](const auto& request, const auto& reply) { set_state(request, reply); },
-      [](const ros::SetEntityStateRequest2& newer) {
-        ros::SetEntityStateRequest request{newer.entity, newer.state};
-        if (!newer.set_pose) request.state.header.frame_id = "keep";
-        if (!newer.set_twist) request.state.twist = {};
-        return request;
-      });
+      name("set_entity_state"),
+      [this](const auto& request, const auto& reply) {
+        set_state({request.entity, request.state, true, true, false}, reply);
+      },
+      [this](const auto& request, const auto& reply) { set_state(request, reply); });
 }
 
-void SimulationServices::set_state(const ros::SetEntityStateRequest& request,
+void SimulationServices::set_state(const ros::SetEntityStateRequest2& request,
                                    const std::function<void(const ros::SetEntityStateResponse&)>& reply) {
   const auto answer = [reply](const Result& result) { reply(ros::SetEntityStateResponse{result}); };
-  const auto& twist = request.state.twist;
-  const auto set_velocity = [this, twist, entity = request.entity, answer] {
-    shm::SetVelocityRequest velocity{
-        entity, {twist.linear.x, twist.linear.y, twist.linear.z}, {twist.angular.x, twist.angular.y, twist.angular.z}};
-    ask(velocity, answer);
-  };
-  if (request.state.header.frame_id == "keep") return set_velocity();
+  if (request.set_acceleration) return answer(bad(SimulationResult::unsupported, "set_acceleration must be false"));
   const auto pose = shm_pose(request.state.pose);
-  if (!pose || !is_world(request.state.header.frame_id))
+  if (request.set_pose && (!pose || !is_world(request.state.header.frame_id)))
     return answer(bad(state_invalid_pose, "pose must have a finite orientation, a position below 1e12 m, and be in the frame world"));
-  const bool is_at_rest = twist.linear.x == 0 && twist.linear.y == 0 && twist.linear.z == 0 && twist.angular.x == 0 &&
-                          twist.angular.y == 0 && twist.angular.z == 0;
-  errands_.post(shm::SetPoseRequest{request.entity, *pose}, [answer, set_velocity, is_at_rest](const base::Result<shm::Reply>& done) {
-    if (!done) return answer(bad(SimulationResult::not_found, done.error().message));
-    if (is_at_rest) return answer(good());  // the pose was set at rest
-    set_velocity();
+  // It says whether there is the entity, and what is to stay.
+  ask_state(request.entity, [this, request, pose, answer](const ros::EntityState& before, const Result& found) {
+    if (found.result != SimulationResult::ok) return answer(found);
+    const auto& twist = request.set_twist ? request.state.twist : before.twist;
+    const shm::SetVelocityRequest velocity{
+        request.entity, {twist.linear.x, twist.linear.y, twist.linear.z}, {twist.angular.x, twist.angular.y, twist.angular.z}};
+    if (!request.set_pose) return request.set_twist ? ask(velocity, answer) : answer(good());
+    const auto is_zero = [](double value) { return value == 0; };
+    const bool is_at_rest = std::ranges::all_of(velocity.linear, is_zero) && std::ranges::all_of(velocity.angular, is_zero);
+    ask(shm::SetPoseRequest{request.entity, *pose}, [this, answer, velocity, is_at_rest](const Result& done) {
+      if (done.result != SimulationResult::ok || is_at_rest) return answer(done);  // the pose was set at rest
+      ask(velocity, answer);
+    });
   });
 }
 

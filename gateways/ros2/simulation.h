@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,17 @@
 
 namespace ros2 {
 
+// Names of robots that are spawned with a namespace.
+struct Namespaces {
+  std::function<std::string(const std::string& space)> user_of;                        // the robot that has it; empty: nobody
+  std::function<void(const std::string& model, const std::string& space)> on_spawned;  // empty: the usual one
+};
+
 class SimulationServices {
  public:
   // `steps`: where steps wait, so that the simulation can be paused meanwhile. `prefix`: "" for the root names, "/sim" for
   // "/sim/get_simulation_state" and so on. All must outlive this object.
-  SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix);
+  SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix, Namespaces namespaces);
 
  private:
   using Result = ros::SimulationResult;
@@ -29,7 +36,11 @@ class SimulationServices {
   void serve_spawnables();
   void serve_entity_states();
   void spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply);
-  void set_state(const ros::SetEntityStateRequest& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);
+  void spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose,
+                const std::function<void(const ros::SpawnEntityResponse&)>& reply);
+  std::optional<std::string> problem_of_namespace(const std::string& typed) const;
+  // 2.x says what is set; 1.x sets pose and twist.
+  void set_state(const ros::SetEntityStateRequest2& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);
   // Asks the simulator for its models; those that the filter names.
   void ask_models(const ros::EntityFilters& filters, OnModels done);
   void ask_state(const std::string& entity, OnState done);
@@ -43,6 +54,7 @@ class SimulationServices {
   Errands& errands_;
   Errands& steps_;
   const std::string prefix_;
+  const Namespaces namespaces_;
 };
 
 }  // namespace ros2

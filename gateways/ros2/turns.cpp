@@ -6,57 +6,49 @@
 
 namespace ros2 {
 namespace {
-constexpr std::chrono::milliseconds wait_slice{100};
+constexpr std::chrono::milliseconds look_period{100};
 }
 
-Turns::Turns(std::uint32_t server_id, std::chrono::nanoseconds period, std::function<void()> on_tick)
-    : server_id_(server_id), period_(period), on_tick_(std::move(on_tick)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
-
-Turns::~Turns() {
-  thread_.request_stop();
-  thread_.join();
+bool Turns::join() {
+  if (participant_) return true;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_look_) return false;
+  next_look_ = now + look_period;
+  auto joined = shm::Participant::join(server_id_, {.name = "ros2-gateway", .phase = 1, .period = period_});
+  if (!joined) return false;
+  participant_ = std::make_shared<shm::Participant>(std::move(*joined));
+  *sleeper_.lock() = participant_;
+  return true;
 }
 
-std::optional<shm::Tick> Turns::tick() { return state_.lock()->tick; }
+std::optional<shm::Tick> Turns::sleep(std::chrono::nanoseconds time) {
+  shm::Tick tick;
+  switch (participant_->wait(tick, time)) {
+    case shm::Participant::State::tick:
+      return tick;
+    case shm::Participant::State::timed_out:
+      return std::nullopt;
+    case shm::Participant::State::dropped:
+      base::log(base::Level::warn, "ros2-gateway", "the simulator dropped the gateway from the lock step; it joins again");
+      break;
+    case shm::Participant::State::closed:
+      break;
+  }
+  leave();
+  return std::nullopt;
+}
 
 void Turns::finish() {
-  state_.lock()->tick.reset();
-  changed_.notify_all();
+  if (participant_) participant_->finish();
 }
 
-void Turns::hand_over(const shm::Tick& tick, const std::stop_token& stop) {
-  state_.lock()->tick = tick;
-  on_tick_();
-  auto state = state_.lock();
-  state.wait(changed_, stop, [&] { return !state->tick; });
+void Turns::interrupt() {
+  if (const auto sleeper = sleeper_.snapshot()) sleeper->interrupt();
 }
 
-void Turns::run(const std::stop_token& stop) {
-  std::optional<shm::Participant> participant;
-  while (!stop.stop_requested()) {
-    if (!participant) {
-      auto joined = shm::Participant::join(server_id_, {.name = "ros2-gateway", .phase = 1, .period = period_});
-      if (!joined) {
-        // Nobody says when a simulator starts.
-        std::this_thread::sleep_for(wait_slice);
-        continue;
-      }
-      participant.emplace(std::move(*joined));
-    }
-    shm::Tick tick;
-    switch (participant->wait(tick, wait_slice)) {
-      case shm::Participant::State::tick:
-        hand_over(tick, stop);
-        break;
-      case shm::Participant::State::timed_out:
-        break;
-      case shm::Participant::State::dropped:
-        base::log(base::Level::warn, "ros2-gateway", "the simulator dropped the gateway from the lock step; it joins again");
-        [[fallthrough]];
-      case shm::Participant::State::closed:
-        participant.reset();
-    }
-  }
+void Turns::leave() {
+  sleeper_.lock()->reset();
+  participant_.reset();
 }
 
 }  // namespace ros2

@@ -1,13 +1,11 @@
-// The gateway's place in the lock step: a thread waits for ticks and hands each to the event loop, which says when it is done. After the
-// simulator has ended, or dropped the gateway, it joins again. The public functions belong to one thread at a time.
+// The gateway's place in the lock step. The event loop sleeps here between ticks, so a tick wakes one thread. After the simulator has
+// ended, or dropped the gateway, it joins again. interrupt() belongs to any thread, the rest to one at a time.
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
-#include <thread>
 
 #include "base/guarded.h"
 #include "shm/lockstep.h"
@@ -16,29 +14,23 @@ namespace ros2 {
 
 class Turns {
  public:
-  // `on_tick` is called by the thread when a tick begins.
-  Turns(std::uint32_t server_id, std::chrono::nanoseconds period, std::function<void()> on_tick);
-  ~Turns();
-  Turns(const Turns&) = delete;
-  Turns& operator=(const Turns&) = delete;
+  Turns(std::uint32_t server_id, std::chrono::nanoseconds period) : server_id_(server_id), period_(period) {}
 
-  // The tick that runs and waits for finish(); nothing between ticks.
-  std::optional<shm::Tick> tick();
+  // False while there is no simulator; looks for one some times a second.
+  bool join();
+  // After join(), between ticks. The tick that began; nothing after interrupt() or the time.
+  std::optional<shm::Tick> sleep(std::chrono::nanoseconds time);
   void finish();
+  // Ends a sleep(), also the next one.
+  void interrupt();
+  void leave();
 
  private:
-  struct State {
-    std::optional<shm::Tick> tick;
-  };
-  void run(const std::stop_token& stop);
-  void hand_over(const shm::Tick& tick, const std::stop_token& stop);
-
   const std::uint32_t server_id_;
   const std::chrono::nanoseconds period_;
-  const std::function<void()> on_tick_;
-  base::Guarded<State, base::Rank::worker> state_;
-  std::condition_variable_any changed_;
-  std::jthread thread_;  // last: it uses the others
+  std::chrono::steady_clock::time_point next_look_{};
+  std::shared_ptr<shm::Participant> participant_;
+  base::Guarded<std::shared_ptr<shm::Participant>, base::Rank::worker> sleeper_;  // the same, for interrupt()
 };
 
 }  // namespace ros2
