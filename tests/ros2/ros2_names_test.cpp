@@ -10,6 +10,7 @@
 #include "naming.h"
 #include "served.h"
 #include "support/paths.h"
+#include "unknown_names.h"
 #include "waits.h"
 
 namespace {
@@ -124,11 +125,40 @@ TEST_F(Ros2Mapping, names_frames_rates_and_domains_are_read) {
 TEST_F(Ros2Mapping, errors_name_the_line_and_what_was_expected) {
   EXPECT_EQ(error("domain: 300\n"), ":1: expected a domain from 0 to 232");
   EXPECT_EQ(error("clock_rate: 1\nrobot: x\n"), ":2: unknown key \"robot\"; expected domain, clock_rate, robots or topics");
+  EXPECT_EQ(error("clock_rte: 1\n"), ":1: unknown key \"clock_rte\"; did you mean clock_rate?");
+  EXPECT_EQ(error("robots: {a: {frame_prefx: b}}\n"), ":1: unknown key \"frame_prefx\"; did you mean frame_prefix?");
+  EXPECT_EQ(error("topics: [{iface: a, durabilty: volatile}]\n"), ":1: unknown key \"durabilty\"; did you mean durability?");
+  EXPECT_EQ(error("domain: 5.5\n"), ":1: expected a domain from 0 to 232");
   EXPECT_EQ(error("topics:\n  - {ros_topic_name: scan}\n"), ":2: iface is missing");
   EXPECT_EQ(error("topics:\n  - {iface: a, ros_topic_name: scan}\n"),
             ":2: ros_topic_name needs ros_type_name: an iface can have several topics");
   EXPECT_EQ(error("topics:\n  - {iface: a, rate: fast}\n"), ":2: expected a rate in Hz");
   EXPECT_EQ(error("robots:\n  a: {namespace: \"1x\"}\n"), ":2: name \"1x\" has an empty part, or one that begins with a digit");
+}
+
+TEST(Ros2UnknownNames, names_that_the_world_does_not_have_are_listed) {
+  Naming naming;
+  naming.root_robot = "laeder";
+  naming.robots["folower"] = {"/f", "f/"};
+  naming.topics = {{.iface = "leader::lasr"}, {.iface = "leader::laser", .type = "sensor_msgs/msg/LaserScn"}};
+  const KnownNames known{
+      {"leader", "follower"}, {"leader::laser"}, {"/leader/cmd_vel"}, {{"leader::laser", {"sensor_msgs/msg/LaserScan"}}}};
+  EXPECT_EQ(lines_of_unknown_names(naming, {{"cmd_vl", milliseconds(50)}}, known),
+            (std::vector<std::string>{
+                "--root: the world has no robot \"laeder\"; did you mean leader?",
+                "--config: robots: the world has no robot \"folower\"; did you mean follower?",
+                "--config: topics: the world has no iface \"leader::lasr\"; did you mean leader::laser?",
+                "--config: topics: iface leader::laser has no topic of the type \"sensor_msgs/msg/LaserScn\"; did you mean "
+                "sensor_msgs/msg/LaserScan?",
+                "--wait-for: time does not wait, because no robot has the command topic \"cmd_vl\"; did you mean /leader/cmd_vel?"}));
+}
+
+TEST(Ros2UnknownNames, names_that_the_world_has_draw_no_line) {
+  Naming naming;
+  naming.root_robot = "leader";
+  naming.topics = {{.iface = "leader::laser"}, {.iface = "leader::laser", .type = "sensor_msgs/msg/LaserScan"}};
+  const KnownNames known{{"leader"}, {"leader::laser"}, {"/cmd_vel"}, {{"leader::laser", {"sensor_msgs/msg/LaserScan"}}}};
+  EXPECT_EQ(lines_of_unknown_names(naming, {{"cmd_vel", milliseconds(50)}}, known), std::vector<std::string>());
 }
 
 }  // namespace

@@ -1,203 +1,13 @@
 # Data ports on topics of ROS 2, before a peer by another maker of DDS and with an encoder of their own: each data type in both directions,
 # QoS, connections in files, a module that is not there, a mapping of an author.
-import copy
-import math
 import os
 import struct
-import sys
 import threading
 
-from ros2_rig import Rig, await_, case, lib_dir, source, wire
+from port_rows import *
+from ros2_rig import *
 
 both = 2  # readers of a port that receives from all writers: one for those of best effort
-STAMP = {"sec": 1234, "nanosec": 567000000}
-TURN = {"x": 0.0, "y": 0.0, "z": math.sin(0.3), "w": math.cos(0.3)}  # about z by 0.6 rad
-
-
-# A message with another value in each field, whose numbers all types can hold.
-class Filled:
-    def __init__(self):
-        self.count = 0
-
-    def value(self, kind):
-        if kind.endswith("]"):
-            element, size = kind[:-1].split("[")
-            values = [self.value(element) for _ in range(int(size or 3))]
-            return bytes(values) if element == "u8" else values
-        if kind == "builtin_interfaces/Time":
-            return dict(STAMP)
-        if kind not in wire.NUMBERS and kind != "str":
-            return {name: self.value(part) for part, name in wire.FIELDS[kind]}
-        self.count += 1
-        if kind == "str":
-            return f"name{self.count}"
-        if kind == "bool":
-            return True
-        return self.count + 0.25 if kind in ("f32", "f64") else self.count
-
-
-def filled(kind, **changes):
-    return {**Filled().value(kind), **changes}
-
-
-def are_alike(a, b):
-    if isinstance(a, dict):
-        return a.keys() == b.keys() and all(are_alike(a[key], b[key]) for key in a)
-    if isinstance(a, list):
-        return len(a) == len(b) and all(are_alike(x, y) for x, y in zip(a, b))
-    if isinstance(a, float):
-        return a == b or (math.isnan(a) and math.isnan(b)) or abs(a - b) <= 1e-6 * max(1, abs(a))
-    return a == b
-
-
-ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
-NO_TWIST = {"linear": ZERO, "angular": ZERO}
-
-
-def header(frame):
-    return {"stamp": STAMP, "frame_id": frame}
-
-
-def diagonal(*values):
-    size = len(values)
-    return [float(values[i // size]) if i % (size + 1) == 0 else 0.0 for i in range(size * size)]
-
-
-WHEELS, UNKNOWN = diagonal(1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3), diagonal(*[1e12] * 6)
-
-
-class Row:
-    def __init__(self, port, kind, sent, wanted=None, named=False, more=(), source_kind=None):
-        self.port, self.kind, self.sent = port, kind, sent
-        self.wanted = copy.deepcopy(sent) if wanted is None else wanted
-        self.in_kind = source_kind or kind
-        # The default mapping has no marshaling_type.
-        self.marshaling = ("-p", f"marshaling_type=ros2:{kind}") if named else ()
-        self.in_marshaling = ("-p", f"marshaling_type=ros2:{self.in_kind}") if named or source_kind else ()
-        self.more = more
-
-
-def number_rows():
-    for port, kind, value in (("State", "Int16", -3), ("Short", "Int16", -4), ("Long", "Int32", -50000), ("UShort", "UInt16", 60000),
-                              ("ULong", "UInt32", 4000000000), ("Float", "Float32", 1.25), ("Double", "Float64", 1 / 3), ("Boolean", "Bool", True),
-                              ("Octet", "UInt8", 200), ("Char", "Int8", 65), ("String", "String", "größer\n\"quoted\"")):
-        yield Row(port, f"std_msgs/{kind}", {"data": value})
-    for port, kind, value, wanted in (("Long", "Float64", 3.75, 3.0), ("Long", "Int64", 2**40, float(2**31 - 1)), ("Double", "UInt8", 200, 200),
-                                      ("Float", "Int64", -(2**20), -(2**20)), ("State", "UInt64", 7, 7), ("ULong", "Int8", -1, 0),
-                                      ("Short", "Float32", -1e9, -32768.0), ("UShort", "Int32", 70000, 65535), ("Double", "Float32", 0.5, 0.5)):
-        yield Row(port, f"std_msgs/{kind}", {"data": value}, {"data": type(value)(wanted)}, named=True)
-    plain = {"dim": [], "data_offset": 0}
-    layout = {"dim": [{"label": "rows", "size": 3, "stride": 3}], "data_offset": 1}
-    for port, kind, values in (("ShortSeq", "Int16", [-1, 2, -3]), ("LongSeq", "Int32", [-100000, 2, 3]), ("UShortSeq", "UInt16", [1, 60000, 3]),
-                               ("ULongSeq", "UInt32", [1, 2, 4000000000]), ("FloatSeq", "Float32", [1.5, -2.5, 3.25]),
-                               ("DoubleSeq", "Float64", [1 / 3, -2.0, 1e300]), ("OctetSeq", "UInt8", bytes([1, 2, 255])), ("CharSeq", "Int8", [-1, 2, 127])):
-        yield Row(port, f"std_msgs/{kind}MultiArray", {"layout": layout, "data": values}, {"layout": plain, "data": values[1:]})
-    yield Row("BooleanSeq", "std_msgs/UInt8MultiArray", {"layout": plain, "data": bytes([0, 1, 7])}, {"layout": plain, "data": bytes([0, 1, 1])})
-    yield Row("LongSeq", "std_msgs/Int64MultiArray", {"layout": plain, "data": [2**40, -5]}, {"layout": plain, "data": [2**31 - 1, -5]}, named=True)
-    yield Row("DoubleSeq", "std_msgs/Float32MultiArray", {"layout": plain, "data": [0.5, -1.5]}, named=True)
-    yield Row("FloatSeq", "std_msgs/UInt8MultiArray", {"layout": plain, "data": bytes([5, 250])}, named=True)
-
-
-def velocity_rows():
-    twist = filled("geometry_msgs/Twist")
-    flat = {"linear": {**twist["linear"], "z": 0.0}, "angular": {**ZERO, "z": twist["angular"]["z"]}}
-    yield Row("Velocity2D", "geometry_msgs/Twist", twist, flat)
-    yield Row("Velocity3D", "geometry_msgs/Twist", twist)
-    for port, wanted in (("Velocity2D", flat), ("Velocity3D", twist)):
-        yield Row(port, "geometry_msgs/TwistStamped", {"header": header("any"), "twist": twist}, {"header": header("base_link"), "twist": wanted}, named=True)
-
-
-def pose_rows():
-    place = filled("geometry_msgs/Point")
-    flat = {"position": {**place, "z": 0.0}, "orientation": TURN}
-    tilted = {"position": place, "orientation": {"x": 0.5, "y": 0.1, "z": -0.3, "w": math.sqrt(1 - 0.35)}}
-    q = tilted["orientation"]
-    yaw = math.atan2(2 * (q["w"] * q["z"] + q["x"] * q["y"]), 1 - 2 * (q["y"] ** 2 + q["z"] ** 2))
-    turned = {"position": flat["position"], "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}}
-    stamped = {"header": header("map"), "pose": tilted}
-    yield Row("Pose3D", "geometry_msgs/PoseStamped", stamped, {**stamped, "header": header("odom")})
-    yield Row("Pose2D", "geometry_msgs/PoseStamped", stamped, {"header": header("odom"), "pose": turned}, named=True)
-    odometry = filled("nav_msgs/Odometry", header=header("map"))
-    odometry["pose"]["pose"] = tilted
-    twist = odometry["twist"]["twist"]
-    flat_twist = {"linear": {**twist["linear"], "z": 0.0}, "angular": {**ZERO, "z": twist["angular"]["z"]}}
-
-    def wanted(pose, motion, covariance, motion_covariance, frames=("odom", "base_link")):
-        return {"header": header(frames[0]), "child_frame_id": frames[1], "pose": {"pose": pose, "covariance": covariance},
-                "twist": {"twist": motion, "covariance": motion_covariance}}
-
-    none = [0.0] * 36
-    yield Row("Pose2D", "nav_msgs/Odometry", odometry, wanted(turned, NO_TWIST, WHEELS, UNKNOWN, ("a/odom", "a/base")),
-              more=("-p", "ros2.frame_id=a/odom", "-p", "ros2.child_frame_id=a/base"))
-    yield Row("Pose3D", "nav_msgs/Odometry", odometry, wanted(tilted, NO_TWIST, none, UNKNOWN), named=True)
-    yield Row("PoseVel2D", "nav_msgs/Odometry", odometry, wanted(turned, flat_twist, WHEELS, WHEELS))
-    yield Row("PoseVel3D", "nav_msgs/Odometry", odometry, wanted(tilted, twist, none, none))
-
-
-def value_rows():
-    point, base = filled("geometry_msgs/Point"), header("base_link")
-    for port, part in (("Point3D", point), ("Point2D", {**point, "z": 0.0})):
-        yield Row(port, "geometry_msgs/PointStamped", {"header": header("any"), "point": point}, {"header": base, "point": part})
-    for port in ("Vector3D", "Vector2D", "AngularVelocity3D", "Acceleration3D"):
-        part = {**point, "z": 0.0} if port == "Vector2D" else point
-        yield Row(port, "geometry_msgs/Vector3Stamped", {"header": header("any"), "vector": point}, {"header": base, "vector": part})
-    q = {"x": 0.5, "y": 0.1, "z": -0.3, "w": math.sqrt(1 - 0.35)}
-    for port in ("Quaternion", "Orientation3D"):
-        yield Row(port, "geometry_msgs/QuaternionStamped", {"header": header("any"), "quaternion": q}, {"header": base, "quaternion": q})
-    imu = filled("sensor_msgs/Imu", header=header("any"), orientation=q)
-    unmeasured = [-1.0] + [0.0] * 8
-    nothing = {"header": base, "orientation": {**ZERO, "w": 1.0}, "orientation_covariance": unmeasured, "angular_velocity": ZERO,
-               "angular_velocity_covariance": unmeasured, "linear_acceleration": ZERO, "linear_acceleration_covariance": unmeasured}
-    for port, part in (("Orientation3D", "orientation"), ("AngularVelocity3D", "angular_velocity"), ("Acceleration3D", "linear_acceleration")):
-        yield Row(port, "sensor_msgs/Imu", imu, {**nothing, part: imu[part], part + "_covariance": [0.0] * 9}, named=True)
-
-
-def sensor_rows():
-    scan = filled("sensor_msgs/LaserScan", header=header("any"), angle_min=-1.0, angle_max=1.0, angle_increment=0.5, scan_time=0.125, range_min=0.25,
-                  range_max=8.0, ranges=[1.5, math.inf, -math.inf, math.nan, 4.0], intensities=[1.0] * 5)
-    yield Row("RangeData", "sensor_msgs/LaserScan", scan,
-              {**scan, "header": header("laser"), "time_increment": 0.0, "ranges": [1.5, math.inf, -math.inf, math.inf, 4.0], "intensities": []},
-              more=("-p", "ros2.frame_id=laser"))
-    packed = {"header": header("base_link"), "height": 2, "width": 3, "encoding": "rgb8", "is_bigendian": 0, "step": 9, "data": bytes(range(18))}
-    rows = {**packed, "header": header("any"), "step": 12, "data": bytes(range(9)) + b"xyz" + bytes(range(9, 18)) + b"xyz"}
-    yield Row("CameraImage", "sensor_msgs/Image", rows, packed)
-    jpeg = {"header": header("any"), "format": "rgb8; jpeg compressed bgr8", "data": bytes([255, 216, 1, 2, 3])}
-    yield Row("CameraImage", "sensor_msgs/CompressedImage", jpeg, {**jpeg, "header": header("base_link"), "format": "jpeg"}, named=True)
-
-    def field(name, offset, datatype=7, count=1):
-        return {"name": name, "offset": offset, "datatype": datatype, "count": count}
-
-    # Doubles with the other byte order, and a colour between them.
-    data = b"".join(struct.pack(">d", z) + struct.pack(">I", 0xFF8000) + struct.pack(">dd", x, y) + b"." * 4 for x, y, z in ((1.5, 2.5, 3.5), (-1.0, 0.0, 0.25)))
-    cloud = {"header": header("any"), "height": 1, "width": 2, "fields": [field("z", 0, 8), field("rgb", 8), field("x", 12, 8), field("y", 20, 8)],
-             "is_bigendian": True, "point_step": 32, "row_step": 64, "data": data, "is_dense": False}
-    plain = b"".join(struct.pack("<fffI", x, y, z, 0xFF8000) for x, y, z in ((1.5, 2.5, 3.5), (-1.0, 0.0, 0.25)))
-    yield Row("PointCloud", "sensor_msgs/PointCloud2", cloud,
-              {"header": header("base_link"), "height": 1, "width": 2, "fields": [field("x", 0), field("y", 4), field("z", 8), field("rgb", 12)],
-               "is_bigendian": False, "point_step": 16, "row_step": 32, "data": plain, "is_dense": True})
-    any_cloud = {**cloud, "fields": cloud["fields"] + [field("ring", 28, 4, 2)], "is_dense": True}
-    yield Row("Cloud", "sensor_msgs/PointCloud2", any_cloud, {**any_cloud, "header": header("base_link")})
-    joints = filled("sensor_msgs/JointState", header=header(""), name=["elbow", "wrist", "hip"])
-    named = ("-p", "ros2.joint_names=wrist,elbow")
-    two = {"header": header(""), "name": ["wrist", "elbow"], **{key: [joints[key][1], joints[key][0]] for key in ("position", "velocity", "effort")}}
-    yield Row("ActArrayState", "sensor_msgs/JointState", joints, two, more=named)
-    yield Row("DoubleSeq", "sensor_msgs/JointState", joints, {**two, "velocity": [], "effort": []}, named=True, more=named)
-    yield Row("JointPos", "sensor_msgs/JointState", joints,
-              {**joints, "name": ["joint_0", "joint_1", "joint_2"], "velocity": [], "effort": []})
-    fix = filled("sensor_msgs/NavSatFix", header=header("any"), status={"status": 2, "service": 1}, position_covariance=diagonal(4, 9, 16), position_covariance_type=2)
-    yield Row("GPSData", "sensor_msgs/NavSatFix", fix, {**fix, "header": header("base_link"), "position_covariance": diagonal(4, 4, 16)})
-
-
-class PortRig(Rig):
-    def relay(self, *components, **more):
-        self.naming()
-        host = self.rtcd("-o", f"ros2.domain.id:{self.domain}", "-o", "ros2.network:loopback", "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:relay",
-                         "-o", "exec_cxt.periodic.rate:200", *(components or ("TopicRelay",)), **more)
-        self.until("the component", lambda: self.rtse("act", "TopicRelay0") is not None)
-        return host
-
-    def connect(self, port, topic, *words, transport="ros2"):
-        self.rtse("con", f"TopicRelay0:{port}", "-p", f"interface_type={transport}", "-p", f"{transport}.topic={topic}", *words)
 
 
 # Every data type in both directions, with each field: a message arrives at the InPort, and the OutPort sends its value. The module is
@@ -351,18 +161,19 @@ def qos():
 def keys():
     with PortRig() as rig:
         host = rig.relay()
-        rig.connect("Long_out", "/keys", "-p", "ros2.relibility=best_effort", "-p", "ros2.writer_qos.history.dept=3", "-p", "ros2.shelf=7")
-        for line in ("ros2.relibility=best_effort without effect; did you mean ros2.reliability?",
-                     "ros2.writer_qos.history.dept=3 without effect; did you mean ros2.writer_qos.history.depth?",
-                     "ros2.shelf=7 without effect, unless a mapping of your own reads it"):
-            await_(line, lambda: line in rig.log(host))
-        for wrong, line in ((("ros2.topc=/a",), "ros2.topc=/a without effect; did you mean ros2.topic?"), (("ros2.topic=/a//b",), 'got "/a//b"'),
+        rig.connect("Long_out", "/keys", "-p", "ros2.writer_qos.deadline.period.sec=1", "-p", "ros2.depth=3")
+        await_("the policy", lambda: "ros2.writer_qos.deadline.period.sec=1 without effect: reliability, durability and history" in rig.log(host))
+        assert "ros2.depth" not in rig.log(host), rig.log(host)
+        for wrong, line in ((("ros2.topc=/a",), "unknown property ros2.topc; did you mean ros2.topic?"),
+                            (("ros2.topic=/a", "ros2.relibility=best_effort"), "unknown property ros2.relibility; did you mean ros2.reliability?"),
+                            (("ros2.topic=/a", "ros2.writer_qos.history.dept=3"), "unknown property ros2.writer_qos.history.dept; did you mean ros2.writer_qos.history.depth?"),
+                            (("ros2.topic=/a", "ros2.shelf=7"), "unknown property ros2.shelf; expected ros2.topic"),
+                            (("ros2.topic=/a//b",), 'ros2.topic has an empty part, or one that begins with a digit, got "/a//b"'),
                             (("ros2.topic=a-b",), 'ros2.topic may have letters, digits, _ and / only, got "a-b"')):
             words = [word for one in ("interface_type=ros2", *wrong) for word in ("-p", one)]
             for port in ("Long_out", "Long_in"):
                 done = rig.try_rtse("con", f"TopicRelay0:{port}", *words)
-                assert done.returncode != 0 and line in rig.log(host), (wrong, rig.log(host))
-                assert f"connection refused: TopicRelay0.{port}: ros2.topic" in rig.log(host), rig.log(host)
+                assert done.returncode != 0 and f"connection refused: TopicRelay0.{port}: {line}" in rig.log(host), (wrong, rig.log(host))
 
         def connections():
             rig.rtse("save", f"{rig.work}/system.yaml")
@@ -459,6 +270,77 @@ def own_mapping():
         peer.put("/label", "shop_msgs/Label", {"header": header("any"), "text": "nails"})
         assert peer.message("/label_out", "shop_msgs/Label") == {"header": header("shelf"), "text": "nails"}
         assert peer.message("/text_out", "std_msgs/String") == {"data": "nails"}
+
+
+# A component alone: its InPort reads a topic and its OutPort writes one, each wired to ROS 2 by one port. Bad values get a line.
+def ports():
+    with Rig() as rig:
+        rig.naming()
+        host = rig.rtcd("-o", "manager.modules.preload:ROS2Transport.so", "-o", f"ros2.domain.id:{rig.domain}", "-o", "ros2.network:loopback",
+                        "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:filter", "Filter", "Relay")
+        rig.until("the component", lambda: rig.rtse("act", "Filter0") is not None)
+        twist = ("-p", "interface_type=ros2", "-p", "marshaling_type=ros2:geometry_msgs/Twist")
+        rig.rtse("con", "Filter0:in", *twist, "-p", "ros2.topic=/raw")
+        rig.rtse("con", "Filter0:out", "-p", "interface_type=fast-rtps", "-p", "marshaling_type=ros2:geometry_msgs/TwistStamped",
+                 "-p", "fast-rtps.topic=smooth")
+        peer = rig.peer()
+        peer.subscribe("/smooth", "geometry_msgs/TwistStamped")
+        peer.advertise("/raw", "geometry_msgs/Twist")
+        peer.await_matched("/raw", 2)
+        peer.await_matched("/smooth")
+
+        def passes():
+            peer.put("/raw", "geometry_msgs/Twist", wire.twist(0.25, -0.5))
+            return peer.messages("/smooth", "geometry_msgs/TwistStamped")
+
+        rig.until("a twist through the component", passes, 0.1)
+        moved = peer.message("/smooth", "geometry_msgs/TwistStamped", lambda m: m["twist"]["linear"]["x"] != 0)
+        assert moved["twist"]["linear"]["x"] > 0 > moved["twist"]["angular"]["z"], moved
+        numbers = ("-p", "interface_type=ros2", "-p", "marshaling_type=ros2:std_msgs/Int32")
+        rig.rtse("act", "Relay0")
+        rig.rtse("con", "Relay0:in", *numbers, "-p", "ros2.topic=/number")
+        rig.rtse("con", "Relay0:out", *numbers, "-p", "ros2.topic=/relayed")
+        peer.subscribe("/relayed", "std_msgs/Int32")
+        peer.advertise("/number", "std_msgs/Int32")
+        peer.await_matched("/number", 2)
+        peer.await_matched("/relayed")
+        peer.put("/number", "std_msgs/Int32", {"data": -7})
+        peer.message("/relayed", "std_msgs/Int32", lambda m: m["data"] == -7)
+        rig.rtse("con", "Relay0:number", "-p", "interface_type=ros2", "-p", "marshaling_type=ros2:std_msgs/Float64", "-p", "ros2.topic=/one")
+        peer.subscribe("/one", "std_msgs/Float64")
+        assert peer.message("/one", "std_msgs/Float64") == {"data": 1.0}
+        for wrong, words in ((("-p", "ros2.topic=/a//b"), "ros2.topic"), ((), "ros2.topic is missing"),
+                             (("-p", "ros2.topic=/a", "-p", "ros2.writer_qos.history.depth=0"), "history.depth must be")):
+            assert rig.try_rtse("con", "Filter0:out", *twist, *wrong).returncode != 0, wrong
+            assert words in rig.log(host), rig.log(host)
+        alone = rig.try_rtse("con", "Filter0:out")
+        assert alone.returncode != 0 and "expected a second port" in alone.stderr, alone.stderr
+        rig.rtse("dis", "Filter0:in")
+        assert host.poll() is None and "unknown key" not in rig.log(host), rig.log(host)
+
+
+# A port drives a robot of the gateway. That the gateway also takes TwistStamped is no reason for a warning; a type that nobody takes is.
+def drives():
+    with PortRig() as rig:
+        rig.sim(two)
+        rig.gateway("--distro", "jazzy", robots=2)
+        host = rig.relay()
+        peer = rig.peer()
+        peer.subscribe("/leader/odom", "nav_msgs/Odometry")
+        rig.connect("Velocity2D_out", "/leader/cmd_vel")
+        rig.connect("Velocity2D_in", "/wish")
+        peer.advertise("/wish", "geometry_msgs/Twist")
+        peer.await_matched("/wish", both)
+
+        def moves():
+            peer.put("/wish", "geometry_msgs/Twist", wire.twist(0.2, 0.0))
+            return peer.messages("/leader/odom", "nav_msgs/Odometry")[-1:] and peer.messages("/leader/odom", "nav_msgs/Odometry")[-1]["twist"]["twist"]["linear"]["x"] > 0.1
+
+        await_("the leader moves", moves, 0.1)
+        rig.connect("Double_out", "/number")
+        peer.subscribe("/number", "std_msgs/String")
+        await_("the doubt", lambda: "/number has type std_msgs/msg/String, expected std_msgs/msg/Float64" in rig.log(host))
+        assert rig.log(host).count("has type") == 1 and "has type" not in rig.log(rig.process), (rig.log(host), rig.log(rig.process))
 
 
 globals()[case]()

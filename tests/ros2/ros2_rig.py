@@ -2,6 +2,7 @@
 import json
 import os
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -118,8 +119,8 @@ class Peer:
         def ready():
             self.peers = None
             self.say("peers")
-            listed = await_("the list of endpoints", lambda: self.peers if self.peers is not None else None)
-            return listed if good(listed) else None
+            await_("the list of endpoints", lambda: self.peers is not None)
+            return self.peers if good(self.peers) else None
 
         return await_("endpoints", ready, 0.1)
 
@@ -162,3 +163,53 @@ class Rig(System):
     def peer(self, user_data="enclave=/;"):
         self.peers.append(Peer(self.domain, user_data))
         return self.peers[-1]
+
+
+two = f"{source}/worlds/leader_follower.sdf"
+
+
+# A client of a service in the form of rmw_cyclonedds.
+class CycloneClient:
+    count = 0
+
+    def __init__(self, peer, service, request, response, more=""):
+        CycloneClient.count += 1
+        self.peer, self.service, self.number = peer, service, 0
+        self.id = struct.pack("<Q", 77 + CycloneClient.count)
+        mark = f"clientid=1.f.{CycloneClient.count:x};" + more
+        self.replies = f"reply{CycloneClient.count}"
+        self.requests = f"request{CycloneClient.count}"
+        peer.reader(self.replies, f"rr{service}Reply", response, user_data=mark)
+        peer.writer(self.requests, f"rq{service}Request", request, user_data=mark)
+        peer.await_matched(self.requests)
+        peer.await_matched(self.replies)
+
+    def call(self, kind, value, reply_kind):
+        return self.reply(self.start(kind, value), reply_kind)
+
+    def start(self, kind, value):
+        self.number += 1
+        head = self.id + struct.pack("<q", self.number)
+        body = wire.encode(kind, value)
+        self.peer.say(f"put {self.requests} {(body[:4] + head + body[4:]).hex()}")
+        return head
+
+    def reply(self, head, reply_kind):
+        def reply():
+            for data in list(self.peer.samples[self.replies]):
+                if data[4:20] == head:
+                    return wire.decode(reply_kind, data[:4] + data[20:])
+
+        return await_(f"the reply of {self.service}", reply)
+
+
+class PortRig(Rig):
+    def relay(self, *components, **more):
+        self.naming()
+        host = self.rtcd("-o", f"ros2.domain.id:{self.domain}", "-o", "ros2.network:loopback", "-o", "ros2.distro:jazzy", "-o", "ros2.node.name:relay",
+                         "-o", "exec_cxt.periodic.rate:200", *(components or ("TopicRelay",)), **more)
+        self.until("the component", lambda: self.rtse("act", "TopicRelay0") is not None)
+        return host
+
+    def connect(self, port, topic, *words, transport="ros2"):
+        self.rtse("con", f"TopicRelay0:{port}", "-p", f"interface_type={transport}", "-p", f"{transport}.topic={topic}", *words)

@@ -117,6 +117,8 @@ simulation_interfaces/GetEntitiesResponse: simulation_interfaces/Result result, 
 simulation_interfaces/EntityRequest: str entity
 simulation_interfaces/GetEntityStateResponse: simulation_interfaces/Result result, simulation_interfaces/EntityState state
 simulation_interfaces/SetEntityStateRequest: str entity, simulation_interfaces/EntityState state
+simulation_interfaces/SetEntityStateRequest2: str entity, simulation_interfaces/EntityState state, bool set_pose, bool set_twist, bool set_acceleration
+simulation_interfaces/GetEntitiesStatesResponse: simulation_interfaces/Result result, str[] entities, simulation_interfaces/EntityState[] states
 simulation_interfaces/SpawnEntityRequest: str name, bool allow_renaming, str uri, str resource_string, str entity_namespace, geometry_msgs/PoseStamped initial_pose
 simulation_interfaces/GetSpawnablesRequest: str[] sources
 simulation_interfaces/Spawnable: str uri, str description, simulation_interfaces/Bounds spawn_bounds

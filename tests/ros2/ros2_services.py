@@ -1,0 +1,224 @@
+# Services in the forms of both kinds of client: ros2_services.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import math
+
+from ros2_rig import *
+
+SIMULATION = "simulation_interfaces"
+
+
+def caller(peer, name):
+    front = f"{SIMULATION}::srv::dds_::{name}"
+    snake = "".join("_" + c.lower() if c.isupper() else c for c in name).lstrip("_")
+    return CycloneClient(peer, "/" + snake, front + "_Request_", front + "_Response_")
+
+
+def ask(client, kind, value, reply_kind="ResultResponse"):
+    reply = client.call(f"{SIMULATION}/{kind}", value, f"{SIMULATION}/{reply_kind}")
+    return reply["result"] if reply_kind == "ResultResponse" else reply
+
+
+# Services in the forms of both kinds of client, alone and side by side.
+def services():
+    with Rig() as rig:
+        rig.sim(two, "--paused")
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        names = CycloneClient(peer, "/leader/robot/list_parameters", "rcl_interfaces::srv::dds_::ListParameters_Request_", "rcl_interfaces::srv::dds_::ListParameters_Response_")
+        listed = names.call("rcl_interfaces/ListParametersRequest", {"prefixes": [], "depth": 0}, "rcl_interfaces/ListParametersResponse")
+        assert listed["names"] == ["use_sim_time"], listed
+
+        def fast(service, front, kind, value, reply_kind):
+            words = rig.call(f"{bin_dir}/ros2_fast_client", rig.domain, service, front + "_Request_", front + "_Response_", wire.encode(kind, value).hex())
+            return wire.decode(reply_kind, bytes.fromhex(words.strip()))
+
+        front = "rcl_interfaces::srv::dds_::"
+        assert fast("/leader/robot/list_parameters", front + "ListParameters", "rcl_interfaces/ListParametersRequest", {"prefixes": [], "depth": 0},
+                    "rcl_interfaces/ListParametersResponse")["names"] == ["use_sim_time"]
+        values = fast("/ros2_gateway/get_parameters", front + "GetParameters", "rcl_interfaces/GetParametersRequest", {"names": ["use_sim_time", "other"]},
+                      "rcl_interfaces/GetParametersResponse")["values"]
+        assert [(one["type"], one["bool_value"]) for one in values] == [(1, True), (0, False)], values
+        # The reply for the client of Fast DDS did not come to that of Cyclone.
+        assert len(peer.samples[names.replies]) == 1
+
+        state = caller(peer, "GetSimulationState")
+        empty = {"structure_needs_at_least_one_member": 0}
+
+        def current():
+            reply = state.call("std_srvs/Empty", empty, "simulation_interfaces/GetSimulationStateResponse")
+            assert reply["result"]["result"] == 1
+            return reply["state"]
+
+        assert current() == 0
+        step = caller(peer, "StepSimulation")
+        assert ask(step, "StepSimulationRequest", {"steps": 100})["result"] == 1
+        assert rig.stats()["steps"] == 100 and current() == 2
+        change = caller(peer, "SetSimulationState")
+        assert ask(change, "SetSimulationStateRequest", {"state": 1})["result"] == 1 and current() == 1
+        assert ask(change, "SetSimulationStateRequest", {"state": 1})["result"] == 101
+        assert ask(change, "SetSimulationStateRequest", {"state": 3})["result"] == 0
+        refused = ask(step, "StepSimulationRequest", {"steps": 1})
+        assert refused["result"] == 4 and "pause it first" in refused["error_message"], refused
+        assert ask(change, "SetSimulationStateRequest", {"state": 0})["result"] == 1 and current() == 0
+        assert ask(change, "SetSimulationStateRequest", {"state": 2})["result"] == 103 and current() == 0
+        # What takes long does not keep others waiting, and can be ended.
+        long = step.start("simulation_interfaces/StepSimulationRequest", {"steps": 10**9})
+        await_("the steps", lambda: rig.stats()["steps"] > 0)
+        assert ask(change, "SetSimulationStateRequest", {"state": 2})["result"] == 1 and current() == 2
+        step.reply(long, "simulation_interfaces/ResultResponse")
+
+
+# Entities: filters, names, models as text and from the path, poses and velocities, resets.
+def entities():
+    with Rig() as rig:
+        rig.sim(two, "--paused")
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        listing = caller(peer, "GetEntities")
+        unfiltered = {"categories": b"", "tags": [], "filter_mode": 0, "bounds": {"type": 0, "points": []}}
+        # Patterns that would take all memory, or for ever.
+        for hostile in ("a{1,255}{1,255}{1,255}", "(a{1000}){1000}", "(a*)*\\1", "x" * 201, "["):
+            refused = listing.call("simulation_interfaces/GetEntitiesRequest", {"filter": hostile, **unfiltered}, "simulation_interfaces/GetEntitiesResponse")["result"]
+            assert refused["result"] == 4 and hostile[:20] in refused["error_message"], refused
+        found = listing.call("simulation_interfaces/GetEntitiesRequest", {"filter": "^(lead|foll)", **unfiltered}, "simulation_interfaces/GetEntitiesResponse")
+        assert sorted(found["entities"]) == ["follower", "leader"], found
+        pose = caller(peer, "GetEntityState")
+        where = pose.call("simulation_interfaces/EntityRequest", {"entity": "leader"}, "simulation_interfaces/GetEntityStateResponse")
+        assert where["result"]["result"] == 1 and abs(where["state"]["pose"]["position"]["x"] + 3.2) < 1e-3, where
+        assert pose.call("simulation_interfaces/EntityRequest", {"entity": "nobody"}, "simulation_interfaces/GetEntityStateResponse")["result"]["result"] == 2
+        spawn = caller(peer, "SpawnEntity")
+        sdf = '<sdf version="1.9"><model name="box"><link name="l"><inertial><mass>1</mass></inertial><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></sdf>'
+        place = {"header": where["state"]["header"], "pose": {"position": {"x": 2.0, "y": 2.0, "z": 0.5}, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}}
+        place["header"]["frame_id"] = ""
+        request = {"name": "crate", "allow_renaming": False, "uri": "", "resource_string": sdf, "entity_namespace": "", "initial_pose": place}
+
+        def spawned(**more):
+            reply = spawn.call("simulation_interfaces/SpawnEntityRequest", {**request, **more}, "simulation_interfaces/SpawnEntityResponse")
+            return reply["result"]["result"], reply["entity_name"]
+
+        assert spawned() == (1, "crate")
+        assert spawned() == (101, "") and spawned(allow_renaming=True) == (1, "crate_1")
+        assert spawned(name="x", resource_string="<sdf")[0] == 106 and spawned(name="x", resource_string="")[0] == 104
+        # Names that the model would not have; huge texts come back shortened.
+        for name in ("", "a::b", "world", "a\nb", "n" * 100000):
+            assert spawned(name=name) == (102, ""), name
+        assert spawned(name="", allow_renaming=True)[0] == 1
+        assert spawned(name="x", resource_string="<mujoco/>")[0] == 103 and spawned(name="x", resource_string="nonsense")[0] == 106
+        urdf = '<?xml version="1.0"?><robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+        assert spawned(name="of_urdf", resource_string=urdf) == (1, "of_urdf")
+        for x in (math.nan, math.inf, 1e300):
+            far = {**place, "pose": {**place["pose"], "position": {"x": x, "y": 0.0, "z": 0.0}}}
+            assert spawned(name="x", initial_pose=far)[0] == 109, x
+        lost = pose.call("simulation_interfaces/EntityRequest", {"entity": "n" * 100000}, "simulation_interfaces/GetEntityStateResponse")["result"]
+        assert lost["result"] == 2 and len(lost["error_message"]) < 600, len(lost["error_message"])
+        spawnables = caller(peer, "GetSpawnables")
+        listed = spawnables.call("simulation_interfaces/GetSpawnablesRequest", {"sources": []}, "simulation_interfaces/GetSpawnablesResponse")
+        assert listed["result"]["result"] == 1 and listed["spawnables"], listed
+        # A client of 2.x has the same request and another reply: told apart by the hash of the reply.
+        front = "simulation_interfaces::srv::dds_::GetSpawnables_"
+        newer = CycloneClient(peer, "/get_spawnables", front + "Request_", front + "Response_", "typehash=RIHS01_cb61fd741c429d6bc689514b7bfc65bb1518126961317acc6e414a841dc43daa;")
+        again = newer.call("simulation_interfaces/GetSpawnablesRequest", {"sources": []}, "simulation_interfaces/GetSpawnablesResponse2")
+        assert [one["entity_resource"]["uri"] for one in again["spawnables"]] == [one["uri"] for one in listed["spawnables"]], again
+        other = spawnables.call("simulation_interfaces/GetSpawnablesRequest", {"sources": ["https://"]}, "simulation_interfaces/GetSpawnablesResponse")
+        assert other["result"]["result"] == 0, other
+        assert spawned(name="from_path", resource_string="", uri=listed["spawnables"][0]["uri"])[0] in (1, 106)
+        delete = caller(peer, "DeleteEntity")
+        assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 1
+        assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 2
+        # A text beside a uri is ignored.
+        assert spawned(name="x", uri="model://there_is_none")[0] == 106
+        states = caller(peer, "GetEntitiesStates")
+        both = ask(states, "GetEntitiesRequest", {"filter": "^(leader|follower)$", **unfiltered}, "GetEntitiesStatesResponse")
+        assert sorted(both["entities"]) == ["follower", "leader"] and both["result"]["result"] == 1, both
+        assert abs(both["states"][both["entities"].index("leader")]["pose"]["position"]["x"] + 3.2) < 1e-3, both
+        nobody = ask(states, "GetEntitiesRequest", {"filter": "^nobody$", **unfiltered}, "GetEntitiesStatesResponse")
+        assert nobody["result"]["result"] == 1 and not nobody["entities"] and not nobody["states"], nobody
+        for part in ({"categories": b"\1"}, {"tags": ["a"]}, {"bounds": {"type": 3, "points": [ZERO, ZERO]}}):
+            refused = ask(states, "GetEntitiesRequest", {"filter": "", **unfiltered, **part}, "GetEntitiesStatesResponse")["result"]
+            assert refused["result"] == 0, (part, refused)
+
+
+ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
+UPRIGHT = {**ZERO, "w": 1.0}
+
+
+def entity_state(x=0.0, speed=0.0, frame=""):
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+    pose = {"position": {**ZERO, "x": x, "z": 5.0}, "orientation": UPRIGHT}
+    return {"header": header, "pose": pose, "twist": {"linear": {**ZERO, "x": speed}, "angular": ZERO}, "acceleration": {"linear": ZERO, "angular": ZERO}}
+
+
+# What a client of 1.x sets, and what one of 2.x chooses; what each scope of a reset leaves.
+def states():
+    ball = '<sdf version="1.9"><model name="ball"><link name="l"><gravity>0</gravity><inertial><mass>1</mass></inertial></link></model></sdf>'
+    with Rig() as rig:
+        rig.sim(two, "--paused")
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        spawn, place, where, reset = (caller(peer, name) for name in ("SpawnEntity", "SetEntityState", "GetEntityState", "ResetSimulation"))
+        front = "simulation_interfaces::srv::dds_::SetEntityState_"
+        newer = CycloneClient(peer, "/set_entity_state", front + "Request_", front + "Response_",
+                              "typehash=RIHS01_0ec3cca7e2bde7323c0c7ea4a5a7947f81edb90c144fc0aef5e2052e94e10061;")
+
+        def spawned(name, x, frame="", **more):
+            pose = {"header": entity_state(frame=frame)["header"], "pose": entity_state(x)["pose"]}
+            request = {"name": name, "allow_renaming": False, "uri": "", "resource_string": ball, "entity_namespace": "", "initial_pose": pose, **more}
+            return ask(spawn, "SpawnEntityRequest", request, "SpawnEntityResponse")["result"]["result"]
+
+        def is_at(entity, x, speed):
+            state = ask(where, "EntityRequest", {"entity": entity}, "GetEntityStateResponse")["state"]
+            found = state["pose"]["position"]["x"], state["twist"]["linear"]["x"]
+            assert abs(found[0] - x) < 1e-6 and abs(found[1] - speed) < 1e-6, (entity, found, (x, speed))
+
+        def set_state(kind, **more):
+            return ask(newer if kind.endswith("2") else place, kind, {"entity": "ball", **more})["result"]
+
+        assert spawned("ball", 20.0) == 1
+        assert spawned("beside", 1.0, "ball") == 1 and spawned("lost", 1.0, "nowhere") == 109
+        is_at("beside", 21.0, 0.0)
+        assert set_state("SetEntityStateRequest", state=entity_state(22.0, 0.5)) == 1
+        is_at("ball", 22.0, 0.5)
+        flags = {"set_pose": False, "set_twist": False, "set_acceleration": False}
+        for more, x, speed in (({}, 22.0, 0.5), ({"set_twist": True}, 22.0, 0.25), ({"set_pose": True}, 23.0, 0.25), ({"set_pose": True, "set_twist": True}, 23.0, 0.25)):
+            assert set_state("SetEntityStateRequest2", state=entity_state(23.0, 0.25), **{**flags, **more}) == 1, more
+            is_at("ball", x, speed)
+        assert set_state("SetEntityStateRequest2", state=entity_state(), **{**flags, "set_acceleration": True}) == 0
+        assert set_state("SetEntityStateRequest2", state=entity_state(frame="odom"), **{**flags, "set_pose": True}) == 101
+        assert set_state("SetEntityStateRequest", entity="nobody", state=entity_state()) == 2
+        # Time alone, or what was spawned alone, cannot be reset.
+        for scope in (1, 3, 4, 5, 6):
+            assert ask(reset, "ResetSimulationRequest", {"scope": scope})["result"] == 0, scope
+        assert ask(reset, "ResetSimulationRequest", {"scope": 2})["result"] == 1
+        is_at("ball", 20.0, 0.0)
+        for scope in (0, 7, 255):
+            assert spawned("ball" if scope else "other", 30.0) == 1
+            assert ask(reset, "ResetSimulationRequest", {"scope": scope})["result"] == 1, scope
+            assert ask(where, "EntityRequest", {"entity": "ball"}, "GetEntityStateResponse")["result"]["result"] == 2
+
+
+# A robot that is spawned with a namespace has its topics and frames there.
+def namespaces():
+    robot = '<sdf version="1.9"><model name="probe"><link name="l"><inertial><mass>1</mass></inertial><sensor name="imu" type="imu"><update_rate>20</update_rate></sensor></link></model></sdf>'
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        spawn = caller(peer, "SpawnEntity")
+
+        def spawned(name, space):
+            pose = {"header": entity_state()["header"], "pose": entity_state(9.0)["pose"]}
+            request = {"name": name, "allow_renaming": False, "uri": "", "resource_string": robot, "entity_namespace": space, "initial_pose": pose}
+            return ask(spawn, "SpawnEntityRequest", request, "SpawnEntityResponse")["result"]["result"]
+
+        assert spawned("probe", "unit/one") == 1
+        peer.subscribe("/unit/one/imu/data", "sensor_msgs/Imu")
+        assert peer.message("/unit/one/imu/data", "sensor_msgs/Imu")["header"]["frame_id"] == "unit/one/imu"
+        for wrong in ("1x", "a//b", "a-b", "/leader", "unit/one"):
+            assert spawned("other", wrong) == 105, wrong
+        delete = caller(peer, "DeleteEntity")
+        assert ask(delete, "EntityRequest", {"entity": "probe"})["result"] == 1
+        assert spawned("probe", "") == 1
+        peer.subscribe("/probe/imu/data", "sensor_msgs/Imu")
+        assert peer.message("/probe/imu/data", "sensor_msgs/Imu")["header"]["frame_id"] == "probe/imu"
+
+
+globals()[case]()

@@ -1,0 +1,114 @@
+# The clock, and simulated time that waits for nodes: ros2_time.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
+import json
+import re
+import subprocess
+import tempfile
+import threading
+import time
+
+from ros2_rig import *
+
+
+# While the simulation is paused the clock goes on coming, and each step is seen at once.
+def paused():
+    with Rig() as rig:
+        rig.sim(two, "--paused")
+        rig.gateway(robots=2)
+        peer = rig.peer()
+        peer.subscribe("/clock", "rosgraph_msgs/Clock", "best_effort")
+        assert wire.seconds(peer.message("/clock", "rosgraph_msgs/Clock")["clock"]) == 0
+        await_("the clock again", lambda: len(peer.samples["/clock"]) > 2)
+        step = rig.stats()["step"] if "step" in rig.stats() else 0.001
+        rig.simctl("step", "1")
+        peer.message("/clock", "rosgraph_msgs/Clock", lambda m: 0 < wire.seconds(m["clock"]) <= step * 1.001)
+        rig.simctl("reset")
+        await_("the clock of the reset", lambda: wire.seconds(peer.messages("/clock", "rosgraph_msgs/Clock")[-1]["clock"]) == 0)
+
+
+# A simulator that nobody watches makes several steps at once. Who wants the clock of each step watches it.
+def steps():
+    def is_watched():
+        return next(one["subscribers"] for one in json.loads(rig.simctl("--json", "list")) if one["type"] == "simulation") > 0
+
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--clock-rate", "1000", robots=2)
+        assert not is_watched()
+        peer = rig.peer()
+        peer.subscribe("/clock", "rosgraph_msgs/Clock", "best_effort")
+        peer.message("/clock", "rosgraph_msgs/Clock")
+        await_("the simulator is watched", is_watched)
+        peer.end()
+        rig.peers.remove(peer)
+        await_("the simulator rests", lambda: not is_watched())
+
+
+# A follower that answers each scan, in lock step: two runs end alike.
+def lockstep():
+    hashes = []
+    for _ in range(2):
+        with Rig() as rig:
+            rig.sim(two, "--lockstep", "--paused", "--rtf", "0")
+            rig.gateway("--lockstep", "--clock-rate", "50", "--wait-for", "/follower/cmd_vel=10Hz", "--wait-timeout", "50", robots=2)
+            peer = rig.peer()
+            peer.subscribe("/follower/scan", "sensor_msgs/LaserScan")
+            peer.advertise("/follower/cmd_vel", "geometry_msgs/TwistStamped")
+            peer.await_matched("/follower/cmd_vel")
+            peer.await_matched("/follower/scan")
+            await_("the gateway joins", lambda: any(one["name"] == "ros2-gateway" for one in rig.participants()))
+            stop = threading.Event()
+
+            def follow():
+                seen = 0
+                while not stop.is_set():
+                    scans = peer.samples["/follower/scan"]
+                    if len(scans) == seen:
+                        time.sleep(0.001)
+                        continue
+                    scan = wire.decode("sensor_msgs/LaserScan", scans[seen])
+                    seen += 1
+                    if wire.seconds(scan["header"]["stamp"]) == 0:
+                        continue
+                    near = min(one for one in scan["ranges"] if one > 0)
+                    turn = 0.3 if near < 1 else -0.1
+                    peer.put("/follower/cmd_vel", "geometry_msgs/TwistStamped", {"header": scan["header"], "twist": wire.twist(0.2, turn)})
+
+            thread = threading.Thread(target=follow)
+            thread.start()
+            try:
+                steps = round(2 / rig.stats()["step"]) if "step" in rig.stats() else 2000
+                rig.simctl("step", str(steps))
+            finally:
+                stop.set()
+                thread.join()
+            stats = rig.stats()
+            hashes.append((stats["steps"], stats["state_hash"] if "state_hash" in stats else stats["hash"], rig.simctl("pose", "follower")))
+            assert rig.process.poll() is None, rig.log(rig.process)
+    assert hashes[0] == hashes[1], hashes
+    # Without an answer the gateway ends, and says what it waited for.
+    with Rig() as rig:
+        rig.sim(two, "--lockstep", "--paused")
+        rig.gateway("--lockstep", "--wait-for", "cmd_vel=10Hz", "--wait-timeout", "1", robots=2)
+        await_("the gateway joins", lambda: any(one["name"] == "ros2-gateway" for one in rig.participants()))
+        rig.simctl("run")
+        await_("the end", lambda: rig.process.poll() == 1)
+        assert "no command on /follower/cmd_vel, /leader/cmd_vel for the tick at t = 0.1 s" in rig.log(rig.process), rig.log(rig.process)
+
+
+# The leader by RT components, the follower by a program that speaks only DDS: it keeps its distance, and two runs end alike.
+def demo():
+    states = []
+    for _ in range(2):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([f"{bin_dir}/rtse-demo", "ros2", "--duration", "15", "--output", folder], capture_output=True, text=True, timeout=250)
+            assert done.returncode == 0, done.stdout + done.stderr
+            with open(f"{folder}/demo-ros2.png", "rb") as file:
+                assert file.read(4)[1:] == b"PNG"
+            near, far = (float(word) for word in re.search(r"between leader and follower: (\S+) to (\S+) m", done.stdout).groups())
+            assert 0.4 < near < far < 3, done.stdout
+            assert "follow: leader at" in done.stdout, done.stdout
+            states.append(re.search(r"state (\w+)", done.stdout).group(1))
+    assert states[0] == states[1], states
+
+
+globals()[case]()
