@@ -1,6 +1,5 @@
 #include "physics/body_tree.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -21,6 +20,45 @@ Eigen::Vector3d gyroscopic_torque(const Eigen::Matrix3d& inertia, const Eigen::V
   return (inertia * effective.inverse() - Eigen::Matrix3d::Identity()) * momentum / dt;
 }
 
+template <int size>
+using Square = Eigen::Matrix<double, size, size>;
+
+// Of a symmetric, positive definite matrix; by Cholesky's factors. No numbers when it is none.
+template <int size>
+Square<size> inverse_of(const Square<size>& a) {
+  Square<size> l = a, w;  // the factor, with the inverses of its diagonal; its inverse
+  for (int j = 0; j < size; ++j) {
+    l(j, j) = 1 / std::sqrt(l(j, j));
+    for (int i = j + 1; i < size; ++i) l(i, j) *= l(j, j);
+    for (int k = j + 1; k < size; ++k)
+      for (int i = k; i < size; ++i) l(i, k) -= l(i, j) * l(k, j);
+  }
+  for (int j = 0; j < size; ++j) {
+    w(j, j) = l(j, j);
+    for (int i = j + 1; i < size; ++i) {
+      double sum = 0;
+      for (int k = j; k < i; ++k) sum += l(i, k) * w(k, j);
+      w(i, j) = -sum * l(i, i);
+    }
+  }
+  Square<size> inverse;
+  for (int j = 0; j < size; ++j) {
+    for (int i = j; i < size; ++i) {
+      double sum = 0;
+      for (int k = i; k < size; ++k) sum += w(k, i) * w(k, j);
+      inverse(i, j) = inverse(j, i) = sum;
+    }
+  }
+  return inverse;
+}
+
+// Most joints have at most six free rows; fixed sizes are computed with several times as fast.
+template <class Work>
+void with_size(int rows, const Work& work) {
+  constexpr int usual = 6;
+  rows <= usual ? work.template operator()<usual>() : work.template operator()<JointRows::most>();
+}
+
 }  // namespace
 
 void BodyTree::clear() {
@@ -38,6 +76,7 @@ void BodyTree::add_model(ModelInstance& model, const PhysicsDef& physics, dWorld
     Node& node = nodes_[count_];
     node.body = body;
     node.parent = place.parent < 0 ? -1 : first + place.parent;
+    node.root = node.parent < 0 ? static_cast<int>(count_) : at(node.parent).root;
     node.joint = place.joint < 0 ? nullptr : &model.joints()[static_cast<std::size_t>(place.joint)];
     node.touches = false;
     dMass mass;
@@ -76,66 +115,96 @@ void BodyTree::mark_touched(int node) {
   for (; node >= 0 && !at(node).touches; node = at(node).parent) at(node).touches = true;
 }
 
-void BodyTree::gather_trees() {
-  int count = 0;
-  for (auto& places : trees_) places.clear();
-  for (std::size_t i = 0; i < count_; ++i) {
-    Node& node = nodes_[i];
-    node.tree = node.parent < 0 ? count++ : at(node.parent).tree;
-    if (trees_.size() < static_cast<std::size_t>(count)) trees_.emplace_back();
-    if (node.touches) trees_[static_cast<std::size_t>(node.tree)].push_back(static_cast<int>(i));
-  }
-}
-
 // The free rows of the node's joint, side by side.
 void BodyTree::gather(Node& node) {
-  const auto count = std::count_if(node.rows.begin(), node.rows.end(), [](const TreeRow& row) { return row.is_free(); });
-  node.own.resize(count, 6);
-  node.parent_side.resize(count, 6);
-  node.target.resize(count);
-  Eigen::Index i = 0;
+  int i = 0;
   for (const TreeRow& row : node.rows) {
     if (!row.is_free()) continue;
     node.own.row(i) = row.own.transpose();
     node.parent_side.row(i) = row.parent.transpose();
-    node.target[i++] = row.target;
+    node.target[i] = row.target;
+    node.give[i++] = row.give;
   }
+  node.free = i;
+  for (; i < JointRows::most; ++i) {  // which do nothing
+    node.own.row(i).setZero();
+    node.parent_side.row(i).setZero();
+    node.target[i] = 0;
+    node.give[i] = 1;
+  }
+}
+
+template <int rows>
+void BodyTree::factor_rows(Node& node) {
+  const auto own = node.own.topRows<rows>(), parent_side = node.parent_side.topRows<rows>();
+  auto answer = node.answer.topRows<rows>();
+  answer.noalias() = own.lazyProduct(node.inverse);
+  Square<rows> give = answer.lazyProduct(own.transpose());
+  give.diagonal() += node.give.head<rows>();
+  const Square<rows> inverse = inverse_of<rows>(give);
+  node.inverse_give.topLeftCorner<rows, rows>() = inverse;
+  if (node.parent < 0) return;
+  auto pull = node.pull.topRows<rows>();
+  pull.noalias() = inverse.lazyProduct(parent_side);
+  at(node.parent).joined.noalias() += parent_side.transpose().lazyProduct(pull);
 }
 
 void BodyTree::factor() {
   const auto all = nodes();
   for (Node& node : all) node.joined = node.mass;
   for (auto node = all.rbegin(); node != all.rend(); ++node) {
-    node->inverse = node->joined.llt().solve(Matrix6::Identity());
+    node->inverse = inverse_of<6>(node->joined);
     gather(*node);
-    const Eigen::Index count = node->own.rows();
-    if (count == 0) continue;
-    node->answer.noalias() = node->own * node->inverse;
-    Node::FewSquare give = node->answer * node->own.transpose();
-    Eigen::Index i = 0;
-    for (const TreeRow& row : node->rows) {
-      if (row.is_free()) give(i, i) += row.give, ++i;
-    }
-    node->inverse_give = give.llt().solve(Node::FewSquare::Identity(count, count));
-    if (node->parent < 0) continue;
-    node->pull.noalias() = node->inverse_give * node->parent_side;
-    at(node->parent).joined.noalias() += node->parent_side.transpose() * node->pull;
+    if (node->free > 0) with_size(node->free, [&]<int rows>() { factor_rows<rows>(*node); });
   }
 }
 
-void BodyTree::pull_up(Node& node, bool is_homogeneous) {
-  if (node.own.rows() == 0) return;
-  Node::Few open = -(node.answer * node.impulse);
-  if (!is_homogeneous) open += node.target;
-  node.share.noalias() = node.inverse_give * open;
-  if (node.parent >= 0) at(node.parent).impulse.noalias() += node.parent_side.transpose() * node.share;
+void BodyTree::pull_up(Node& node) {
+  if (node.free == 0) return;
+  with_size(node.free, [&]<int rows>() {
+    const Eigen::Matrix<double, rows, 1> open = node.target.head<rows>() - node.answer.topRows<rows>().lazyProduct(node.impulse);
+    node.share.head<rows>().noalias() = node.inverse_give.topLeftCorner<rows, rows>().lazyProduct(open);
+    if (node.parent >= 0)
+      at(node.parent).impulse.noalias() += node.parent_side.topRows<rows>().transpose().lazyProduct(node.share.head<rows>());
+  });
 }
 
 void BodyTree::push_down(Node& node) {
-  node.velocity.noalias() = node.inverse * node.impulse;
-  if (node.own.rows() == 0) return;
-  if (node.parent >= 0) node.share.noalias() -= node.pull * at(node.parent).velocity;
-  node.velocity.noalias() += node.answer.transpose() * node.share;
+  node.velocity.noalias() = node.inverse.lazyProduct(node.impulse);
+  if (node.free == 0) return;
+  with_size(node.free, [&]<int rows>() {
+    if (node.parent >= 0) node.share.head<rows>().noalias() -= node.pull.topRows<rows>().lazyProduct(at(node.parent).velocity);
+    node.velocity.noalias() += node.answer.topRows<rows>().transpose().lazyProduct(node.share.head<rows>());
+  });
+}
+
+template <int rows>
+void BodyTree::prepare_answer(Node& node) {
+  const auto answer = node.answer.topRows<rows>();
+  const Eigen::Matrix<double, rows, 6> shares = node.inverse_give.topLeftCorner<rows, rows>().lazyProduct(answer);
+  node.alone.noalias() -= answer.transpose().lazyProduct(shares);
+  node.passed_on.noalias() = -node.parent_side.topRows<rows>().transpose().lazyProduct(shares);
+}
+
+void BodyTree::prepare_answers() {
+  for (Node& node : nodes()) {
+    if (!node.touches) continue;
+    node.alone = node.inverse;
+    node.passed_on.setZero();
+    if (node.free > 0) with_size(node.free, [&]<int rows>() { prepare_answer<rows>(node); });
+    node.whole = node.alone;
+    if (node.parent < 0) continue;
+    const Matrix6 of_parent = at(node.parent).whole.lazyProduct(node.passed_on);
+    node.whole.noalias() += node.passed_on.transpose().lazyProduct(of_parent);
+  }
+}
+
+// Parents come before what hangs on them: the later of two nodes hangs on the other, or on what it has in common with it.
+Matrix6 BodyTree::answer(int at, int from) const {
+  if (at == from) return this->at(at).whole;
+  if (at < from) return answer(from, at).transpose();
+  const Node& node = this->at(at);
+  return node.passed_on.transpose().lazyProduct(answer(node.parent, from));
 }
 
 void BodyTree::load() {
@@ -151,28 +220,8 @@ void BodyTree::load() {
 
 void BodyTree::sweep() {
   const auto all = nodes();
-  for (auto node = all.rbegin(); node != all.rend(); ++node) pull_up(*node, false);
+  for (auto node = all.rbegin(); node != all.rend(); ++node) pull_up(*node);
   for (Node& node : all) push_down(node);
-}
-
-void BodyTree::sweep_touched(const std::vector<int>& trees) {
-  for (const int tree : trees) {
-    const auto& places = trees_[static_cast<std::size_t>(tree)];
-    for (auto place = places.rbegin(); place != places.rend(); ++place) pull_up(at(*place), true);
-    for (const int place : places) push_down(at(place));
-  }
-}
-
-void BodyTree::clear_touched(const std::vector<int>& trees) {
-  for (const int tree : trees) {
-    for (const int place : trees_[static_cast<std::size_t>(tree)]) at(place).impulse.setZero(), at(place).velocity.setZero();
-  }
-}
-
-void BodyTree::clear_touched() {
-  for (Node& node : nodes()) {
-    if (node.touches) node.impulse.setZero(), node.velocity.setZero();
-  }
 }
 
 bool BodyTree::bind_joints(bool one_at_a_time) {

@@ -19,7 +19,7 @@ class BodyTree {
  public:
   struct Node {
     dBodyID body = nullptr;
-    int parent = -1, tree = -1;
+    int parent = -1, root = -1;
     JointInstance* joint = nullptr;
     bool touches = false;  // it or what hangs on it has a contact, or follows another joint
     Matrix6 mass;
@@ -29,16 +29,19 @@ class BodyTree {
 
    private:
     friend class BodyTree;
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor, JointRows::most, 6>;
-    using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, JointRows::most, 1>;
-    using FewSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, JointRows::most, JointRows::most>;
+    using Rows = Eigen::Matrix<double, JointRows::most, 6, Eigen::RowMajor>;
+    using Few = Eigen::Matrix<double, JointRows::most, 1>;
     // Of the tree as far as it hangs on this one.
     Matrix6 joined, inverse;
     Rows answer, pull;  // rows times inverse; what the parent's velocity takes from the impulses
     Rows own, parent_side;
-    Few target;
-    FewSquare inverse_give;
-    Few share;  // the impulses of the free rows
+    Few target, give;
+    Eigen::Matrix<double, JointRows::most, JointRows::most> inverse_give;
+    Few share;     // the impulses of the free rows
+    int free = 0;  // rows; those behind them, up to the size that is computed with, are zeros
+    // Where it touches: the velocity that an impulse on it gives it while the parent stands still, the impulse that comes to the parent,
+    // and the velocity while the parent moves, too.
+    Matrix6 alone, passed_on, whole;
   };
 
   void clear();
@@ -53,32 +56,34 @@ class BodyTree {
   Node& at(int node) { return nodes_[static_cast<std::size_t>(node)]; }
   const Node& at(int node) const { return nodes_[static_cast<std::size_t>(node)]; }
 
-  // Contacts and the like act on it. After the last: gather_trees().
+  // Contacts and the like act on it.
   void mark_touched(int node);
-  void gather_trees();
 
   void factor();
   // The impulses on the nodes: their momenta, and what the bound rows of joints give.
   void load();
   // Velocities of the impulses on the nodes and the targets of the rows.
   void sweep();
-  // The same without targets, for what leads to contacts alone, and of some trees.
-  void sweep_touched(const std::vector<int>& trees);
-  void clear_touched(const std::vector<int>& trees);
-  void clear_touched();
+  // After factor(): for answer() at nodes that are touched.
+  void prepare_answers();
+  // What an impulse on node `from` does to the velocity of node `at` of the same tree.
+  Matrix6 answer(int at, int from) const;
   // Motors that cannot do what they are to, and stops that need not hold, are at their bounds. False: all are right as they are.
   bool bind_joints(bool one_at_a_time);
   bool is_finite() const;
 
  private:
   static void gather(Node& node);
-  void pull_up(Node& node, bool is_homogeneous);
+  template <int rows>
+  void factor_rows(Node& node);
+  template <int rows>
+  static void prepare_answer(Node& node);
+  void pull_up(Node& node);
   void push_down(Node& node);
 
   std::vector<Node> nodes_;  // the first `count_`; storage is kept from step to step
   std::size_t count_ = 0;
   std::vector<std::pair<dBodyID, int>> places_;  // sorted
-  std::vector<std::vector<int>> trees_;          // nodes that touch, by tree, in their order
 };
 
 }  // namespace sim

@@ -11,7 +11,9 @@ void BoundedSystem::resize(Eigen::Index size) {
   low.setZero(size);
   high.setZero(size);
   x.setZero(size);
+  if (part_.rows() < size) part_.resize(size, size), found_.resize(size);
   bounds.assign(static_cast<std::size_t>(size), Bound::free);
+  solved_.clear();
 }
 
 Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance) {
@@ -24,25 +26,34 @@ Bound better_bound(Bound bound, double x, double left_over, double low, double h
 }
 
 void BoundedSystem::solve_free() {
-  std::vector<Eigen::Index> free;
+  bool has_moved = solved_ != bounds;  // a bound, or its value
+  free_.clear();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const Bound bound = bounds[static_cast<std::size_t>(i)];
-    if (bound == Bound::free) free.push_back(i);
-    if (bound != Bound::free) x[i] = bound == Bound::low ? low[i] : high[i];
-  }
-  const auto count = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd part(count, count);
-  Eigen::VectorXd wanted(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index row = free[static_cast<std::size_t>(i)];
-    wanted[i] = b[row];
-    for (Eigen::Index k = 0; k < x.size(); ++k) {
-      if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) wanted[i] -= a(row, k) * x[k];
+    if (bound == Bound::free) {
+      free_.push_back(i);
+      continue;
     }
-    for (Eigen::Index k = 0; k <= i; ++k) part(i, k) = a(row, free[static_cast<std::size_t>(k)]);
+    const double value = bound == Bound::low ? low[i] : high[i];
+    has_moved = has_moved || x[i] != value;
+    x[i] = value;
   }
-  const Eigen::VectorXd found = part.llt().solve(wanted);  // which looks at the lower half alone
-  for (Eigen::Index i = 0; i < count; ++i) x[free[static_cast<std::size_t>(i)]] = found[i];
+  if (!has_moved) return;
+  solved_ = bounds;
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  auto part = part_.topLeftCorner(count, count);
+  auto found = found_.head(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = free_[static_cast<std::size_t>(i)];
+    found[i] = b[row];
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) found[i] -= a(row, k) * x[k];
+    }
+    for (Eigen::Index k = i; k < count; ++k) part(k, i) = a(free_[static_cast<std::size_t>(k)], row);
+  }
+  // Looks at the lower half alone.
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(part).solveInPlace(found);
+  for (Eigen::Index i = 0; i < count; ++i) x[free_[static_cast<std::size_t>(i)]] = found[i];
 }
 
 // Returns how many are wrong.

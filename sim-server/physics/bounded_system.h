@@ -18,12 +18,19 @@ struct BoundedSystem {
 
   // Everything free and zero.
   void resize(Eigen::Index size);
-  // By block principal pivoting, and one by one where that goes round in circles. False when that does not end either.
+  // After resize() and the values; again after other bounds. By block principal pivoting, and one by one where that goes round in circles.
+  // False when that does not end either.
   bool solve();
 
  private:
   void solve_free();
   std::size_t turn_wrong(bool one_at_a_time);
+
+  std::vector<Bound> solved_;  // for which `x` is right, with the values of the bounds
+  // Of the free rows; storage is kept.
+  std::vector<Eigen::Index> free_;
+  Eigen::MatrixXd part_;
+  Eigen::VectorXd found_;
 };
 
 // Where a row that is at `bound` ought to be, with its force and the velocity that it leaves over.

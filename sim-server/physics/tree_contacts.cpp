@@ -13,14 +13,13 @@ void TreeContacts::add_row(Touch& touch, const Eigen::Vector3d& line, const Row&
   const MadeContact& contact = *touch.contact;
   const Eigen::Vector3d place = ode::vector(contact.contact.geom.pos);
   Row made = row;
-  made.a = touch.a, made.b = touch.b;
-  made.on_a = wrench_at(line, place - ode::vector(dBodyGetPosition(contact.a)));
-  made.on_b.setZero();
-  if (contact.b != nullptr) made.on_b = wrench_at(-line, place - ode::vector(dBodyGetPosition(contact.b)));
+  Push &on_a = made.pushes[0], &on_b = made.pushes[1];
+  on_a = {touch.a, wrench_at(line, place - ode::vector(dBodyGetPosition(contact.a)))};
+  if (contact.b != nullptr) on_b = {touch.b, wrench_at(-line, place - ode::vector(dBodyGetPosition(contact.b)))};
   made.give = row.give / physics_.step;
   // Bodies that nothing can move go on as they do.
-  if (touch.a < 0) made.target -= made.on_a.dot(velocity_of(contact.a));
-  if (touch.b < 0 && contact.b != nullptr) made.target -= made.on_b.dot(velocity_of(contact.b));
+  if (touch.a < 0) made.target -= on_a.on.dot(velocity_of(contact.a));
+  if (touch.b < 0 && contact.b != nullptr) made.target -= on_b.on.dot(velocity_of(contact.b));
   touch.lines[touch.count++] = line;
   rows_.push_back(made);
 }
@@ -76,21 +75,22 @@ void TreeContacts::add(const MadeContact& made) {
 void TreeContacts::add_mimics(ModelInstance& model) {
   const auto node_of = [&](const JointInstance* joint) { return joint == nullptr ? -1 : tree_.node_of(*joint); };
   for (const auto& mimic : model.mimics()) {
-    Row row;
-    row.a = node_of(model.joint(mimic.follower)), row.c = node_of(model.joint(mimic.leader));
-    if (row.a < 0 || row.c < 0) continue;
-    const BodyTree::Node &follower = tree_.at(row.a), &leader = tree_.at(row.c);
+    const int follows = node_of(model.joint(mimic.follower)), leads = node_of(model.joint(mimic.leader));
+    if (follows < 0 || leads < 0) continue;
+    const BodyTree::Node &follower = tree_.at(follows), &leader = tree_.at(leads);
     const MimicDef& def = *follower.joint->def().mimic;
-    row.b = follower.parent, row.d = leader.parent;
-    row.on_a = follower.rows.axis_own(), row.on_b = follower.rows.axis_parent();
-    row.on_c = -def.multiplier * leader.rows.axis_own(), row.on_d = -def.multiplier * leader.rows.axis_parent();
+    Row row;
+    row.pushes = {{{follows, follower.rows.axis_own()},
+                   {follower.parent, follower.rows.axis_parent()},
+                   {leads, -def.multiplier * leader.rows.axis_own()},
+                   {leader.parent, -def.multiplier * leader.rows.axis_parent()}}};
     const double wanted = def.multiplier * (leader.joint->state(0).position - def.reference) + def.offset;
     row.target = 0.2 * (wanted - follower.joint->state(0).position) / physics_.step;
     row.give = dWorldGetCFM(world_) / physics_.step;
     row.low = -infinite;
     rows_.push_back(row);
-    tree_.mark_touched(row.a);
-    tree_.mark_touched(row.c);
+    tree_.mark_touched(follows);
+    tree_.mark_touched(leads);
   }
   tie_rows_ = rows_.size();
 }
@@ -106,9 +106,8 @@ void TreeContacts::add_weld(Weld& weld) {
   const int node = tree_.node_of(second), other = first != nullptr ? tree_.node_of(first) : -1;
   const auto add_tie = [&](const Vector6& on_second, const Vector6& on_first, double target) {
     Row row;
-    row.a = node, row.b = other;
-    row.on_a = on_second;
-    row.on_b = first != nullptr ? on_first : Vector6(Vector6::Zero());
+    row.pushes[0] = {node, on_second};
+    row.pushes[1] = {other, on_first};
     row.target = target;
     if (node < 0) row.target -= on_second.dot(velocity_of(second));
     if (other < 0 && first != nullptr) row.target -= on_first.dot(velocity_of(first));
@@ -133,8 +132,11 @@ void TreeContacts::add_weld(Weld& weld) {
 // --- their solution
 
 double TreeContacts::motion(const Row& row) const {
-  return (row.a >= 0 ? row.on_a.dot(tree_.at(row.a).velocity) : 0) + (row.b >= 0 ? row.on_b.dot(tree_.at(row.b).velocity) : 0) +
-         (row.c >= 0 ? row.on_c.dot(tree_.at(row.c).velocity) : 0) + (row.d >= 0 ? row.on_d.dot(tree_.at(row.d).velocity) : 0);
+  double sum = 0;
+  for (const Push& push : row.pushes) {
+    if (push.node >= 0) sum += push.on.dot(tree_.at(push.node).velocity);
+  }
+  return sum;
 }
 
 bool TreeContacts::solve(bool is_first) {
@@ -152,33 +154,49 @@ void TreeContacts::ask_tree(bool is_first) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
     system_.b[i] = row.target - motion(row);
     system_.low[i] = row.low, system_.high[i] = row.high;
+    system_.a(i, i) = row.give;
+    // Friction is 0 first, and then on the side that the bodies ask for.
+    if (is_first && row.normal >= 0) system_.bounds[static_cast<std::size_t>(i)] = system_.b[i] > 0 ? Bound::high : Bound::low;
   }
-  tree_.clear_touched();
-  for (Eigen::Index i = 0; i < count; ++i) fill_column(i);
+  if (is_first) gather_acts();
+  tree_.prepare_answers();
+  for (std::size_t i = 0; i < acted_count_; ++i) {
+    for (std::size_t k = 0; k <= i; ++k) add_answers(acted_[i], acted_[k]);
+  }
+  system_.a.triangularView<Eigen::StrictlyUpper>() = system_.a.transpose();
 }
 
-// What an impulse on one row does to the velocities of all.
-void TreeContacts::fill_column(Eigen::Index column) {
-  const Row& row = rows_[static_cast<std::size_t>(column)];
-  swept_.clear();
-  const auto push = [&](int node, const Vector6& on) {
-    if (node < 0) return;
-    tree_.at(node).impulse += on;
-    if (std::find(swept_.begin(), swept_.end(), tree_.at(node).tree) == swept_.end()) swept_.push_back(tree_.at(node).tree);
-  };
-  push(row.a, row.on_a);
-  push(row.b, row.on_b);
-  push(row.c, row.on_c);
-  push(row.d, row.on_d);
-  tree_.sweep_touched(swept_);
-  const auto is_moved = [&](int node) { return node >= 0 && std::find(swept_.begin(), swept_.end(), tree_.at(node).tree) != swept_.end(); };
-  for (Eigen::Index k = 0; k < system_.a.rows(); ++k) {
-    const Row& other = rows_[static_cast<std::size_t>(k)];
-    const bool is_answered = is_moved(other.a) || is_moved(other.b) || is_moved(other.c) || is_moved(other.d);
-    system_.a(k, column) = is_answered ? motion(other) : 0;
+void TreeContacts::gather_acts() {
+  acted_count_ = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (const Push& push : rows_[i].pushes) {
+      if (push.node < 0) continue;
+      const auto end = acted_.begin() + static_cast<std::ptrdiff_t>(acted_count_);
+      auto acted = std::find_if(acted_.begin(), end, [&](const Acted& one) { return one.node == push.node; });
+      if (acted == end) {
+        if (acted_count_ == acted_.size()) acted_.emplace_back();
+        acted = acted_.begin() + static_cast<std::ptrdiff_t>(acted_count_++);
+        acted->node = push.node;
+        acted->acts.clear();
+      }
+      acted->acts.push_back({static_cast<Eigen::Index>(i), push.on});
+    }
   }
-  system_.a(column, column) += row.give;
-  tree_.clear_touched(swept_);
+}
+
+// What impulses on one node do to the rows at another, or at the same one, and these to them. Only the lower half is filled.
+void TreeContacts::add_answers(const Acted& at, const Acted& from) {
+  if (tree_.at(at.node).root != tree_.at(from.node).root) return;
+  const bool is_same = &at == &from;
+  const Matrix6 answer = tree_.answer(at.node, from.node);
+  for (const Act& push : from.acts) {
+    const Vector6 velocity = answer.lazyProduct(push.on);
+    for (const Act& row : at.acts) {
+      if (is_same && row.row < push.row) continue;
+      const double motion = row.on.dot(velocity);
+      system_.a(std::max(row.row, push.row), std::min(row.row, push.row)) += !is_same && row.row == push.row ? 2 * motion : motion;
+    }
+  }
 }
 
 // Friction is bounded by what presses: found without it first, then again until it presses as it was taken to.
@@ -206,15 +224,12 @@ bool TreeContacts::rub_and_press() {
   return true;
 }
 
-void TreeContacts::press(const Row& row, double impulse) const {
-  if (row.a >= 0) tree_.at(row.a).impulse += row.on_a * impulse;
-  if (row.b >= 0) tree_.at(row.b).impulse += row.on_b * impulse;
-  if (row.c >= 0) tree_.at(row.c).impulse += row.on_c * impulse;
-  if (row.d >= 0) tree_.at(row.d).impulse += row.on_d * impulse;
-}
-
 void TreeContacts::press() const {
-  for (std::size_t i = 0; i < rows_.size(); ++i) press(rows_[i], system_.x[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (const Push& push : rows_[i].pushes) {
+      if (push.node >= 0) tree_.at(push.node).impulse += push.on * system_.x[static_cast<Eigen::Index>(i)];
+    }
+  }
 }
 
 void TreeContacts::press_and_tell() const {

@@ -38,16 +38,18 @@ class TreeContacts {
   // With the velocities that the nodes have without these rows. `is_first`: of the step; then the rows begin free, else as they were
   // found. False: nothing was found.
   bool solve(bool is_first);
+  bool is_empty() const { return rows_.empty(); }
   // Puts the impulses on the nodes; those of contacts are told to their feedback as well.
   void press() const;
   void press_and_tell() const;
 
  private:
+  struct Push {
+    int node = -1;
+    Vector6 on = Vector6::Zero();
+  };
   struct Row {
-    int a = -1, b = -1;
-    Vector6 on_a, on_b;
-    int c = -1, d = -1;  // of a joint that follows another one: the two bodies of the leader
-    Vector6 on_c = Vector6::Zero(), on_d = Vector6::Zero();
+    std::array<Push, 4> pushes;  // on two bodies; of a joint that follows another one on those of the leader, too
     double target = 0, give = 0;
     double low = 0, high = infinite;
     double friction = 0;  // times the impulse of `normal` is the bound; 0: bounds as they are
@@ -59,21 +61,31 @@ class TreeContacts {
     std::size_t first = 0, count = 0;  // rows
     std::array<Eigen::Vector3d, 3> lines;
   };
+  // What the rows do to one node.
+  struct Act {
+    Eigen::Index row = 0;
+    Vector6 on;
+  };
+  struct Acted {
+    int node = -1;
+    std::vector<Act> acts;
+  };
   void add_row(Touch& touch, const Eigen::Vector3d& line, const Row& row);
   double target_of(const MadeContact& contact) const;
   double motion(const Row& row) const;
+  void add_answers(const Acted& at, const Acted& from);
   void ask_tree(bool is_first);
-  void fill_column(Eigen::Index column);
+  void gather_acts();
   bool rub_and_press();
-  void press(const Row& row, double impulse) const;
 
   BodyTree& tree_;
   dWorldID world_;
   const PhysicsDef& physics_;
   std::vector<Touch> touches_;
-  std::vector<Row> rows_;      // first those of joints that follow others, and of welds
-  std::size_t tie_rows_ = 0;   // of these
-  std::vector<int> swept_;     // trees that one row moves
+  std::vector<Row> rows_;     // first those of joints that follow others, and of welds
+  std::size_t tie_rows_ = 0;  // of these
+  std::vector<Acted> acted_;  // the first `acted_count_`; storage is kept from step to step
+  std::size_t acted_count_ = 0;
   std::vector<Bound> bounds_;  // of the last round
   BoundedSystem system_;
 };

@@ -18,7 +18,6 @@ void TreeSolver::make(const std::vector<ModelInstance*>& models, const std::vect
     }
   }
   for (const auto* contact : contacts) contacts_.add(*contact);
-  tree_.gather_trees();
 }
 
 bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vector<const MadeContact*>& contacts) {
@@ -28,10 +27,12 @@ bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vec
     tree_.factor();
     tree_.load();
     tree_.sweep();
-    if (!contacts_.solve(round == 0)) return false;
-    tree_.load();
-    contacts_.press();
-    tree_.sweep();
+    if (!contacts_.is_empty()) {
+      if (!contacts_.solve(round == 0)) return false;
+      tree_.load();
+      contacts_.press();
+      tree_.sweep();
+    }
     if (!tree_.is_finite()) return false;
     if (tree_.bind_joints(round >= at_once)) continue;
     put_forces();
