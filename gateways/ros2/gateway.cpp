@@ -214,7 +214,8 @@ Namespaces Gateway::namespaces() {
 
 void Gateway::arrange(const Listed& listed) {
   const auto wanted = robots_in(listed);
-  std::erase_if(robots_, [&](const auto& robot) { return !wanted.contains(robot->model()); });
+  // Another one may have the name of one that was deleted.
+  std::erase_if(robots_, [&](const auto& robot) { return !wanted.contains(robot->model()) || robot->is_gone(); });
   for (const auto& model : wanted) {
     if (std::ranges::any_of(robots_, [&](const auto& robot) { return robot->model() == model; })) continue;
     const auto has_names = [&](const auto& robot) {

@@ -48,6 +48,10 @@ Robot::~Robot() {
   }
 }
 
+bool Robot::is_gone() const {
+  return std::ranges::any_of(outlets_, [](const Outlet& outlet) { return outlet.source->is_closed(); });
+}
+
 std::vector<std::string> Robot::topics() const {
   std::vector<std::string> topics;
   for (const auto& writer : node_.writers())

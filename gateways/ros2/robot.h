@@ -51,6 +51,8 @@ class Robot {
   ~Robot();
 
   const std::string& model() const { return model_; }
+  // The simulator has removed an iface of it.
+  bool is_gone() const;
   // What it serves, for people and for comparisons: "scan", "odom", ...
   std::vector<std::string> topics() const;
   // Starts and ends the reading of ifaces; true when something has changed.

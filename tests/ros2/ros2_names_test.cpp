@@ -124,7 +124,7 @@ TEST_F(Ros2Mapping, names_frames_rates_and_domains_are_read) {
 
 TEST_F(Ros2Mapping, errors_name_the_line_and_what_was_expected) {
   EXPECT_EQ(error("domain: 300\n"), ":1: expected a domain from 0 to 232");
-  EXPECT_EQ(error("clock_rate: 1\nrobot: x\n"), ":2: unknown key \"robot\"; expected domain, clock_rate, robots or topics");
+  EXPECT_EQ(error("clock_rate: 1\nshelf: x\n"), ":2: unknown key \"shelf\"; expected domain, clock_rate, robots or topics");
   EXPECT_EQ(error("clock_rte: 1\n"), ":1: unknown key \"clock_rte\"; did you mean clock_rate?");
   EXPECT_EQ(error("robots: {a: {frame_prefx: b}}\n"), ":1: unknown key \"frame_prefx\"; did you mean frame_prefix?");
   EXPECT_EQ(error("topics: [{iface: a, durabilty: volatile}]\n"), ":1: unknown key \"durabilty\"; did you mean durability?");
