@@ -85,6 +85,8 @@ JointsDevice::JointsDevice(Setup setup, std::vector<ListedJoint> joints, JointDy
     axes_.push_back({std::move(listed), servo});
     if (propellers_) axes_.back().propeller = propellers_->find(axes_.back().listed.joint);
   }
+  const ModelDef& def = physics().def(model());
+  carrier_ = link_of(def, {}, def.joints[axes_.front().listed.joint].parent);
   states_.resize(axes_.size());
   positions_.resize(axes_.size());
   gravity_.resize(axes_.size());
@@ -169,10 +171,8 @@ void JointsDevice::brake_lost_joints() {
 
 // Of what carries the first joint, which may lean, against its place in the model at the start.
 Eigen::Matrix3d JointsDevice::base_rotation() const {
-  const ModelDef& def = physics().def(model());
-  const auto parent = link_of(def, {}, def.joints[axes_.front().listed.joint].parent);
-  if (!parent || dynamics_.body(0).parent >= 0) return physics().model_pose(model()).linear();
-  return physics().link_pose({model(), *parent}).linear() * def.links[*parent].pose.linear().transpose();
+  if (!carrier_ || dynamics_.body(0).parent >= 0) return physics().model_pose(model()).linear();
+  return physics().link_pose({model(), *carrier_}).linear() * physics().def(model()).links[*carrier_].pose.linear().transpose();
 }
 
 void JointsDevice::compute_gravity() {

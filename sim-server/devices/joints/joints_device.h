@@ -74,6 +74,7 @@ class JointsDevice final : public Sensor {
   std::vector<Axis> axes_;
   JointDynamics dynamics_;
   std::shared_ptr<Propellers> propellers_;  // null: none
+  std::optional<std::uint32_t> carrier_;    // link that carries the first joint; none: the world
   bool is_active_ = false;                  // a joint has been commanded
   bool has_power_ = true;
   std::uint32_t owners_seen_ = 0;
