@@ -95,7 +95,8 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
 - **Subscribing.** Take a lease: change `owner` from 0 to (pid << 32) + a number that no other lease of your process has, then write `pid_namespace`, `start_time` and last `flags` with
   `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the server does not look. A sensor works as long as one lease has the flag; leases of dead processes are taken
   back. To give a lease back store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
-  switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later, not even the noise.
+  switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later.
+  While time goes on, samples are due at the first step at or after each multiple of the period: a new subscriber changes nothing for the others.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
 - **Commands** are in the leases: make `command_lock` odd, write the command and the `command_values` doubles behind it, make the lock even; then store (number of commands + 1) << 16 | index
   of the lease in `command_latest` of the header, which names the one in force. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner dies or lets go, the robot stops. Who takes a lease or gives it back first writes a command of kind 0xffffffff into it

@@ -10,18 +10,8 @@ Schedule::Schedule(double rate) {
   if (rate > 0) period_ = std::chrono::nanoseconds(std::max<std::int64_t>(1, std::llround(1e9 / rate)));
 }
 
-std::chrono::nanoseconds Schedule::after(std::chrono::nanoseconds now) const {
-  return period_.count() > 0 ? (now / period_ + 1) * period_ : std::chrono::nanoseconds(0);
-}
-
-void Schedule::shown(std::chrono::nanoseconds now, std::uint64_t era) {
-  shown_at_ = now;
-  shown_era_ = era;
-}
-
-bool Schedule::is_due(std::chrono::nanoseconds now, std::uint64_t era) const {
-  if (now < next_) return false;
-  return shown_at_.count() == 0 || era != shown_era_ || now >= after(shown_at_);
+void Schedule::done(std::chrono::nanoseconds now) {
+  next_ = period_.count() > 0 ? (now / period_ + 1) * period_ : std::chrono::nanoseconds(0);
 }
 
 base::Result<void> Device::write_tag(const std::string&, const std::string&) {

@@ -35,21 +35,19 @@ struct Moment {
 class Schedule {
  public:
   explicit Schedule(double rate = 0);  // [Hz]; 0: every step
-  // For the subscribers of this era: an era begins when somebody subscribes to a device that nobody was subscribed to.
-  bool is_due(std::chrono::nanoseconds now, std::uint64_t era = 0) const;
-  // Without an answer for whom: false while nobody can be owed a sample.
-  bool may_be_due(std::chrono::nanoseconds now) const { return now >= next_; }
-  void done(std::chrono::nanoseconds now) { next_ = after(now); }
-  // A sample was made out of turn while time stood still, for the subscribers of this era: their next one is due at the next multiple.
-  // At time 0 all are due once more, as after a reset.
-  void shown(std::chrono::nanoseconds now, std::uint64_t era);
-  void restart() { next_ = shown_at_ = std::chrono::nanoseconds(0); }
+  bool is_due(std::chrono::nanoseconds now) const { return now >= next_; }
+  void done(std::chrono::nanoseconds now);
+  // Whether it is due; if so, the next multiple is.
+  bool pass(std::chrono::nanoseconds now) {
+    if (!is_due(now)) return false;
+    done(now);
+    return true;
+  }
+  void restart() { next_ = std::chrono::nanoseconds(0); }
   std::chrono::nanoseconds period() const { return period_; }
 
  private:
-  std::chrono::nanoseconds after(std::chrono::nanoseconds now) const;  // the next multiple of the period
-  std::chrono::nanoseconds period_{0}, next_{0}, shown_at_{0};
-  std::uint64_t shown_era_ = 0;
+  std::chrono::nanoseconds period_{0}, next_{0};
 };
 
 struct DeviceWorld {
@@ -75,7 +73,7 @@ class Device {
   virtual void before_step(const Moment&) {}
   // What must be followed in every step: encoders, accelerations.
   virtual void after_step(const Moment&) {}
-  // True when somebody wants a sample and one is due.
+  // True when somebody wants a sample and one is due. Called once after each step.
   virtual bool wants_sample(const Moment&) { return false; }
   virtual bool uses_rays() const { return false; }
   virtual void take_sample(const Moment&) {}
@@ -86,6 +84,7 @@ class Device {
   virtual void show(const Moment&) {}
   // Back to the start, with the model (again) at its initial state.
   virtual void reset() {}
+  // State that later steps depend on. Of a device that does not follow the steps it is always the same; never of what subscribers get.
   virtual void add_to(StateHash&) const {}
 
   // Of position devices; others refuse.

@@ -8,27 +8,13 @@
 #include "shm/iface_types.h"
 
 namespace sim {
-namespace {
-
-// What the iface says of itself; 0: it works in every step.
-std::chrono::nanoseconds period_of(shm::IfaceWriter& writer) {
-  for (const auto& field : shm::row_of(writer.type()).info) {
-    if (field.name != "rate" || field.kind != shm::Field::Kind::f64) continue;
-    const double rate = *static_cast<const double*>(field.in(writer.segment().info().data()));
-    return std::chrono::nanoseconds(rate > 0 ? std::llround(1e9 / rate) : 0);
-  }
-  return {};
-}
-
-}  // namespace
 
 FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, std::uint64_t seed)
     : device_(std::move(device)),
       seed_(seed),
       drive_(dynamic_cast<Drive*>(device_.get())),
       joints_(dynamic_cast<JointsDevice*>(device_.get())),
-      sensor_(dynamic_cast<Sensor*>(device_.get())),
-      period_(period_of(iface())) {}
+      sensor_(dynamic_cast<Sensor*>(device_.get())) {}
 
 // What stands behind the name of the iface.
 base::Result<std::optional<std::size_t>> FaultyDevice::joint_of(const FaultOrder& order) {
@@ -97,18 +83,19 @@ void FaultyDevice::before_step(const Moment& moment) {
   device_->before_step(moment);
 }
 
-// A sample that is left out is not measured either; the next one is due a period later.
+// A sample that is left out is not measured either. What keeps samples sees all that are due: it does not depend on subscribers.
 bool FaultyDevice::wants_sample(const Moment& moment) {
-  if (moment.time < silent_until_ || !device_->wants_sample(moment)) return false;
-  bool is_left_out = false;
-  for (auto& [order, fault, joint] : entries_) is_left_out = (fault && order.is_at(moment.time) && fault->leaves_out()) || is_left_out;
-  if (is_left_out) silent_until_ = moment.time + period_;
-  return !is_left_out;
+  const auto is_any = [&](const auto& of_fault) {
+    return std::ranges::any_of(entries_,
+                               [&](Entry& entry) { return entry.fault && entry.order.is_at(moment.time) && of_fault(*entry.fault); });
+  };
+  if (sensor_ != nullptr) sensor_->measure_always(is_any([](const SensorFault& fault) { return fault.keeps_samples(); }));
+  return device_->wants_sample(moment) && !is_any([&](const SensorFault& fault) { return fault.leaves_out(moment.time); });
 }
 
 void FaultyDevice::publish(const Moment& moment) {
   for (auto& [order, fault, joint] : entries_) {
-    if (fault && order.is_at(moment.time)) fault->apply(iface());
+    if (fault && order.is_at(moment.time)) fault->apply(iface(), moment.time);
   }
   device_->publish(moment);
 }
@@ -120,13 +107,12 @@ void FaultyDevice::show(const Moment& moment) {
   if (std::ranges::any_of(entries_, is_off)) return;
   sensor_->show_changed(moment, [&](shm::IfaceWriter& writer) {
     for (const auto& [order, fault, joint] : entries_) {
-      if (fault && order.is_at(moment.time)) SensorFault(*fault).apply(writer);
+      if (fault && order.is_at(moment.time)) SensorFault(*fault).apply(writer, moment.time);
     }
   });
 }
 
 void FaultyDevice::reset() {
-  silent_until_ = std::chrono::nanoseconds(0);
   for (Entry& entry : entries_) {
     if (entry.fault) entry.fault->reset();
   }

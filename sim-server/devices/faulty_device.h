@@ -61,7 +61,6 @@ class FaultyDevice final : public Device {
   Drive* drive_;          // the device, when it is one
   JointsDevice* joints_;  // the same
   Sensor* sensor_;        // the same
-  std::chrono::nanoseconds period_{0}, silent_until_{0};
 };
 
 }  // namespace sim

@@ -35,6 +35,12 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_(mix
   for (const char c : name) key_ = mix(key_ ^ static_cast<unsigned char>(c));
 }
 
+RandomStream RandomStream::at(std::uint64_t number) const {
+  RandomStream stream;
+  stream.key_ = mix(key_ ^ mix(number));
+  return stream;
+}
+
 std::uint64_t RandomStream::next() { return mix(key_ + mix(++counter_)); }
 
 namespace {
@@ -93,21 +99,36 @@ void RandomStream::fill(std::span<double> numbers) {
   for (double& number : numbers) number = gaussian_from(layers, draw);
 }
 
-Noise::Noise(const NoiseDef& def, RandomStream stream) : def_(def), stream_(stream) {
+Noise::Noise(const NoiseDef& def, const RandomStream& stream, std::chrono::nanoseconds interval)
+    : def_(def), all_(stream), sample_(stream.at(0)), interval_(interval) {
   if (is_none()) return;
-  bias_ = def_.bias_mean + def_.bias_stddev * stream_.gaussian();
-  if ((stream_.next() & 1) != 0) bias_ = -bias_;
+  RandomStream fixed = stream;
+  first_bias_ = def_.bias_mean + def_.bias_stddev * fixed.gaussian();
+  if ((fixed.next() & 1) != 0) first_bias_ = -first_bias_;
+  bias_ = first_bias_;
+  drift_ = RandomStream(fixed.next(), "drift");
 }
 
-double Noise::apply(double value, double dt) {
+void Noise::begin(std::chrono::nanoseconds time) {
+  if (is_none()) return;
+  sample_ = all_.at(time);
+  if (drifts()) drift_to(static_cast<std::uint64_t>(time / interval_));
+}
+
+// A first-order Gauss-Markov walk, from the start again when time went back.
+void Noise::drift_to(std::uint64_t interval) {
+  if (interval < drifted_) bias_ = first_bias_, drifted_ = 0;
+  if (interval == drifted_) return;
+  const double dt = std::chrono::duration<double>(interval_).count();
+  const double keep = std::exp(-dt / def_.dynamic_bias_correlation_time);
+  const double step = def_.dynamic_bias_stddev * std::sqrt(1 - keep * keep);
+  while (drifted_ < interval) bias_ = keep * bias_ + step * drift_.at(++drifted_).gaussian();
+}
+
+double Noise::apply(double value) {
   if (is_none()) return value;
-  if (def_.dynamic_bias_stddev > 0 && def_.dynamic_bias_correlation_time > 0) {
-    // A first-order Gauss-Markov walk.
-    const double tau = def_.dynamic_bias_correlation_time, keep = std::exp(-dt / tau);
-    bias_ = keep * bias_ + def_.dynamic_bias_stddev * std::sqrt(1 - keep * keep) * stream_.gaussian();
-  }
   value += bias_ + def_.mean;
-  if (def_.stddev > 0) value += def_.stddev * stream_.gaussian();
+  if (def_.stddev > 0) value += def_.stddev * sample_.gaussian();
   return def_.kind == NoiseDef::Kind::gaussian_quantized ? quantised(value, def_.precision) : value;
 }
 
@@ -119,7 +140,7 @@ void Noise::apply(std::span<float> ranges, float step) {
   for (std::size_t first = 0; first < ranges.size(); first += numbers.size()) {
     const auto part = ranges.subspan(first, std::min(numbers.size(), ranges.size() - first));
     // Every beam draws, hit or not: what one beam sees does not change the noise of the others.
-    if (has_noise) stream_.fill(std::span(numbers).first(part.size()));
+    if (has_noise) sample_.fill(std::span(numbers).first(part.size()));
     for (std::size_t i = 0; i < part.size(); ++i) {
       const double noise = has_noise ? def_.mean + bias_ + def_.stddev * numbers[i] : 0;
       if (std::isfinite(part[i])) part[i] = static_cast<float>(quantised(part[i] + noise, quantum));

@@ -188,13 +188,10 @@ bool Simulation::sense(PartTimes& times, const std::function<bool()>& before_wri
   const Moment moment{time_, world_->physics.step};
   due_.clear();
   bool needs_rays = false;
-  samples_taken_.resize(devices_.size());
-  for (std::size_t i = 0; i < devices_.size(); ++i) {
-    Device& device = *devices_[i];
-    if (!device.wants_sample(moment)) continue;
-    due_.push_back(&device);
-    ++samples_taken_[i];
-    needs_rays = needs_rays || device.uses_rays();
+  for (const auto& device : devices_) {
+    if (!device->wants_sample(moment)) continue;
+    due_.push_back(device.get());
+    needs_rays = needs_rays || device->uses_rays();
   }
   if (due_.empty()) {
     times.mark(Part::sensors);

@@ -102,8 +102,6 @@ class Simulation {
   const std::vector<std::unique_ptr<Device>>& devices() const { return devices_; }
   // Another number when models and devices have come or gone: while it is the same, each id and index names the same one.
   std::uint64_t arrangement() const { return arrangement_; }
-  // How often the device of this number has taken a sample; one that follows no steps changes only then, and by a reset.
-  std::uint64_t samples_taken(std::size_t device) const { return device < samples_taken_.size() ? samples_taken_[device] : 0; }
   Device* device(std::string_view iface_name);
   const std::vector<Trail>& trails() const { return trails_; }  // by ModelId
   // Devices that have worked since the last call.
@@ -144,7 +142,6 @@ class Simulation {
   std::unique_ptr<RenderWorld> pictures_;
   std::unique_ptr<DeviceWorld> device_world_;
   std::vector<std::unique_ptr<Device>> devices_;  // by model, then as made
-  std::vector<std::uint64_t> samples_taken_;      // likewise
   std::uint64_t arrangement_ = 0;
   std::vector<Device*> followers_;   // those that follow the steps
   std::vector<std::size_t> shares_;  // of the followers; where each ends

@@ -75,7 +75,6 @@ void WorldHashes::look_at_names_again(std::uint64_t arrangement) {
 void WorldHashes::restart() {
   schedule_.restart();
   without_turns_.restart();
-  for (Leaf& device : devices_) device.samples.reset();
 }
 
 // Of the leaf whose state is in state_: it is another one than before. To compare costs a tenth of a hash, and what rests, or keeps nothing
@@ -104,13 +103,11 @@ void WorldHashes::record_devices(const Simulation& simulation) {
   const auto& devices = simulation.devices();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     Leaf& device = leaf(devices_, i);
-    const auto samples = simulation.samples_taken(i);
-    // Most are sensors that take a sample in every twentieth step or so: a look at each costs more than all the rest.
-    if (device.is_named && device.samples == samples) continue;
+    // Most are sensors that keep no state: a look at each costs more than all the rest.
+    if (device.is_named && !devices[i]->follows_steps()) continue;
     state_.clear();
     devices[i]->add_to(state_);
     if (const auto& iface = devices[i]->iface(); !device.is_named) name(device, shm::to_text(iface.type()), iface.name());
-    device.samples = devices[i]->follows_steps() ? std::nullopt : std::optional(samples);
     if (is_new(device)) log_.add(device.key, device.hash);
   }
 }

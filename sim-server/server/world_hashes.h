@@ -37,9 +37,7 @@ class WorldHashes {
     std::uint32_t key = 0;
     std::uint64_t hash = 0;
     bool is_known = false;
-    bool is_named = false;  // type and name are those of this arrangement of the world
-    // Of a device that changes only with a sample: how many it had taken then. Nothing: it is looked at each time.
-    std::optional<std::uint64_t> samples{};
+    bool is_named = false;               // type and name are those of this arrangement of the world
     std::vector<std::uint64_t> state{};  // as of the last entry
   };
   Leaf& leaf(std::vector<Leaf>& leaves, std::size_t index);

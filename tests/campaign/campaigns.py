@@ -121,6 +121,9 @@ def pages():
     hunt = plan("expect: [{path_length: {model: pioneer2dx, max: 0.05}}]\nhunt: {faults: [{connector: range-to-avoidance, is: drop}]}\n", "hunt.yaml")
     find = json.loads(rtse("--json", "hunt", hunt, "--finds", 1, "--cases", 4, "--page", code=1).stdout)["finds"][0]
     assert page_of(pathlib.Path(find["plan"]).with_suffix(".html"))["command"] == f"rtse sweep {find['plan']} --row 1", find
+    assert find["repeatable"], find
+    # The run that left the page is the run without a page.
+    rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1)
 
 
 # A killed sweep goes on where it was: nothing that has ended is lost, nothing is done twice.

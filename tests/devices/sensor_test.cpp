@@ -48,7 +48,7 @@ struct Outcome {
   std::map<std::string, std::vector<std::byte>> samples;  // the last of every iface
 };
 
-// Half a second with nobody there, a look at one iface while time stands still, and ten steps with everybody there.
+// Half a second with nobody there, a look at one iface while time stands still, and fifty steps with everybody there.
 Outcome run_with_a_look_at(const std::string& looked_at) {
   SimulationFixture f(every_device());
   f.simulation->pictures().set_synchronous(true);
@@ -63,7 +63,7 @@ Outcome run_with_a_look_at(const std::string& looked_at) {
   f.simulation->answer_new_subscribers();
   std::vector<shm::Iface> ifaces;
   for (const auto& name : names) ifaces.push_back(f.open(name.type, name.iface));
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 50; ++i) {
     f.simulation->step(f.times);
     f.simulation->sense(f.times);
   }

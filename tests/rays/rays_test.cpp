@@ -312,12 +312,72 @@ TEST(Rays, a_crowd_is_seen_as_few_bodies_are) {
   EXPECT_LT(differ, 10);
 }
 
+constexpr auto interval = std::chrono::milliseconds(10);
+
+// Gaussian, with a bias that drifts.
+NoiseDef drifting() {
+  NoiseDef def;
+  def.kind = NoiseDef::Kind::gaussian;
+  def.stddev = 0.05;
+  def.bias_stddev = 0.2;
+  def.dynamic_bias_stddev = 0.3;
+  def.dynamic_bias_correlation_time = 0.5;
+  return def;
+}
+
+TEST(Noise, of_a_time_does_not_depend_on_the_samples_before) {
+  const RandomStream stream(3, "imu");
+  Noise all(drifting(), stream, interval), few(drifting(), stream, interval);
+  const auto at = [](Noise& noise, int sample) {
+    noise.begin(sample * interval);
+    return std::pair(noise.apply(1), noise.apply(2));
+  };
+  std::vector<std::pair<double, double>> each;
+  for (int i = 0; i < 1000; ++i) each.push_back(at(all, i));
+  EXPECT_NE(each[1].first, each[2].first);
+  for (const int i : {5, 6, 300, 999, 7}) {
+    EXPECT_EQ(at(few, i), each[static_cast<std::size_t>(i)]) << i;
+    (void)few.apply(0);
+  }
+}
+
+TEST(Noise, between_two_samples_has_the_bias_of_the_first) {
+  NoiseDef def = drifting();
+  def.stddev = 0;
+  Noise noise(def, RandomStream(3, "imu"), interval);
+  noise.begin(5 * interval);
+  const double value = noise.apply(0);
+  noise.begin(5 * interval + interval / 2);
+  EXPECT_EQ(noise.apply(0), value);
+  noise.begin(6 * interval);
+  EXPECT_NE(noise.apply(0), value);
+}
+
+TEST(Noise, a_bias_that_drifts_has_the_deviation_and_the_correlation_time_asked_for) {
+  NoiseDef def = drifting();
+  def.stddev = def.bias_stddev = 0;
+  Noise noise(def, RandomStream(3, "imu"), interval);
+  constexpr int count = 400000, lag = 50;  // the correlation time
+  std::vector<double> bias;
+  for (int i = 0; i < count; ++i) {
+    noise.begin(i * interval);
+    bias.push_back(noise.apply(0));
+  }
+  double squares = 0, products = 0;
+  for (int i = lag; i < count; ++i) {
+    const auto now = static_cast<std::size_t>(i);
+    squares += bias[now] * bias[now], products += bias[now] * bias[now - lag];
+  }
+  EXPECT_NEAR(std::sqrt(squares / (count - lag)), 0.3, 0.015);
+  EXPECT_NEAR(products / squares, std::exp(-1), 0.05);
+}
+
 TEST(Noise, has_the_mean_and_deviation_asked_for) {
   NoiseDef def;
   def.kind = NoiseDef::Kind::gaussian;
   def.mean = 0.02;
   def.stddev = 0.05;
-  Noise noise(def, RandomStream(1, "robot::laser"));
+  Noise noise(def, RandomStream(1, "robot::laser"), interval);
   std::vector<float> ranges(100000, 5.0F);
   ranges[7] = std::numeric_limits<float>::infinity();
   noise.apply(ranges, 0);
@@ -360,14 +420,14 @@ TEST(Noise, many_numbers_at_once_are_those_that_come_one_by_one) {
   all.fill(std::span(numbers).first(1001));
   all.fill(std::span(numbers).subspan(1001));
   for (std::size_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(numbers[i], one.gaussian()) << i;
-  EXPECT_EQ(all.position(), one.position());
+  EXPECT_EQ(all.next(), one.next());
 }
 
 TEST(Noise, rounds_to_the_nearest_step_and_halves_away_from_zero) {
   NoiseDef def;
   def.kind = NoiseDef::Kind::gaussian_quantized;
   def.precision = 0.25;
-  Noise noise(def, RandomStream(1, "a"));
+  Noise noise(def, RandomStream(1, "a"), interval);
   std::vector<float> ranges{0.125F, -0.125F, 0.124999F, 2.375F, -2.375F, 1e30F, -0.01F};
   noise.apply(ranges, 0);
   EXPECT_EQ(ranges, (std::vector<float>{0.25F, -0.25F, 0, 2.5F, -2.5F, 1e30F, 0}));
@@ -381,10 +441,11 @@ TEST(Noise, differs_by_seed_and_name_and_repeats_otherwise) {
   EXPECT_NE(first, other_name.next());
   EXPECT_NE(first, other_seed.next());
   EXPECT_EQ(RandomStream(1, "laser").next(), 2522533932632556808U) << "must be the same on every machine";
+  EXPECT_NE(RandomStream(1, "laser").at(1).next(), RandomStream(1, "laser").at(2).next());
 }
 
 TEST(Noise, ranges_are_multiples_of_the_resolution) {
-  Noise noise({}, RandomStream(1, "laser"));
+  Noise noise({}, RandomStream(1, "laser"), interval);
   std::vector<float> ranges{1.2344F, 1.2346F};
   noise.apply(ranges, 0.001F);
   EXPECT_FLOAT_EQ(ranges[0], 1.234F);

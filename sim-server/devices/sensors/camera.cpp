@@ -144,10 +144,10 @@ class CameraDevice final : public Device, public CameraPlaceSource {
   bool holds_context() const override { return worker_.holds_context(); }
 
   bool wants_sample(const Moment& moment) override {
-    if (!schedule_.may_be_due(moment.time)) return false;
-    auto wanted = subscribed_channels();  // counts them: the era is that of now
-    if (!schedule_.is_due(moment.time, era())) return false;
+    if (!schedule_.is_due(moment.time)) return false;
+    auto wanted = subscribed_channels();
     if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) {
+      schedule_.done(moment.time);  // as of any sensor
       rest_when_long_idle(moment.time);
       return false;
     }
@@ -173,7 +173,6 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     worker_.wait();
     worker_.start(job_of(moment, subscribed_channels()));
     worker_.wait();
-    schedule_.shown(moment.time, era());
     last_picture_ = moment.time;
   }
   void reset() override {
@@ -199,13 +198,6 @@ class CameraDevice final : public Device, public CameraPlaceSource {
     if (!last_picture_ || now - *last_picture_ < long_idle) return;
     last_picture_.reset();
     worker_.rest();
-  }
-
-  // Another one for each channel that is switched on.
-  std::uint64_t era() const {
-    std::uint64_t sum = 0;
-    for (const auto& channel : channels_) sum += channel.writer->times_switched_on();
-    return sum;
   }
 
   std::vector<bool> subscribed_channels() const {

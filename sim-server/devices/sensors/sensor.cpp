@@ -1,6 +1,7 @@
 #include "devices/sensors/sensor.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shm/server.h"
 #include "world/iface_names.h"
@@ -13,22 +14,20 @@ Sensor::Sensor(Setup setup)
       schedule_(setup.rate),
       writer_(std::move(setup.writer)),
       noise_(std::move(setup.noise)),
-      fresh_noise_(noise_),
       streams_(std::move(setup.streams)),
       seed_(world_.seed) {}
 
-void Sensor::publish(const Moment& moment) {
-  schedule_.done(moment.time);
-  writer_->publish(moment.time);
+void Sensor::take_sample(const Moment& moment) {
+  for (Noise& noise : noise_) noise.begin(moment.time);
+  measure(moment);
 }
 
+void Sensor::publish(const Moment& moment) { writer_->publish(moment.time); }
+
 void Sensor::show_changed(const Moment& moment, const std::function<void(shm::IfaceWriter&)>& change) {
-  const auto before = noise_;
-  measure(moment);
+  take_sample(moment);
   change(*writer_);
-  writer_->publish(moment.time);
-  schedule_.shown(moment.time, writer_->times_switched_on());
-  noise_ = before;
+  publish(moment);
 }
 
 shm::CommandChange Sensor::poll_command(const Moment& moment, shm::Command& command) {
@@ -44,9 +43,8 @@ void Sensor::reset() {
   schedule_.restart();
   if (seed_ != world_.seed) {
     seed_ = world_.seed;
-    for (std::size_t i = 0; i < streams_.size(); ++i) fresh_noise_[i] = fresh_noise_[i].with(RandomStream(seed_, streams_[i]));
+    for (std::size_t i = 0; i < streams_.size(); ++i) noise_[i] = noise_[i].with(RandomStream(seed_, streams_[i]));
   }
-  noise_ = fresh_noise_;
   writer_->drop_command();  // of the run before
   command_end_.reset();
   restart();
@@ -55,12 +53,6 @@ void Sensor::reset() {
 void Sensor::add_to(StateHash& hash) const {
   add_state_to(hash);
   if (command_end_) hash.add(static_cast<std::uint64_t>(command_end_->count()));
-  for (const auto& noise : noise_) hash.add(noise.stream().position());
-}
-
-double Sensor::noisy(std::size_t channel, double value) const {
-  const double dt = std::max(static_cast<double>(schedule_.period().count()) * 1e-9, world_.world.physics.step);
-  return noise_[channel].apply(value, dt);
 }
 
 double stated_rate(const DeviceWorld& world, double rate) { return rate > 0 ? rate : 1 / world.world.physics.step; }
@@ -81,10 +73,11 @@ base::Result<Sensor::Setup> set_up(DeviceWorld& world, ModelId model, double rat
   auto writer = world.shm.create(spec);
   if (!writer) return writer.error();
   Sensor::Setup setup{world, model, rate, std::move(*writer), {}};
+  const auto interval = std::max(Schedule(rate).period(), std::chrono::nanoseconds(std::llround(1e9 * world.world.physics.step)));
   char letter = 'a';
   for (const NoiseDef& def : noise.noises) {
     const std::string stream = noise.is_shared ? spec.name : spec.name + letter++;
-    setup.noise.emplace_back(def, RandomStream(world.seed, stream));
+    setup.noise.emplace_back(def, RandomStream(world.seed, stream), interval);
     setup.streams.push_back(stream);
   }
   return setup;

@@ -19,12 +19,12 @@ class Sensor : public Device {
  public:
   shm::IfaceWriter& iface() final { return *writer_; }
   ModelId model() const final { return model_; }
-  bool wants_sample(const Moment& moment) final {
-    // Subscribers are counted first: the era is that of now.
-    return schedule_.may_be_due(moment.time) && writer_->is_subscribed() && schedule_.is_due(moment.time, writer_->times_switched_on());
-  }
-  void take_sample(const Moment& moment) final { measure(moment); }
+  // Due times pass whether or not somebody subscribes: the samples that one subscriber gets do not depend on the others.
+  bool wants_sample(const Moment& moment) final { return schedule_.pass(moment.time) && (is_always_measured_ || writer_->is_subscribed()); }
+  void take_sample(const Moment& moment) final;
   void publish(const Moment& moment) final;
+  // Without subscribers, too: for faults that keep samples.
+  void measure_always(bool always) { is_always_measured_ = always; }
   bool owes_sample() final { return writer_->owes_sample(); }
   void show(const Moment& moment) final {
     show_changed(moment, [](shm::IfaceWriter&) {});
@@ -47,11 +47,11 @@ class Sensor : public Device {
   explicit Sensor(Setup setup);
 
   // Fills the iface's sample with what is there now. Const: a sample that somebody asks for in between changes nothing in those that
-  // follow. Noise is the one thing that goes on with each, and show() puts it back.
+  // follow. The noise depends on the simulated time alone.
   virtual void measure(const Moment& moment) const = 0;
   // What the device itself keeps from step to step goes back to the start; the model is there already.
   virtual void restart() {}
-  // The same for the state hash, before the noise.
+  // The same for the state hash.
   virtual void add_state_to(StateHash&) const {}
 
   DeviceWorld& world() const { return world_; }
@@ -71,8 +71,8 @@ class Sensor : public Device {
   // As the writer's. A command with a duration is `lost` when it is over.
   shm::CommandChange poll_command(const Moment& moment, shm::Command& command);
 
-  // The value with the noise of a channel.
-  double noisy(std::size_t channel, double value) const;
+  // The value with the noise of a channel, at the time of the sample.
+  double noisy(std::size_t channel, double value) const { return noise_[channel].apply(value); }
   // All ranges with the noise of the first channel, quantised to multiples of `step` (0: not).
   void add_noise(std::span<float> ranges, float step) const { noise_.front().apply(ranges, step); }
 
@@ -82,9 +82,9 @@ class Sensor : public Device {
   Schedule schedule_;
   std::unique_ptr<shm::IfaceWriter> writer_;
   mutable std::vector<Noise> noise_;
-  std::vector<Noise> fresh_noise_;
-  std::vector<std::string> streams_;                     // by channel
-  std::uint64_t seed_;                                   // of fresh_noise_
+  std::vector<std::string> streams_;  // by channel
+  std::uint64_t seed_;                // of noise_
+  bool is_always_measured_ = false;
   std::optional<std::chrono::nanoseconds> command_end_;  // of a command with a duration
 };
 

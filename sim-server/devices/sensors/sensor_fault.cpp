@@ -81,29 +81,26 @@ base::Result<SensorFault> SensorFault::make(const FaultOrder& order, const shm::
   return SensorFault(order, RandomStream(seed, "fault " + kind + " " + order.iface), joint);
 }
 
-bool SensorFault::leaves_out() { return kind_ == Kind::off || (kind_ == Kind::dropout && random_.uniform() < amount_); }
+bool SensorFault::leaves_out(std::chrono::nanoseconds time) const {
+  return kind_ == Kind::off || (kind_ == Kind::dropout && random_.at(time).uniform() < amount_);
+}
 
-void SensorFault::apply(shm::IfaceWriter& writer) {
+void SensorFault::apply(shm::IfaceWriter& writer, std::chrono::nanoseconds time) {
   switch (kind_) {
     case Kind::stuck:
     case Kind::latency:
       return exchange(writer);
     case Kind::bias:
     case Kind::noise:
-      return disturb(writer);
+      return disturb(writer, random_.at(time));
     case Kind::missing:
-      return lose_beams(writer);
+      return lose_beams(writer, random_);
     case Kind::off:
     case Kind::dropout:
     case Kind::weak:
     case Kind::halted:
       break;
   }
-}
-
-void SensorFault::reset() {
-  random_.restart();
-  kept_.clear();
 }
 
 // Until there is one that is late enough, the first stays.
@@ -115,8 +112,8 @@ void SensorFault::exchange(shm::IfaceWriter& writer) {
   if (!is_stuck && kept_.size() > static_cast<std::size_t>(amount_)) kept_.pop_front();
 }
 
-void SensorFault::disturb(shm::IfaceWriter& writer) {
-  const auto change = [this](double value) { return value + (kind_ == Kind::bias ? amount_ : amount_ * random_.gaussian()); };
+void SensorFault::disturb(shm::IfaceWriter& writer, RandomStream random) const {
+  const auto change = [&](double value) { return value + (kind_ == Kind::bias ? amount_ : amount_ * random.gaussian()); };
   if (has_ranges(writer)) {
     for (float& range : writer.ranges()) {
       if (std::isfinite(range)) range = static_cast<float>(std::max(0.0, change(static_cast<double>(range))));
@@ -141,10 +138,9 @@ void SensorFault::disturb(shm::IfaceWriter& writer) {
 }
 
 // The same beams each time.
-void SensorFault::lose_beams(shm::IfaceWriter& writer) {
-  random_.restart();
+void SensorFault::lose_beams(shm::IfaceWriter& writer, RandomStream random) const {
   for (float& range : writer.ranges()) {
-    if (random_.uniform() < amount_) range = std::numeric_limits<float>::infinity();
+    if (random.uniform() < amount_) range = std::numeric_limits<float>::infinity();
   }
 }
 

@@ -36,19 +36,21 @@ class SensorFault {
   static base::Result<SensorFault> make(const FaultOrder& order, const shm::IfaceWriter& writer, std::uint64_t seed,
                                         std::optional<std::size_t> joint = std::nullopt);
 
-  // Asked once for each sample that is due: whether it is to be left out.
-  bool leaves_out();
-  // Changes the sample that waits to be published.
-  void apply(shm::IfaceWriter& writer);
-  void reset();
+  // Whether the sample of this simulated time is to be left out.
+  bool leaves_out(std::chrono::nanoseconds time) const;
+  // Whether it changes a sample by those before it.
+  bool keeps_samples() const { return kind_ == Kind::stuck || kind_ == Kind::latency; }
+  // Changes the sample of this time, which waits to be published.
+  void apply(shm::IfaceWriter& writer, std::chrono::nanoseconds time);
+  void reset() { kept_.clear(); }
 
  private:
   SensorFault(const FaultOrder& order, RandomStream random, std::optional<std::size_t> joint)
       : kind_(order.kind), amount_(order.amount), random_(std::move(random)), joint_(joint) {}
   std::span<std::byte> measured(shm::IfaceWriter& writer) const;
   void exchange(shm::IfaceWriter& writer);
-  void disturb(shm::IfaceWriter& writer);
-  void lose_beams(shm::IfaceWriter& writer);
+  void disturb(shm::IfaceWriter& writer, RandomStream random) const;
+  void lose_beams(shm::IfaceWriter& writer, RandomStream random) const;
 
   Kind kind_;
   double amount_;
