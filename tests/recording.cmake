@@ -19,7 +19,7 @@ if(RTMSIM_STUDIO_PAGE)
       COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/followed_page.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(followed_page.${case} PROPERTIES LABELS integration TIMEOUT 600)
   endforeach()
-  foreach(case limit writer_killed page_fails ended messages)
+  foreach(case damaged limit writer_killed page_fails ended messages)
     add_test(NAME run_page.${case}
       COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/run_page.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
     set_tests_properties(run_page.${case} PROPERTIES LABELS integration TIMEOUT 600)

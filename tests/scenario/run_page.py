@@ -5,6 +5,7 @@ import os
 import re
 import signal
 import stat
+import struct
 import subprocess
 import sys
 import tempfile
@@ -157,4 +158,44 @@ def messages(folder):
 
 
 with tempfile.TemporaryDirectory() as place:
-    {one.__name__: one for one in (limit, writer_killed, page_fails, ended, messages)}[case](place)
+    {one.__name__: one for one in (damaged, limit, writer_killed, page_fails, ended, messages)}[case](place)
+# Of a recording with a broken chunk the page, info, cat and compare have all the rest, and say what is missing.
+def damaged(folder):
+    recording, broken, page = (os.path.join(folder, name) for name in ("run.mcap", "broken.mcap", "run.html"))
+    rtse = f"{bin_dir}/rtse"
+    done(*run_words(10, "--record", recording))
+    with open(recording, "rb") as file:
+        octets = bytearray(file.read())
+    at, chunks = 8, []
+    while at + 9 <= len(octets) - 8:
+        kind, size = struct.unpack_from("<BQ", octets, at)
+        if kind == 6:
+            chunks.append((at, size))
+        at += 9 + size
+    at, size = chunks[len(chunks) // 2]
+    first, last = (time / 1e9 for time in struct.unpack_from("<QQ", octets, at + 9))
+    assert 0 < first < last < 10, (first, last, len(chunks))
+    octets[at + 9 + size // 2] ^= 0x55
+    with open(broken, "wb") as file:
+        file.write(octets)
+    where = f'"{broken}": octet {at}: '
+    times = f"from {first:g} to {last:g} s: "
+
+    def said(*words):
+        ended = subprocess.run((rtse, *words), timeout=watchdog, capture_output=True, text=True, check=False)
+        assert ended.returncode == 1 and ended.stderr.count(where) == 1 and ended.stderr.count("\n") == 1, (words, ended)
+        return ended.stdout, ended.stderr
+
+    done(rtse, "page", broken, "-o", page)
+    index = index_of(page)
+    (line,) = (line for line in index["hello"]["page"]["left_out"] if "damaged" in line)
+    assert line.startswith(f"what is damaged in the recording: {times}{where}"), line
+    assert index["hello"]["recording"]["damage"] in line and abs(index["parts"][-1][1] - 10) < 0.1, (line, index["parts"])
+    assert "channel" in said("recording", "info", broken)[0]
+    ranges = [json.loads(one)["time"] for one in said("recording", "cat", broken, "RTCLaser0:range")[0].splitlines()]
+    assert ranges[0] < first and ranges[-1] > last and not [time for time in ranges if first < time < last], ranges
+    for pair in ((recording, broken), (broken, recording)):
+        out, problem = said("recording", "compare", *pair)
+        assert out.startswith("equal in what can be read: ") and problem.startswith(f"rtse: not compared {times}{where}"), (out, problem)
+
+

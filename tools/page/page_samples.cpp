@@ -84,6 +84,7 @@ void PageSamples::find_channels(nanoseconds from) {
       if (count > 0 && !rings_.contains(topic)) rings_[topic] = Json{{"ranges", std::vector<double>(count, 0.0)}};
     }
   }
+  reader_.leave_out_broken_chunks();
   is_at_end_ = query.channels.empty();  // a query without channels would be one for all
   query.from = studio::to_mcap_time(from);
   reader_.seek(query);

@@ -28,6 +28,8 @@ class PageSamples {
   base::Result<Json> part_until(std::chrono::nanoseconds to);
   // The file has grown, and these are its facts now: goes on with the samples from this time on, the end of the last part.
   base::Result<void> go_on(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
+  // Chunks of the file that could not be read so far.
+  const std::vector<mcap::Reader::BrokenChunk>& broken_chunks() const { return reader_.broken_chunks(); }
   // A line for each signal with omitted or rounded samples.
   std::vector<std::string> left_out() const;
 

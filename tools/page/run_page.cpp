@@ -124,8 +124,24 @@ class RunPage {
     for (auto& line : samples_->left_out()) left_out_.push_back(std::move(line));
     auto reader = mcap::Reader::open(facts_->file);
     if (!reader) return reader.error();
-    if (const auto& damage = reader->damage()) left_out_.push_back("what is damaged in the recording: " + *damage);
+    reader->leave_out_broken_chunks();
+    if (!facts_->damage.empty()) note_damage(facts_->damage);
+    if (other_ && !other_->damage.empty()) note_damage(other_->damage);
+    note_broken(samples_->broken_chunks(), *facts_);
+    note_broken(playhead_->broken_chunks(), *facts_);
+    if (other_) note_broken(other_samples_->broken_chunks(), *other_);
+    if (other_) note_broken(other_playhead_->broken_chunks(), *other_);
     return put_rest(*reader);
+  }
+
+  void note_damage(const std::string& what) {
+    if (damage_.find(what) != std::string::npos) return;
+    left_out_.push_back("what is damaged in the recording: " + what);
+    damage_ += (damage_.empty() ? "" : "; ") + what;
+  }
+
+  void note_broken(const std::vector<mcap::Reader::BrokenChunk>& chunks, const studio::RecordingFacts& facts) {
+    for (const auto& chunk : chunks) note_damage(facts.text_of(chunk));
   }
 
   // Parameters and index. The last parts make room for them, but for the first, which a viewer needs.
@@ -302,6 +318,7 @@ class RunPage {
       hello["recording"]["file"] = name;
       world["file"] = "";
     }
+    hello["recording"]["damage"] = damage_;
     hello["recording"]["to"] = facts_->seconds(until_.value_or(to_));
     Json summary = summary_;
     mark_failures(summary, *facts_, scene_ ? scene_->models : Json::array());
@@ -345,6 +362,7 @@ class RunPage {
   nanoseconds at_{0}, length_ = shortest_part;  // of the part that comes next
   std::optional<nanoseconds> until_;
   bool are_images_left_out_ = false;
+  std::string damage_;  // of the recordings
   std::vector<std::string> left_out_;
 };
 

@@ -43,6 +43,7 @@ class Side {
   const std::map<std::string, bool>& chosen() const { return chosen_; }
   void leave_out(const std::string& topic) { chosen_.erase(topic); }
   void seek() {
+    reader_.leave_out_broken_chunks();
     mcap::Query query{.channels = {0}};  // none but these
     for (const auto& [id, channel] : reader_.channels()) {
       if (chosen_.contains(channel.topic)) query.channels.push_back(id);
@@ -68,11 +69,29 @@ struct Entry {
   std::string octets;
 };
 
+bool is_in(const std::vector<mcap::Reader::BrokenChunk>& chunks, mcap::Time time) {
+  return std::ranges::any_of(chunks, [&](const auto& chunk) { return time >= chunk.first && time <= chunk.last; });
+}
+
 // All messages of one moment, in the order of topics: within a moment the order of arrival says nothing.
 class Moments {
  public:
   explicit Moments(Side& side) : side_(side) {}
-  base::Result<std::vector<Entry>> next() {
+  const std::vector<Entry>& now() const { return now_; }
+  bool is_at_end() const { return now_.empty(); }
+  base::Result<void> go_on() {
+    auto moment = read();
+    if (!moment) return moment.error();
+    now_ = std::move(*moment);
+    return {};
+  }
+  // Whether one of both recordings has this moment in a chunk that cannot be read.
+  bool is_unread(const Side& other) const {
+    return !is_at_end() && (is_in(side_.reader().broken_chunks(), now_[0].time) || is_in(other.reader().broken_chunks(), now_[0].time));
+  }
+
+ private:
+  base::Result<std::vector<Entry>> read() {
     std::vector<Entry> moment;
     if (ahead_) moment.push_back(std::move(*std::exchange(ahead_, std::nullopt)));
     for (;;) {
@@ -90,8 +109,8 @@ class Moments {
     return moment;
   }
 
- private:
   Side& side_;
+  std::vector<Entry> now_;
   std::optional<Entry> ahead_;
 };
 
@@ -142,6 +161,23 @@ std::vector<std::string> lonely_channels(const CompareOptions& options, Side& fi
   return differences;
 }
 
+// Both go on to their next moments, behind what cannot be read.
+base::Result<void> go_on(Moments& first, Moments& second, const Side& first_side, const Side& second_side) {
+  for (Moments* moments : {&first, &second}) {
+    if (const auto done = moments->go_on(); !done) return done;
+  }
+  while (first.is_unread(second_side) || second.is_unread(first_side)) {
+    if (const auto done = (first.is_unread(second_side) ? first : second).go_on(); !done) return done;
+  }
+  return {};
+}
+
+void note_unread(const Side& side, Comparison& comparison) {
+  for (const auto& [from, to, problem] : side.reader().broken_chunks())
+    comparison.not_compared.push_back("not compared from " + base::format_number(seconds(from)) + " to " +
+                                      base::format_number(seconds(to)) + " s: " + problem);
+}
+
 }  // namespace
 
 base::Result<Comparison> compare(const CompareOptions& options, tools::Reporter& reporter) {
@@ -159,27 +195,26 @@ base::Result<Comparison> compare(const CompareOptions& options, tools::Reporter&
   Moments first(*sides[0]);
   Moments second(*sides[1]);
   const auto differ = [&](mcap::Time time, const std::string& topic, const std::string& how) {
+    for (const auto& side : sides) note_unread(*side, result);
     result.first = {time, tick_text(*sides[0], topic, time), base::printable(topic) + " " + base::printable(how)};
     return result;
   };
+  const auto &a = first.now(), &b = second.now();
   for (;;) {
-    const auto a = first.next();
-    const auto b = second.next();
-    if (!a) return a.error();
-    if (!b) return b.error();
-    if (a->empty() && b->empty()) return result;
-    for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i) {
-      const bool in_first =
-          i < a->size() && (i >= b->size() || std::pair((*a)[i].time, (*a)[i].topic) <= std::pair((*b)[i].time, (*b)[i].topic));
-      const bool in_second =
-          i < b->size() && (i >= a->size() || std::pair((*b)[i].time, (*b)[i].topic) <= std::pair((*a)[i].time, (*a)[i].topic));
+    if (const auto done = go_on(first, second, *sides[0], *sides[1]); !done) return done.error();
+    if (a.empty() && b.empty()) {
+      for (const auto& side : sides) note_unread(*side, result);
+      return result;
+    }
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+      const bool in_first = i < a.size() && (i >= b.size() || std::pair(a[i].time, a[i].topic) <= std::pair(b[i].time, b[i].topic));
+      const bool in_second = i < b.size() && (i >= a.size() || std::pair(b[i].time, b[i].topic) <= std::pair(a[i].time, a[i].topic));
       if (!in_first || !in_second) {
-        const Entry& entry = in_first ? (*a)[i] : (*b)[i];
+        const Entry& entry = in_first ? a[i] : b[i];
         return differ(entry.time, entry.topic, "has a sample in " + (in_first ? options.first : options.second) + " only");
       }
       ++result.samples;
-      if (const auto what = difference(options.tolerated, *sides[0], *sides[1], (*a)[i], (*b)[i]))
-        return differ((*a)[i].time, (*a)[i].topic, *what);
+      if (const auto what = difference(options.tolerated, *sides[0], *sides[1], a[i], b[i])) return differ(a[i].time, a[i].topic, *what);
     }
   }
 }

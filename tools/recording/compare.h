@@ -27,9 +27,10 @@ struct Comparison {
   };
   std::vector<std::string> lonely_channels;  // those of one recording only, in words; the samples are not compared then
   std::optional<Difference> first;
-  std::uint64_t samples = 0;  // equal ones
+  std::uint64_t samples = 0;              // equal ones
+  std::vector<std::string> not_compared;  // times that one recording has in chunks that cannot be read, in words
 
-  bool are_equal() const { return lonely_channels.empty() && !first; }
+  bool are_equal() const { return lonely_channels.empty() && !first && not_compared.empty(); }
 };
 
 // Fails when a recording cannot be read. `reporter` is warned of damage and of channels that are left out.

@@ -36,6 +36,7 @@ Result<std::unique_ptr<Playhead>> Playhead::open(std::shared_ptr<const Recording
 
 Playhead::Playhead(std::shared_ptr<const RecordingFacts> facts, mcap::Reader reader)
     : facts_(std::move(facts)), reader_(std::move(reader)) {
+  reader_.leave_out_broken_chunks();
   for (const auto& [id, channel] : reader_.channels()) topics_[channel.topic] = id;
   tf_ = channel_of("/tf");
   tf_static_ = channel_of("/tf_static");

@@ -32,6 +32,8 @@ class Playhead {
 
   static base::Result<std::unique_ptr<Playhead>> open(std::shared_ptr<const RecordingFacts> facts);
 
+  // Chunks of the file that could not be read so far: what they have is not shown.
+  const std::vector<mcap::Reader::BrokenChunk>& broken_chunks() const { return reader_.broken_chunks(); }
   // Poses are shown from then on.
   void set_scene(std::shared_ptr<const RecordedScene> scene);
   // What is another than this viewer was shown last; with `is_whole` all of it.

@@ -29,6 +29,7 @@ base::Result<Json> recorded_series(const RecordingFacts& facts, const SeriesOrde
   std::uint64_t left_out = 0;
   auto next = order.from, until = order.to;
   const auto deadline = std::chrono::steady_clock::now() + longest_work;
+  reader->leave_out_broken_chunks();
   reader->seek(query);
   for (;;) {
     const auto message = reader->next();

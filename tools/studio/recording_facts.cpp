@@ -154,7 +154,9 @@ class Facts {
     for (const auto& one : saved->components) facts_.saved[components.path(one.instance)] = one;
     facts_.components = components.list();
     facts_.connections = components.connections();
-    return read_told();
+    if (const auto told = read_told(); !told) return told;
+    for (const auto& chunk : reader_.broken_chunks()) facts_.damage += (facts_.damage.empty() ? "" : "; ") + facts_.text_of(chunk);
+    return {};
   }
 
  private:
@@ -163,6 +165,7 @@ class Facts {
     facts_.from = to_nanoseconds(statistics.first);
     facts_.to = to_nanoseconds(statistics.last);
     if (reader_.damage()) facts_.damage = *reader_.damage();
+    reader_.leave_out_broken_chunks();
     auto metadata = reader_.metadata();
     if (!metadata) return metadata.error();
     for (const auto& one : *metadata) {
@@ -249,6 +252,11 @@ class Facts {
 nanoseconds RecordingFacts::time_of(double seconds) const {
   const double length = std::chrono::duration<double>(to - zero).count();
   return zero + nanoseconds(std::llround(std::clamp(seconds, this->seconds(from), std::max(length, this->seconds(from))) * 1e9));
+}
+
+std::string RecordingFacts::text_of(const mcap::Reader::BrokenChunk& chunk) const {
+  const auto text = [this](mcap::Time time) { return base::format_number(seconds(to_nanoseconds(time))); };
+  return "from " + text(chunk.first) + " to " + text(chunk.last) + " s: " + chunk.problem;
 }
 
 Result<RecordingFacts> RecordingFacts::read(const std::string& file) {

@@ -31,6 +31,8 @@ struct RecordingFacts {
   static base::Result<RecordingFacts> read(const std::string& file);
   double seconds(std::chrono::nanoseconds time) const { return std::chrono::duration<double>(time - zero).count(); }
   std::chrono::nanoseconds time_of(double seconds) const;
+  // "from 2 to 2.5 s: ..."
+  std::string text_of(const mcap::Reader::BrokenChunk& chunk) const;
 };
 
 // The file begins as recordings do.

@@ -161,7 +161,16 @@ class Reader final {
 
   // Starts over: next() gives the messages of the query in the order of their log times, and of the file where these are equal.
   void seek(Query query = {});
+  // A chunk that cannot be read is an error, and the call after it goes on behind the chunk.
   base::Result<std::optional<Message>> next();
+
+  struct BrokenChunk {
+    Time first{0}, last{0};  // of its messages
+    std::string problem;     // names the file and the octet
+  };
+  // From now on next() leaves out chunks that cannot be read, and notes each of them once.
+  void leave_out_broken_chunks();
+  const std::vector<BrokenChunk>& broken_chunks() const;
 
  private:
   struct State;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "base/text.h"
@@ -47,6 +48,7 @@ struct Reader::State {
            index.summary.channels.contains(message.channel);
   }
   void open_loose();
+  void note(const ChunkEntry& chunk, const base::Error& problem);
   base::Result<void> open_chunk(const ChunkEntry& chunk);
   base::Result<void> need_octets(Cursor& cursor);
   Cursor* earliest();
@@ -58,6 +60,9 @@ struct Reader::State {
   std::size_t next_chunk = 0;
   std::deque<Cursor> open;  // in the order of the file
   std::string loose;        // the content of one message outside of chunks
+  bool leaves_out_broken = false;
+  std::vector<BrokenChunk> broken;
+  std::set<std::uint64_t> broken_starts;  // the same chunks
 };
 
 bool Reader::State::is_wanted(const ChunkEntry& chunk) const {
@@ -88,6 +93,10 @@ void Reader::State::open_loose() {
   }
   std::stable_sort(cursor.places.begin(), cursor.places.end(), [](const Place& a, const Place& b) { return a.time < b.time; });
   if (!cursor.is_done()) open.push_back(std::move(cursor));
+}
+
+void Reader::State::note(const ChunkEntry& chunk, const base::Error& problem) {
+  if (broken_starts.insert(chunk.start).second) broken.push_back({chunk.first, chunk.last, problem.message});
 }
 
 base::Result<void> Reader::State::open_chunk(const ChunkEntry& chunk) {
@@ -144,7 +153,11 @@ base::Result<std::optional<Message>> Reader::State::next() {
     std::erase_if(open, [](const Cursor& cursor) { return cursor.is_done(); });
     Cursor* cursor = earliest();
     while (next_chunk < chunks.size() && (cursor == nullptr || chunks[next_chunk]->first <= cursor->places[cursor->next].time)) {
-      if (const auto opened = open_chunk(*chunks[next_chunk++]); !opened) return opened.error();  // the next call goes on behind it
+      const ChunkEntry& chunk = *chunks[next_chunk++];
+      if (const auto opened = open_chunk(chunk); !opened) {
+        if (!leaves_out_broken) return opened.error();
+        note(chunk, opened.error());
+      }
       cursor = earliest();
     }
     if (cursor == nullptr) return std::optional<Message>();
@@ -305,5 +318,7 @@ bool Reader::for_each_time(const std::function<void(std::uint16_t, Time)>& take)
 
 void Reader::seek(Query query) { state_->begin(std::move(query)); }
 base::Result<std::optional<Message>> Reader::next() { return state_->next(); }
+void Reader::leave_out_broken_chunks() { state_->leaves_out_broken = true; }
+const std::vector<Reader::BrokenChunk>& Reader::broken_chunks() const { return state_->broken; }
 
 }  // namespace mcap

@@ -34,7 +34,9 @@ nlohmann::ordered_json plot_of(const std::string& difference) {
 
 nlohmann::ordered_json summary_of(const Comparison& comparison) {
   nlohmann::ordered_json summary{{"why", comparison.lonely_channels}, {"failures", nlohmann::ordered_json::array()}};
-  if (comparison.are_equal()) summary["note"] = "equal: " + std::to_string(comparison.samples) + " samples";
+  if (comparison.lonely_channels.empty() && !comparison.first)
+    summary["note"] =
+        (comparison.are_equal() ? "equal: " : "equal in what can be read: ") + std::to_string(comparison.samples) + " samples";
   if (!comparison.first) return summary;
   const auto& [time, tick, what] = *comparison.first;
   const auto text = "first difference at time " + base::format_number(seconds(time)) + " s" + tick + ": " + what;
@@ -51,6 +53,7 @@ void write_page(Console& console, const CompareOptions& options, tools::PageCall
     const auto comparison = compare(options, console);
     if (!comparison) return console.fail(comparison.error());
     summary = summary_of(*comparison);
+    for (const auto& line : comparison->not_compared) console.warn(line);
   }
   page.recording = options.first;
   page.other = options.second;

@@ -264,8 +264,13 @@ void export_page(Console& console, const Selection& selection, tools::PageCall p
 
 Json to_json(const Comparison& comparison) {
   if (!comparison.lonely_channels.empty()) return {{"equal", false}, {"difference", base::join(comparison.lonely_channels, ", ")}};
-  if (comparison.first) return {{"equal", false}, {"time", seconds(comparison.first->time)}, {"difference", comparison.first->what}};
-  return {{"equal", true}, {"samples", comparison.samples}};
+  Json json{{"equal", comparison.are_equal()}};
+  if (comparison.first)
+    json.update({{"time", seconds(comparison.first->time)}, {"difference", comparison.first->what}});
+  else
+    json["samples"] = comparison.samples;
+  if (!comparison.not_compared.empty()) json["not_compared"] = comparison.not_compared;
+  return json;
 }
 
 void compare_recordings(Console& console, const CompareOptions& options) {
@@ -273,10 +278,12 @@ void compare_recordings(Console& console, const CompareOptions& options) {
   if (!comparison) return console.fail(comparison.error());
   if (!comparison->are_equal()) console.set_failed();
   if (console.json()) return console.print(to_json(*comparison));
+  for (const auto& line : comparison->not_compared) console.fail({line});
   for (const auto& channel : comparison->lonely_channels) std::cout << channel << '\n';
   if (const auto& first = comparison->first)
     std::cout << "first difference at time " << seconds_text(first->time) << " s" << first->tick << ": " << first->what << '\n';
-  if (comparison->are_equal()) std::cout << "equal: " << comparison->samples << " samples\n";
+  if (comparison->lonely_channels.empty() && !comparison->first)
+    std::cout << (comparison->are_equal() ? "equal: " : "equal in what can be read: ") << comparison->samples << " samples\n";
 }
 
 // ---- repair ----
