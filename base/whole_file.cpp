@@ -64,6 +64,24 @@ Result<fs::path> replaceable_file(const fs::path& file) {
   return behind_links(file);
 }
 
+Result<void> check_writable_file(const fs::path& file) {
+  expect_no_data_held();
+  const auto bad = [&](const std::string& what) { return Error{"file " + in_quotes(file.string()) + ": " + what}; };
+  const auto place = replaceable_file(file);
+  if (!place) return bad(place.error().message);
+  const auto folder = place->has_parent_path() ? place->parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return bad("there is no folder " + folder.string());
+  // Some file systems tell only by a try.
+  const bool is_there = fs::exists(*place, error);
+  const fs::path tried = is_there ? *place : fs::path(place->string() + ".part" + std::to_string(::getpid()));
+  const int handle = ::open(tried.c_str(), O_WRONLY | O_CLOEXEC | (is_there ? 0 : O_CREAT | O_EXCL), 0600);
+  if (handle < 0) return bad(std::string("cannot be written: ") + std::strerror(errno));
+  ::close(handle);
+  if (!is_there) ::unlink(tried.c_str());
+  return {};
+}
+
 Result<void> write_whole_file(const fs::path& file, std::string_view octets) {
   expect_no_data_held();
   const auto place = replaceable_file(file);

@@ -12,6 +12,10 @@ namespace base {
 // refused. On failure nothing is left behind.
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view octets);
 
+// Whether a file of that name could be written now. Said before long work, since it would be a pity afterwards. Folders are not made: an
+// Error, with the name, tells of one that is missing.
+Result<void> check_writable_file(const std::filesystem::path& file);
+
 // Where a file is to be put by rename(), behind symbolic links. An Error, without the name, for what must not be
 // replaced: a folder, a device, a pipe.
 Result<std::filesystem::path> replaceable_file(const std::filesystem::path& file);

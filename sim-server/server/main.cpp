@@ -15,6 +15,7 @@
 #include "base/command_line.h"
 #include "base/guarded.h"
 #include "base/log.h"
+#include "base/output_name.h"
 #include "base/terminal.h"
 #include "base/text.h"
 #include "base/warm_start.h"
@@ -298,12 +299,14 @@ int serve(int argc, char** argv) {
       ->take_all()
       ->needs("--json");
   app.add_flag("--hash", options.print_hash, "print the hash of the final state");
-  app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files");
+  app.add_option("--hash-log", options.hash_log, "write a hash of each model and device over time; rtse diff compares two such files")
+      ->check(base::output_name());
   app.add_option("--hash-period", options.hash_period,
                  "time between two hashes [simulated s] (default: the ticks of components, between 0.01 s and 0.1 s)")
       ->check(base::number_between(1e-6, 1e6));
   app.add_option("--record", options.record,
-                 "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz");
+                 "write the poses of moving models, ten times a simulated second, as text: time model x y z qw qx qy qz")
+      ->check(base::output_name());
   app.add_option("--threads", options.threads,
                  "number of threads for physics and sensors (default 0: one per core); results do not depend on it")
       ->check(base::integer_between(0, 64));

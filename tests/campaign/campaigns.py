@@ -341,6 +341,11 @@ def refused():
     for rows_asked in ("7..9", "3..6"):
         done = rtse("sweep", plan("repeat: 5\n"), "--rows", rows_asked, code=1)
         assert f"--rows {rows_asked}: the plan has 5 rows" in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
+    for verb, *words in (("sweep", "-o", ""), ("sweep", "--keep", ""), ("hunt", "-o", "")):
+        done = rtse(verb, plan(""), *words, code=2)
+        assert 'expected the name of a file or folder, got ""' in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
+    done = rtse("sweep", plan(""), "-o", "nowhere/plan.db", code=1)
+    assert done.stderr == 'rtse: file "nowhere/plan.db": there is no folder nowhere\n' and not (folder / "nowhere").exists(), done.stderr
     assert not (folder / "plan.db").exists()
     done = rtse("results", plan(""), code=1)
     assert "file is not a database" in done.stderr, done.stderr

@@ -152,13 +152,16 @@ def messages(folder):
         assert done(rtse, "page", bad, "-o", file, code=1) == f'rtse: page "{file}": is no ordinary file\n'
     assert stat.S_ISFIFO(os.lstat(pipe).st_mode) and os.path.islink(link)
     os.remove(pipe), os.remove(link)
+    for words in (["page", bad, "-o", ""], run_words(1, "--page", "")[1:], ["recording", "export", bad, "--html", ""], ["replay", bad, "--into", "A", "--compare", "--page", ""]):
+        problem = done(rtse, *words, code=2)
+        assert 'expected the name of a file or folder, got ""' in problem and problem.count("\n") == 1, problem
+    problem = done(*run_words(1, "--page", "/proc/run.html"), code=1)
+    assert problem == 'rtse: file "/proc/run.html": cannot be written: No such file or directory\n', problem
     viewer = done(f"{bin_dir}/rtse-page", bad, "-o", page, "--viewer", nowhere, code=1)
     assert viewer.startswith(f"rtse-page: the viewer is missing: {nowhere}; "), viewer
     assert sorted(os.listdir(folder)) == ["bad.mcap"], os.listdir(folder)
 
 
-with tempfile.TemporaryDirectory() as place:
-    {one.__name__: one for one in (damaged, limit, writer_killed, page_fails, ended, messages)}[case](place)
 # Of a recording with a broken chunk the page, info, cat and compare have all the rest, and say what is missing.
 def damaged(folder):
     recording, broken, page = (os.path.join(folder, name) for name in ("run.mcap", "broken.mcap", "run.html"))
@@ -199,3 +202,5 @@ def damaged(folder):
         assert out.startswith("equal in what can be read: ") and problem.startswith(f"rtse: not compared {times}{where}"), (out, problem)
 
 
+with tempfile.TemporaryDirectory() as place:
+    {one.__name__: one for one in (damaged, limit, writer_killed, page_fails, ended, messages)}[case](place)

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "base/command_line.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "page/followed_run.h"
 #include "page/run_page.h"
@@ -25,7 +26,7 @@ struct Settings {
 
 void add_options(base::Command& app, Settings& settings) {
   app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required();
-  app.add_option("-o,--output", settings.page.file, "HTML file to write")->required();
+  app.add_option("-o,--output", settings.page.file, "HTML file to write")->required()->check(base::output_name());
   app.add_option("--other", settings.page.other, "Recording to compare with (MCAP); its models are shown as ghosts")
       ->check(base::existing_file());
   app.add_option("--page-camera-rate", settings.page.camera_rate, "Images of each camera per simulated second; 0: none")

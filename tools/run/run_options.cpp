@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/command.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "run/module_files.h"
 #include "system/profile/rts_profile.h"
@@ -104,6 +105,7 @@ void add(base::Command& command, const RunOptionRow& row, RunOptions& options) {
     option = command.add_flag(name, options.*(*flag), help);
   }
   if (row.must_exist) option->check(base::existing_file());
+  if (row.is_path && !row.must_exist && std::holds_alternative<std::string RunOptions::*>(row.member)) option->check(base::output_name());
   if (!row.group.empty()) option->group(std::string(row.group));
   if (!row.needs.empty()) option->needs("--" + std::string(row.needs));
 }

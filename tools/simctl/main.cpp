@@ -8,6 +8,7 @@
 
 #include "base/command_line.h"
 #include "base/name_list.h"
+#include "base/output_name.h"
 #include "base/terminal.h"
 #include "base/text.h"
 #include "shm/control.h"
@@ -388,7 +389,7 @@ void add_pictures(base::Command& app, Work& work) {
   auto frames = option_value(0);
   auto seconds = option_value(0.0);
   record->add_option("CAMERA", *camera_name, "Iface of a camera")->required();
-  record->add_option("TARGET", *target, "Output: FILE.mp4, or a folder for PNG files")->required();
+  record->add_option("TARGET", *target, "Output: FILE.mp4, or a folder for PNG files")->required()->check(base::output_name());
   record->add_option("-n,--count", *frames, "Stop after N frames (default: until interrupted)")->check(base::number_between(0, 1e9));
   record->add_option("--for", *seconds, "Stop after this time [simulated s] (default: until interrupted)")
       ->check(base::number_between(0.0, 1e9));

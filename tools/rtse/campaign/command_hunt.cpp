@@ -9,6 +9,7 @@
 
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/output_name.h"
 #include "base/shell_word.h"
 #include "base/text.h"
 #include "campaign/hunt/hunt.h"
@@ -143,7 +144,8 @@ void add_hunt(base::Command& app, tools::Chosen& chosen) {
   command->add_option("--cases", call->cases, "Stop after N cases")->check(base::number_between(1, 1e9));
   command->add_option("--finds", call->finds, "Stop after N failures found")->check(base::number_between(1, 1e6));
   command->add_option("--seed", call->seed, "Seed of the hunt (default: that of the plan)")->check(base::number_between(0, 1e18));
-  command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)");
+  command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)")
+      ->check(base::output_name());
   command->add_flag("--page", call->pages, "Write an HTML page for each failure found, beside its plan");
   command->callback(
       [&chosen, call] { chosen.work = [call](const Session& session, Console& console) { hunt_plan(session, console, *call); }; });

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/command_line.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "campaign/results/report.h"
 #include "rtse/campaign/campaign_commands.h"
@@ -68,8 +69,8 @@ void add_results(base::Command& app, tools::Chosen& chosen) {
   command->add_option("FILE", call->file, "Results file of rtse sweep")->required()->check(base::existing_file());
   command->add_option("--by", call->by, "Print pass rates by this parameter")->allow_extra_args(false);
   command->add_flag("--csv", call->csv, "Print one line per row");
-  command->add_option("--junit", call->junit, "Write a test case per row (JUnit XML)");
-  command->add_option("--html", call->html, "Write one page with plots and failed runs");
+  command->add_option("--junit", call->junit, "Write a test case per row (JUnit XML)")->check(base::output_name());
+  command->add_option("--html", call->html, "Write one page with plots and failed runs")->check(base::output_name());
   command->add_option("--runs", call->runs,
                       "Folder of kept files (sweep --keep), for pictures in the page; default: the results' name with .runs");
   command->callback([&chosen, call] {

@@ -16,6 +16,7 @@
 #include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/output_name.h"
 #include "base/shell_word.h"
 #include "base/text.h"
 #include "campaign/plan/grammar.h"
@@ -266,8 +267,9 @@ void add_engines(base::Command& command, SweepCall& call) {
   command.add_option("--chunk", call.chunk, "Number of rows per Slurm task or command line")
       ->check(base::integer_between(1, 1000000))
       ->capture_default_str();
-  command.add_option("--shared", call.shared,
-                     "With --engine slurm: shared folder of all machines (default: the results' name with .slurm)");
+  command
+      .add_option("--shared", call.shared, "With --engine slurm: shared folder of all machines (default: the results' name with .slurm)")
+      ->check(base::output_name());
   command.add_option("--tries", call.tries, "With --engine slurm: attempts per row if its task ends without a result")
       ->check(base::integer_between(1, 100))
       ->capture_default_str();
@@ -287,8 +289,10 @@ void add_sweep(base::Command& app, tools::Chosen& chosen) {
   command->add_option("-j,--jobs", call->jobs, "Number of rows to run in parallel")
       ->check(base::integer_between(1, 256))
       ->capture_default_str();
-  command->add_option("-o,--results", call->results, "Results file, SQLite (default: the plan's name with .db)");
-  command->add_option("--keep", call->keep, "Folder for files of failed rows (default: the results' name with .runs)");
+  command->add_option("-o,--results", call->results, "Results file, SQLite (default: the plan's name with .db)")
+      ->check(base::output_name());
+  command->add_option("--keep", call->keep, "Folder for files of failed rows (default: the results' name with .runs)")
+      ->check(base::output_name());
   auto* row = command->add_option("--row", call->row, "Run only this row, even if its result is stored, and keep its files")
                   ->check(base::number_between(1, 1e6));
   command->add_option("--state", call->state, "With --row: expected final state hash; -: the run must not finish")->needs(row);

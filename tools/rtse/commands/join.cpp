@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/command_line.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
@@ -217,7 +218,7 @@ void add_join(base::Command& app, Chosen& chosen) {
       ->check(base::integer_between(0, highest_server))
       ->capture_default_str();
   join->add_flag("--tick", options->ticks, "Tick the component's own context, which must be an externally triggered one");
-  join->add_option("--log", options->log, "Log file of the context host");
+  join->add_option("--log", options->log, "Log file of the context host")->check(base::output_name());
   join->add_option("-o,--option", options->options, "Key of rtc.conf for that host, KEY:VALUE, e.g. of corba.endpoints")
       ->allow_extra_args(false);
   join->callback([&chosen, options] {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/command_line.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
@@ -124,7 +125,7 @@ void add_new(base::Command& app, Chosen& chosen) {
   command->add_option("--component-version", options->version, "Version of the component");
   command->add_option("--rate", options->rate, "Rate of its execution context [Hz]")->check(base::number_between(1e-3, 1e5));
   command->add_option("--action", options->actions, "A further callback: " + base::join(further_actions(), ", "))->allow_extra_args(false);
-  command->add_option("-C,--directory", options->folder, "Output folder (default: the component's name)");
+  command->add_option("-C,--directory", options->folder, "Output folder (default: the component's name)")->check(base::output_name());
   command->callback([&chosen, options] {
     if (options->name.empty() && options->specification.empty()) base::require_on_command_line("NAME or --spec");
     chosen = {[options](const Session&, Console& console) { make_component(console, *options); }, /*needs_orb*/ false};

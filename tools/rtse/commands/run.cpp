@@ -18,6 +18,7 @@
 #include "base/guarded.h"
 #include "base/interrupt.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "rtse/commands/run.h"
@@ -147,23 +148,6 @@ RunResult run_apart(const RunOptions& options, std::uint64_t seed) {
   return failed;
 }
 
-// Said before the run, since it would be a pity afterwards.
-Result<void> check_writable(const std::string& file) {
-  if (file.empty()) return {};
-  const std::filesystem::path path(file);
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status) && !std::filesystem::is_regular_file(status))
-    return Error{"file " + base::in_quotes(file) + ": is no regular file"};
-  if (std::filesystem::is_directory(path, error)) return Error{"file " + base::in_quotes(file) + ": is a folder"};
-  if (!std::filesystem::is_directory(folder, error))
-    return Error{"file " + base::in_quotes(file) + ": there is no folder " + folder.string()};
-  if (access(std::filesystem::exists(path, error) ? path.c_str() : folder.c_str(), W_OK) != 0)
-    return Error{"file " + base::in_quotes(file) + ": cannot be written"};
-  return {};
-}
-
 // Each file that is written is one of its own.
 Result<void> check_files(const RunOptions& options) {
   std::error_code error;
@@ -174,7 +158,7 @@ Result<void> check_files(const RunOptions& options) {
     if (file.empty()) continue;
     const auto path = std::filesystem::weakly_canonical(file, error);
     if (std::ranges::find(taken, path) != taken.end()) return Error{"file " + base::in_quotes(file) + ": is used for something else too"};
-    if (const auto writable = check_writable(file); !writable) return writable;
+    if (const auto writable = base::check_writable_file(file); !writable) return writable;
     taken.push_back(path);
   }
   return {};

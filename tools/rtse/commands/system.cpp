@@ -4,6 +4,7 @@
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "system/profile/system_template.h"
+#include "base/output_name.h"
 #include "system/saved_system.h"
 
 namespace tools {
@@ -60,7 +61,7 @@ void change_system(Console& console, const SystemFile& file, bool dry_run, F cha
 void add_system(base::Command& app, Chosen& chosen) {
   auto* save = app.add_subcommand("save", "Save the running system as RTSProfile (XML; YAML by the file's ending)");
   auto call = std::make_shared<SaveCall>();
-  save->add_option("FILE", call->file, "Output file (default: standard output)");
+  save->add_option("FILE", call->file, "Output file (default: standard output)")->check(base::output_name());
   save->add_option("-n,--name", call->system.name, "System name")->capture_default_str();
   save->add_option("-e,--vendor", call->system.vendor, "Vendor")->capture_default_str();
   save->add_option("-v,--version", call->system.version, "Version of the system")->capture_default_str();

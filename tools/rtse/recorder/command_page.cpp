@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/command_line.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "recording/compare.h"
 #include "recording/selection.h"
@@ -52,8 +53,8 @@ void write_page(Console& console, const CompareOptions& options, tools::PageCall
   if (!options.second.empty()) {
     const auto comparison = compare(options, console);
     if (!comparison) return console.fail(comparison.error());
-    summary = summary_of(*comparison);
     for (const auto& line : comparison->not_compared) console.warn(line);
+    summary = summary_of(*comparison);
   }
   page.recording = options.first;
   page.other = options.second;
@@ -70,7 +71,7 @@ void add_page(base::Command& app, tools::Chosen& chosen) {
   auto page = std::make_shared<tools::PageCall>();
   command->add_option("A", options->first, "Recording")->required();
   command->add_option("B", options->second, "Recording to compare with; its models are shown as ghosts");
-  command->add_option("-o,--output", page->file, "HTML file to write")->required();
+  command->add_option("-o,--output", page->file, "HTML file to write")->required()->check(base::output_name());
   tools::add_page_options(*command, *page);
   command->add_option("--ignore", options->tolerated.ignored, "Members to ignore, e.g. tm")->allow_extra_args(false);
   command->callback([&chosen, options, page] {

@@ -21,6 +21,7 @@
 #include "base/clock.h"
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/output_name.h"
 #include "base/plain_file.h"
 #include "base/text.h"
 #include "channels/views/world_source.h"
@@ -475,7 +476,7 @@ void add_record(base::Command& app, tools::Chosen& chosen) {
   command->add_option("--note", options->notes, "Add KEY=VALUE to the metadata of the recording")
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected KEY=VALUE" : ""; });
-  command->add_option("-o,--output", options->file, "Output file")->required();
+  command->add_option("-o,--output", options->file, "Output file")->required()->check(base::output_name());
   command->add_option("-t,--duration", options->duration_s, "Stop after this time [wall-clock s]")->seconds_between(0.0, 1e9);
   auto split = std::make_shared<std::string>();
   auto* splitting = command->add_option("--split", *split, "Start a new file after this size (500M) or duration (10m)")

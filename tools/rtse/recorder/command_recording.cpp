@@ -11,6 +11,7 @@
 
 #include "base/command_line.h"
 #include "base/descriptors.h"
+#include "base/output_name.h"
 #include "base/text.h"
 #include "recording/compare.h"
 #include "recording/mcap/mcap.h"
@@ -277,8 +278,8 @@ void compare_recordings(Console& console, const CompareOptions& options) {
   const auto comparison = compare(options, console);
   if (!comparison) return console.fail(comparison.error());
   if (!comparison->are_equal()) console.set_failed();
-  if (console.json()) return console.print(to_json(*comparison));
   for (const auto& line : comparison->not_compared) console.fail({line});
+  if (console.json()) return console.print(to_json(*comparison));
   for (const auto& channel : comparison->lonely_channels) std::cout << channel << '\n';
   if (const auto& first = comparison->first)
     std::cout << "first difference at time " << seconds_text(first->time) << " s" << first->tick << ": " << first->what << '\n';
@@ -381,9 +382,10 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
   auto exported = std::make_shared<ExportOptions>();
   add_selection(*export_command, exported->selection);
   auto page = std::make_shared<tools::PageCall>();
-  export_command->add_option("-o,--output", exported->folder, "Output folder");
+  export_command->add_option("-o,--output", exported->folder, "Output folder")->check(base::output_name());
   export_command->add_flag("--png", exported->png, "Write the camera images as PNG files instead of tables");
-  export_command->add_option("--html", page->file, "Write the whole recording as this HTML page for any browser");
+  export_command->add_option("--html", page->file, "Write the whole recording as this HTML page for any browser")
+      ->check(base::output_name());
   tools::add_page_options(*export_command, *page);
   choose(export_command, [exported, page](const Session&, Console& console) {
     if (page->file.empty() == exported->folder.empty()) return console.fail({"export: expected either --output FOLDER or --html FILE"});
@@ -413,7 +415,7 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
   repair_command->add_option("FILE", *file, "Recording")->required();
-  repair_command->add_option("-o,--output", *output, "Output file (default: FILE)");
+  repair_command->add_option("-o,--output", *output, "Output file (default: FILE)")->check(base::output_name());
   choose(repair_command, [file, output](const Session&, Console& console) { repair(console, *file, *output); });
 }
 

@@ -8,8 +8,10 @@
 
 #include "base/command_line.h"
 #include "base/interrupt.h"
+#include "base/output_name.h"
 #include "base/shell_word.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "recording/ring.h"
 #include "rtse/command.h"
 #include "rtse/recorder/recorder_commands.h"
@@ -292,6 +294,10 @@ void replay_file(const Session& session, Console& console, const Options& option
   if (!life) return console.fail(life.error());
   if (!life->is_recorded)
     console.warn("configuration and states of " + options.component + ": those of the profile, the recording has no /rtc/" +
+  for (const auto& file : {options.page, options.junit}) {
+    if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
+      return console.fail(writable.error());
+  }
                  options.component + "/state");
   for (const auto& text : options.settings) life->forget(text.substr(0, text.find('=')));
   replayed.life = std::move(*life);
@@ -373,9 +379,10 @@ void add_replay(base::Command& app, tools::Chosen& chosen) {
   command->add_option("--hang-timeout", options->hang_timeout_s, "Timeout of one tick [wall-clock s]")
       ->check(base::number_between(0.1, 1e6))
       ->capture_default_str();
-  command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML");
-  command->add_option("--page", options->page, "With --compare: write the recording as an HTML page, opened at the first difference");
-  command->add_option("--keep", options->keep, "Folder for the logs");
+  command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML")->check(base::output_name());
+  command->add_option("--page", options->page, "With --compare: write the recording as an HTML page, opened at the first difference")
+      ->check(base::output_name());
+  command->add_option("--keep", options->keep, "Folder for the logs")->check(base::output_name());
   command->callback([&chosen, options] {
     tools::require(options->page.empty() || options->compares, "replay", "--page needs --compare");
     chosen.work = [options](const Session& session, Console& console) { replay_file(session, console, *options); };
