@@ -427,6 +427,9 @@ faults:
                              stdout=subprocess.PIPE, timeout=200, text=True)
     assert [json.loads(line)["time"] for line in stepped.stdout.splitlines()][-3:] == [0.55, 1, 0.55], stepped.stdout
     assert there not in (quiet["state"], whole), there
+    # A replay sends what ports wrote, not what a faulty connection made of it: it says so instead of a difference that is none.
+    done = rtse("replay", recording, "--into", "LaserObstacleAvoid0", "--compare", "--module-path", lib_dir, code=1)
+    assert 'replay: cannot compare: connection "range-to-avoidance" had the fault "drop:0.2:' in done.stderr and len(done.stderr.splitlines()) == 1, done
 
 
 # What happens at a time or on a condition happens at the same step in every run.

@@ -106,6 +106,19 @@ base::Result<std::vector<ReplayLink>> possible(Console& console, std::vector<Rep
   return links;
 }
 
+// Connections to the component that had injected faults. A replay sends what their OutPorts wrote, so the component reads something else
+// than in the run.
+std::vector<std::string> faulty_inputs(const tools::SavedSystem& system, const std::string& instance) {
+  std::vector<std::string> faulty;
+  for (const auto& connector : system.connectors) {
+    if (!connector.is_data || connector.target.instance != instance) continue;
+    const auto fault = std::ranges::find(connector.properties, "dataport.fault", &std::pair<std::string, std::string>::first);
+    if (fault != connector.properties.end() && !fault->second.empty())
+      faulty.push_back("connection " + base::in_quotes(connector.name) + " had the fault " + base::in_quotes(fault->second));
+  }
+  return faulty;
+}
+
 tools::SavedSystem alone(const tools::SavedSystem& system, const std::string& instance) {
   tools::SavedSystem one;
   one.id = system.id;
@@ -265,6 +278,15 @@ std::string repeating_command(const Options& options) {
   return base::shell_line(base::command_words({"rtse", "replay"}, {options.file}, words));
 }
 
+void conclude(Console& console, const Options& options, const ReplayResult& result, const std::string& problem) {
+  if (!problem.empty()) console.fail({problem});
+  if (!options.page.empty() && problem.empty()) {
+    if (const auto written = write_page(console, options, result, repeating_command(options)); !written) console.fail(written.error());
+  }
+  if (options.junit.empty()) return;
+  if (const auto written = write_report(options, result, problem); !written) console.fail(written.error());
+}
+
 // It is of another maker: its stamps are those of its own clock.
 bool has_own_stamps(const RecordedRun& run, const std::string& component) {
   const auto others = base::split_list(run.note("others"), '\n');
@@ -272,6 +294,10 @@ bool has_own_stamps(const RecordedRun& run, const std::string& component) {
 }
 
 void replay_file(const Session& session, Console& console, const Options& options) {
+  for (const auto& file : {options.page, options.junit}) {
+    if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
+      return console.fail(writable.error());
+  }
   const auto run = RecordedRun::unpack(options.file);
   if (!run) return console.fail(run.error());
   const auto system = tools::read_system(run->system());
@@ -280,6 +306,11 @@ void replay_file(const Session& session, Console& console, const Options& option
     std::vector<std::string> names;
     for (const auto& component : system->components) names.push_back(component.instance);
     return console.fail({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
+  }
+  if (const auto faulty = faulty_inputs(*system, options.component); !faulty.empty()) {
+    const auto why = base::join(faulty, ", ") + ", which a replay does not repeat";
+    if (options.compares) return conclude(console, options, {}, "replay: cannot compare: " + why);
+    console.warn(why);
   }
   ReplayOptions replayed{.file = options.file, .component = options.component, .compares = options.compares};
   replayed.tolerated.ignored = options.ignored;
@@ -294,10 +325,6 @@ void replay_file(const Session& session, Console& console, const Options& option
   if (!life) return console.fail(life.error());
   if (!life->is_recorded)
     console.warn("configuration and states of " + options.component + ": those of the profile, the recording has no /rtc/" +
-  for (const auto& file : {options.page, options.junit}) {
-    if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
-      return console.fail(writable.error());
-  }
                  options.component + "/state");
   for (const auto& text : options.settings) life->forget(text.substr(0, text.find('=')));
   replayed.life = std::move(*life);
@@ -344,12 +371,7 @@ void replay_file(const Session& session, Console& console, const Options& option
     report(console, options, result);
     problem = nothing_compared(options, result);
   }
-  if (!problem.empty()) console.fail({problem});
-  if (!options.page.empty() && problem.empty()) {
-    if (const auto written = write_page(console, options, result, repeating_command(options)); !written) console.fail(written.error());
-  }
-  if (options.junit.empty()) return;
-  if (const auto written = write_report(options, result, problem); !written) console.fail(written.error());
+  conclude(console, options, result, problem);
 }
 
 }  // namespace
