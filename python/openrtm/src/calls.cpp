@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "coder.h"
+#include "complaint.h"
 #include "component.h"
 #include "references.h"
 
@@ -43,7 +44,16 @@ bool read_exceptions(PyObject* exceptions, Operation& operation) {
   return true;
 }
 
-void log_error(const std::string& text) { RTC::Logger("service").write(RTC::Logger::RTL_ERROR, text); }
+// Callers of other processes decide how often.
+void log_error(const std::string& text) {
+  static auto& complaint = *new Complaint;
+  std::optional<std::string> line;
+  {
+    const Locked locked;
+    line = complaint.each(text);
+  }
+  if (line) RTC::Logger("service").write(RTC::Logger::RTL_ERROR, *line);
+}
 
 // Encodes with the lock; a value that does not fit is BAD_PARAM with a log line.
 void put_values(const std::vector<const Type*>& types, PyObject* values, cdrStream& stream, std::string& problem) {

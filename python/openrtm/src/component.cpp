@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <rtm/CorbaPort.h>
 
+#include "complaint.h"
 #include "component/managed.h"
 #include "composites.h"
 #include "convert.h"
@@ -164,9 +165,10 @@ void heard(const Component& owner, const char* kind, const Function& function, C
     error.restore();
     problem = take_error();
   }
-  if (!complaint.is_new(problem)) return;
+  const auto line = complaint.next(problem);
+  if (!line) return;
   const Released released;
-  RTC::Logger(owner.getInstanceName()).write(RTC::Logger::RTL_ERROR, std::string("a ") + kind + " raised: " + problem);
+  RTC::Logger(owner.getInstanceName()).write(RTC::Logger::RTL_ERROR, std::string("a ") + kind + " raised: " + *line);
 }
 
 template <class Base, class... Args>

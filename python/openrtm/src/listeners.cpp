@@ -2,6 +2,7 @@
 
 #include <rtm/ByteData.h>
 
+#include "complaint.h"
 #include "convert.h"
 #include "properties.h"
 
@@ -30,7 +31,7 @@ RTC::ConnectorListenerStatus::Enum status_of(const py::object& result) {
   return number > 0 && number <= 3 ? static_cast<RTC::ConnectorListenerStatus::Enum>(number) : RTC::ConnectorListenerStatus::NO_CHANGE;
 }
 
-// Calls with the lock; NO_CHANGE for what was raised before, else Raised.
+// Calls with the lock; NO_CHANGE for what is not logged, else Raised.
 template <class Call>
 RTC::ConnectorListenerStatus::Enum said_once(Complaint& complaint, Call call) {
   std::string problem;
@@ -42,7 +43,7 @@ RTC::ConnectorListenerStatus::Enum said_once(Complaint& complaint, Call call) {
     error.restore();
     problem = take_error();
   }
-  if (complaint.is_new(problem)) throw Raised(problem);
+  if (const auto line = complaint.next(problem)) throw Raised(*line);
   return RTC::ConnectorListenerStatus::NO_CHANGE;
 }
 

@@ -1,6 +1,5 @@
 // Python functions as listeners of the runtime. Each is called with the interpreter's lock on the thread of the event; what it raises is
-// logged with its traceback, but not what it has raised the time before: there may be a thousand events a second. Registering: with the
-// lock.
+// logged with its traceback, within the limits of complaint.h. Registering: with the lock.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -22,15 +21,6 @@ class Function {
 
  private:
   std::shared_ptr<Kept> function_;
-};
-
-// What a listener raises again and again is said once. With the lock.
-class Complaint {
- public:
-  bool is_new(const std::string& text) { return std::exchange(last_, text) != text; }
-
- private:
-  std::string last_;
 };
 
 // Calls it with the lock held; Raised with the traceback when it raises.

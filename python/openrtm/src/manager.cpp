@@ -10,6 +10,7 @@
 #include <chrono>
 #include <thread>
 
+#include "complaint.h"
 #include "component.h"
 #include "component/managed.h"
 #include "listeners.h"
@@ -160,18 +161,18 @@ bool register_factory(const Properties& profile, const py::object& create) {
 }
 
 std::function<void()> task_of(const py::object& function) {
-  return [task = Function(function)] {
-    std::string problem;
+  return [task = Function(function), complaint = std::make_shared<Complaint>()] {
+    std::optional<std::string> problem;
     {
       const Locked locked;
       try {
         call(task, py::tuple());
         return;
       } catch (const Raised& raised) {
-        problem = raised.what();
+        problem = complaint->next(raised.what());
       }
     }
-    log_error("manager", "a task raised: " + problem);
+    if (problem) log_error("manager", "a task raised: " + *problem);
   };
 }
 

@@ -3,6 +3,7 @@
 
 #include "adapters.h"
 #include "channel.h"
+#include "complaint.h"
 #include "component.h"
 #include "contexts.h"
 #include "manager.h"
@@ -15,6 +16,7 @@
 #include "services.h"
 
 PYBIND11_MODULE(_openrtm_core, module) {
+  python::add_complaints(module);
   python::add_properties(module);
   python::add_ports(module);
   python::add_serializers(module);

@@ -138,7 +138,7 @@ py::object InPort::read_value(const std::string& name) {
     try {
       last = py::reinterpret_steal<py::object>(decode(type_, *value.octets, value.is_little));
     } catch (const BadOctets&) {
-      unlocked([&] { RTC_ERROR(("a sample is no %s", name_of(type_).c_str())); });
+      if (const auto line = complaint_.next("a sample is no " + name_of(type_))) unlocked([&] { RTC_ERROR(("%s", line->c_str())); });
     } catch (const PythonFailed&) {
       throw py::error_already_set();
     }
@@ -182,12 +182,9 @@ bool OutPort::write_value(py::object object) {
   return unlocked([&] { return writeValue(&value); });
 }
 
-// Each complaint once, until there is another one.
 void OutPort::complain(const BadValue& bad) {
-  const std::string text = bad.text();
-  if (text == last_complaint_) return;
-  last_complaint_ = text;
-  unlocked([&] { RTC_ERROR(("a %s cannot be written to port %s: %s", name_of(type_).c_str(), getName(), text.c_str())); });
+  const auto line = complaint_.next("a " + name_of(type_) + " cannot be written to port " + getName() + ": " + bad.text());
+  if (line) unlocked([&] { RTC_ERROR(("%s", line->c_str())); });
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "coder.h"
+#include "complaint.h"
 #include "gil.h"
 
 namespace python {
@@ -40,6 +41,7 @@ class InPort final : public RTC::InPortBase {
  private:
   InPort(const std::string& name, pybind11::object value, const Type& type);
   const Type& type_;
+  Complaint complaint_;
 };
 
 // Samples of any type, which its listeners take.
@@ -67,7 +69,7 @@ class OutPort final : public RTC::OutPortBase {
   OutPort(const std::string& name, pybind11::object value, const Type& type);
   void complain(const BadValue& bad);
   const Type& type_;
-  std::string last_complaint_;
+  Complaint complaint_;
 };
 
 void add_ports(pybind11::module_& module);

@@ -1,6 +1,6 @@
 """A state machine that handles the events of its CSP ports."""
 from .StaticFSM import Machine
-from .csp import CSPManager
+from .csp_manager import CSPManager
 
 __all__ = ["CSPMachine"]
 

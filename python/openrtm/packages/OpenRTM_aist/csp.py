@@ -22,81 +22,10 @@ from .listeners import _Registered
 from .logger import Logger
 from .ports import PortBase
 
-__all__ = ["CSPInPort", "CSPOutPort", "CSPManager"]
+__all__ = ["CSPInPort", "CSPOutPort"]
 
 # How long a call of a peer waits for a value that this side has promised or is just sending [s].
 _PROMISE = 5
-# Two managers that select from each other wait in turns: each asks the other again after this time [s].
-_TURN = 0.05
-
-
-class CSPManager:
-    """Selects among CSP ports the one that can go on."""
-
-    def __init__(self):
-        self._csp_inports, self._csp_outports = [], []
-        self._csp_changed = threading.Condition()
-        self._csp_waits = False
-        self._csp_chosen = None
-
-    def addInPort(self, port):
-        self._csp_inports.append(port)
-
-    def addOutPort(self, port):
-        self._csp_outports.append(port)
-
-    def removeInPort(self, port):
-        self._csp_inports.remove(port)
-
-    def removeOutPort(self, port):
-        self._csp_outports.remove(port)
-
-    def reset(self):
-        for port in self._csp_inports + self._csp_outports:
-            port.releaseManager()
-        self._csp_inports, self._csp_outports = [], []
-
-    def selectOutPort(self):
-        port = next((one for one in self._csp_outports if one.select()), None)
-        return port is not None, port
-
-    def selectInPort(self):
-        port = next((one for one in self._csp_inports if one.select()), None)
-        return port is not None, port
-
-    def select(self, timeout):
-        """(True, outport, None) or (True, None, inport): write it by writeData(), read it by readData(). (False, None, None): time is up."""
-        end = time.monotonic() + max(timeout, 0)
-        while True:
-            found, port = self.selectOutPort()
-            if found:
-                return True, port, None
-            found, port = self.selectInPort()
-            if found:
-                return True, None, port
-            left = end - time.monotonic()
-            if left <= 0:
-                return False, None, None
-            port = self._wait(min(left, _TURN))
-            if port is not None:
-                return (True, port, None) if port in self._csp_outports else (True, None, port)
-
-    def notify(self, outport=None, inport=None):
-        """End the wait of select() with this port. False if no call of select() is waiting."""
-        with self._csp_changed:
-            if not self._csp_waits or self._csp_chosen is not None:
-                return False
-            self._csp_chosen = outport or inport
-            self._csp_changed.notify()
-            return True
-
-    def _wait(self, seconds):
-        with self._csp_changed:
-            self._csp_waits = True
-            self._csp_changed.wait_for(lambda: self._csp_chosen is not None, max(seconds, 0))
-            self._csp_waits = False
-            port, self._csp_chosen = self._csp_chosen, None
-            return port
 
 
 class _Connection:
@@ -137,10 +66,16 @@ class _ChannelPort(_core.ChannelPort, PortBase):
         self._connections = {}
         self._manager = None
         self._log = Logger("csp")
+        self._complaint = _core.Complaint()
         for key, value in (("port.port_type", kind), ("dataport.data_type", type_name), ("dataport.interface_type", "csp_channel"),
                            ("dataport.dataflow_type", "duplex"), ("dataport.subscription_type", "flush")):
             self.addProperty(key, value)
         self._settings = {"channel_timeout": 10.0, "buffer.length": 8.0}
+
+    def _complain(self, text):
+        line = self._complaint.next("port %s: %s" % (self._name, text))
+        if line:
+            self._log.RTC_ERROR(line)
 
     def name(self):
         return self._name
@@ -301,7 +236,7 @@ class _Receiver(_ChannelPort):
         try:
             item = self._item(connection, octets)
         except _CORBA.SystemException as problem:
-            self._log.RTC_ERROR("port %s: a value of the connection %s cannot be decoded: %s", (self._name, connection.name, problem))
+            self._complain("a value of the connection %s cannot be decoded: %s" % (connection.name, problem))
             return OpenRTM.PORT_ERROR
         with self._channel:
             if not self._is_free():
@@ -352,7 +287,7 @@ class _Receiver(_ChannelPort):
                 try:
                     return True, self._item(connection, octets)
                 except _CORBA.SystemException as problem:
-                    self._log.RTC_ERROR("port %s: a value of the connection %s cannot be decoded: %s", (self._name, connection.name, problem))
+                    self._complain("a value of the connection %s cannot be decoded: %s" % (connection.name, problem))
         return False, None
 
     # Waits for an item: says so first, then asks once more.
@@ -436,7 +371,7 @@ class CSPOutPort(_ChannelPort):
         try:
             octets = _core.cdr_marshal(self._descriptor_of_type, value, True)
         except _CORBA.SystemException as problem:
-            self._log.RTC_ERROR("a value cannot be written to port %s: %s", (self._name, problem))
+            self._complain("a value cannot be written: %s" % problem)
             return False
         return self._send(octets)
 
