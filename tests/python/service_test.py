@@ -228,6 +228,23 @@ def test_an_object_adapter_with_policies_has_objects_with_ids_of_the_author(shop
     child.destroy(True, True)
 
 
+def test_policies_that_are_none_or_contradict_are_refused_with_their_place(shop):
+    from omniORB import CORBA, PortableServer
+    root = CORBA.ORB_init().resolve_initial_references("RootPOA")
+    lasting, passing = root.create_lifespan_policy(PortableServer.PERSISTENT), root.create_lifespan_policy(PortableServer.TRANSIENT)
+    for policies, place in (([lasting, passing], 1), ([3], 0), ([lasting, None], 1), ([PortableServer.PERSISTENT], 0)):
+        with pytest.raises(PortableServer.POA.InvalidPolicy) as caught:
+            root.create_POA("odd", None, policies)
+        assert caught.value.index == place
+    with pytest.raises(CORBA.BAD_PARAM, match="expected one of TRANSIENT, PERSISTENT, got RETAIN"):
+        root.create_lifespan_policy(PortableServer.RETAIN)
+    with pytest.raises(CORBA.BAD_PARAM, match="expected a POAManager or None, got 7"):
+        root.create_POA("odd", 7, [])
+    twice = root.create_POA("twice", None, [lasting, root.create_lifespan_policy(PortableServer.PERSISTENT)])
+    assert root.find_POA("twice", False).the_name == "twice"
+    twice.destroy(True, True)
+
+
 def test_the_manager_of_an_object_adapter_holds_and_lets_go(shop):
     from omniORB import CORBA, PortableServer
     from counter import Counter_i

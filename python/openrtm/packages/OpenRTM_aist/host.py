@@ -4,9 +4,8 @@ A module is imported under a name of its own, so that two files X.py of differen
 also known under its bare name. Its folder comes first in sys.path.
 """
 import os
-import re
 import sys
-import threading
+from _thread import get_ident
 
 import _openrtm_core as _core
 
@@ -23,7 +22,7 @@ def prepare():
 
 def is_loading():
     """Whether a module is being imported now, on this thread."""
-    return bool(_loading) and _loading[-1][0] == threading.get_ident()
+    return bool(_loading) and _loading[-1][0] == get_ident()
 
 
 def set_init_function(function):
@@ -39,11 +38,13 @@ def _told():
 
 def load(file, init_function):
     """Import a module and call its init function. Empty, or the line that says why it failed."""
-    _loading.append([threading.get_ident(), None])
+    _loading.append([get_ident(), None])
     try:
         module = _import(file)
     except SyntaxError as problem:
         return syntax_problem(file, problem)
+    except ValueError as problem:
+        return "is no source of Python: it has null bytes" if "null bytes" in str(problem) else "cannot be imported: " + _told()
     except BaseException as problem:
         return old_name(problem) or "cannot be imported: " + _told()
     finally:
@@ -103,6 +104,7 @@ _OLD_NAMES = {"unicode": "str", "xrange": "range", "raw_input": "input", "long":
 
 def syntax_problem(file, problem):
     """One line; for sources of Python 2 with what to write instead."""
+    import re
     where = "%s:%s: " % (os.path.basename(problem.filename or file), problem.lineno)
     text = (problem.text or "").strip()
     if isinstance(problem, TabError):

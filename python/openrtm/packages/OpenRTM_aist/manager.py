@@ -1,9 +1,7 @@
 """The manager of this process."""
 import atexit
 import os
-import signal
 import sys
-import threading
 
 import _openrtm_core as _core
 import RTC
@@ -123,6 +121,8 @@ class Manager:
 
     @staticmethod
     def _start(argv, is_host, modules):
+        import signal
+        import threading
         words = [str(word) for word in argv] or [sys.argv[0] if sys.argv else "python3"]
         # The runtime ends the process on Ctrl-C, unless the author has a handler: Python's own would wait for bytecode of the main thread.
         if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
@@ -184,10 +184,11 @@ class Manager:
     # --- components
 
     def registerFactory(self, profile, new_func, delete_func=None):
-        if not callable(new_func):
-            self.getLogbuf().RTC_ERROR("registerFactory(%r): expected a class of a component or a function that makes one, got %s",
-                                       (profile.getProperty("implementation_id"), type(new_func).__name__))
-            return False
+        if not isinstance(profile, _core.Properties):
+            return self._refuse("registerFactory: expected Properties(defaults_str=...), got %s", _kind(profile))
+        if not _makes(new_func, _core.Component):
+            return self._refuse("registerFactory(%r): expected a class of a component or a function that makes one, got %s",
+                                profile.getProperty("implementation_id"), _kind(new_func))
         return _core.manager_register_factory(profile, lambda: new_func(self))
 
     def createComponent(self, comp_args):
@@ -239,12 +240,15 @@ class Manager:
 
     def registerECFactory(self, name, new_func, delete_func=None):
         """Components may name the context in execution_contexts or exec_cxt.periodic.type from now on."""
-        from .contexts import ExecutionContextFactory
-        if not callable(new_func):
-            self.getLogbuf().RTC_ERROR("registerECFactory(%r): expected a class of an execution context or a function that makes one, got %s",
-                                       (name, type(new_func).__name__))
-            return False
+        from .contexts import ExecutionContextFactory, _Context
+        if not _makes(new_func, _Context):
+            return self._refuse("registerECFactory(%r): expected a class of an execution context or a function that makes one, got %s",
+                                name, _kind(new_func))
         return ExecutionContextFactory.instance().addFactory(name, new_func, delete_func) == ExecutionContextFactory.FACTORY_OK
+
+    def _refuse(self, message, *values):
+        self.getLogbuf().RTC_ERROR(message, values)
+        return False
 
     def isRunning(self):
         return _core.manager_is_running()
@@ -297,6 +301,15 @@ class _Naming:
 
     def bindObject(self, name, object_):
         _core.manager_bind_object(name, object_.getObjRef() if hasattr(object_, "getObjRef") else object_)
+
+
+# A class must be derived from the base; what a function makes is seen when it is called.
+def _makes(new_func, base):
+    return issubclass(new_func, base) if isinstance(new_func, type) else callable(new_func)
+
+
+def _kind(value):
+    return "the class " + value.__name__ if isinstance(value, type) else type(value).__name__
 
 
 def _code(number):

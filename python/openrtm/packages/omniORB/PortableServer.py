@@ -145,8 +145,15 @@ class POA:
 
     def create_POA(self, adapter_name, manager, policies):
         """A child. With None for the manager it gets one of its own, which waits until it is activated."""
-        pairs = [(one._type, one.value._v) for one in policies]
-        return POA(self._adapter.create(adapter_name, manager and manager._adapter, pairs), self)
+        if manager is not None and not isinstance(manager, POAManager):
+            raise CORBA.BAD_PARAM(info="create_POA: expected a POAManager or None, got %r" % (manager,))
+        chosen = {}
+        for index, one in enumerate(policies or ()):
+            # The same one twice is no contradiction.
+            if not isinstance(one, Policy) or chosen.setdefault(one._type, one.value) != one.value:
+                raise POA.InvalidPolicy(index)
+        pairs = [(number, value._v) for number, value in chosen.items()]
+        return POA(self._adapter.create(str(adapter_name), manager and manager._adapter, pairs), self)
 
     def find_POA(self, adapter_name, activate_it):
         return POA(self._adapter.find(adapter_name), self)
@@ -200,14 +207,25 @@ for _name in ("AdapterAlreadyExists AdapterNonExistent InvalidPolicy NoServant O
         "_NP_RepositoryId": "IDL:omg.org/PortableServer/POA/%s:2.3" % _name, "__module__": "PortableServer"}))
 
 
-def _policy_maker(number):
+# create_POA's answer to a policy that is none, or contradicts another one; `index` is its place in the list.
+def _invalid(self, index=0):
+    CORBA.UserException.__init__(self, index)
+    self.index = index
+
+
+POA.InvalidPolicy.__init__ = _invalid
+
+
+def _policy_maker(number, enum):
     def create(self, value):
+        if value not in enum._items:
+            raise CORBA.BAD_PARAM(info="expected one of %s, got %r" % (", ".join(item._n for item in enum._items), value))
         return Policy(number, value)
     return create
 
 
 for _number, _name in enumerate(_POLICIES, THREAD_POLICY_ID):
-    setattr(POA, "create_%s_policy" % _name, _policy_maker(_number))
+    setattr(POA, "create_%s_policy" % _name, _policy_maker(_number, globals()[_POLICIES[_name][0]]))
 del _name, _number
 
 
