@@ -1,6 +1,5 @@
 """Helpers for text."""
 import os
-import re
 
 __all__ = ["escape", "unescape", "eraseBlank", "eraseHeadBlank", "eraseTailBlank", "eraseBothEndsBlank", "normalize", "replaceString",
            "split", "toBool", "includes", "isAbsolutePath", "isURL", "otos", "stringTo", "stringToStrVec", "unique_sv", "flatten",
@@ -15,6 +14,7 @@ def escape(text):
 
 
 def unescape(text):
+    import re
     return re.sub(r"\\(.)", lambda found: _UNESCAPES.get(found.group(1), found.group(1)), text, flags=re.S)
 
 
@@ -90,6 +90,7 @@ def includes(list_, value, ignore_case=True):
 
 
 def isAbsolutePath(text):
+    import re
     return os.path.isabs(text) or bool(re.match(r"[A-Za-z]:[\\/]", text)) or text.startswith("\\\\")
 
 
@@ -178,5 +179,6 @@ def urlparam2map(text):
 
 
 def replaceEnv(text):
+    import re
     return re.sub(r"\$\{(\w+)\}", lambda found: os.environ.get(found.group(1), ""), text)
 

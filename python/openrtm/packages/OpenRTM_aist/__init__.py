@@ -3,6 +3,8 @@
 The classes are thin: ports, contexts, configuration and life are those of the C++ runtime (_openrtm_core). docs/python-components.md
 lists what is there and what differs.
 """
+import sys as _sys
+
 import omniORB as _omniORB
 import RTC, RTC__POA, OpenRTM, OpenRTM__POA, SDOPackage, RTM  # noqa: E401,F401: sources rely on them
 from _openrtm_core import Properties  # noqa: F401
@@ -11,17 +13,16 @@ from . import version  # noqa: F401
 from .version import corba_name, openrtm_name, openrtm_version  # noqa: F401
 from .listeners import *  # noqa: F401,F403
 from .logger import *  # noqa: F401,F403
-from . import StringUtil, NVUtil, CORBA_SeqUtil  # noqa: F401
+from . import StringUtil  # noqa: F401
 from .StringUtil import *  # noqa: F401,F403
 from .ports import *  # noqa: F401,F403
 from .component import *  # noqa: F401,F403
 from .manager import *  # noqa: F401,F403
-from .utility import *  # noqa: F401,F403
-from .utility import uuid1  # noqa: F401
 
 # Loaded when they are first used.
 _LATER = {
-    "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "StaticFSM": ("StaticFSM", None), "Macho": ("Macho", None),
+    "CORBA_RTCUtil": ("CORBA_RTCUtil", None), "NVUtil": ("NVUtil", None), "CORBA_SeqUtil": ("CORBA_SeqUtil", None),
+    "StaticFSM": ("StaticFSM", None), "Macho": ("Macho", None),
     "CorbaNaming": ("naming", "CorbaNaming"),
     "uuid": ("utility", None), "EventPort": ("EventPort", None), "CSPEventPort": ("CSPEventPort", None),
     "CSPMachine": ("CSPMachine", None),
@@ -30,8 +31,13 @@ _LATER = {
 }
 for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):
     _LATER.setdefault(_name, ("StaticFSM", _name))
-for _name in ("CSPInPort", "CSPOutPort", "CSPManager"):
+for _name in ("Async_tInvoker", "Async_ref_tInvoker", "Async_t", "Async_ref_t", "ScopedLock", "Task", "Time", "TimeValue", "TimeMeasure",
+              "ClockManager", "SystemClock", "LogicalClock", "AdjustedClock", "Guard", "Timer", "PeriodicTask", "ListenerObject", "ListenerFunc",
+              "toTypename", "uuid1"):
+    _LATER[_name] = ("utility", _name)
+for _name in ("CSPInPort", "CSPOutPort"):
     _LATER[_name] = ("csp", _name)
+_LATER["CSPManager"] = ("csp_manager", "CSPManager")
 for _name in ("ByteDataStreamBase", "CORBA_CdrMemoryStream", "SerializerFactories", "SerializerFactory"):
     _LATER[_name] = ("serializers", _name)
 for _name in ("SdoServiceProviderBase", "SdoServiceConsumerBase", "SdoServiceProviderFactory", "SdoServiceConsumerFactory"):
@@ -56,10 +62,10 @@ __all__ = sorted({_name for _name in globals() if not _name.startswith("_")} | s
 
 
 def __getattr__(name):
-    import importlib
     if name in _LATER:
         file, inner = _LATER[name]
-        module = importlib.import_module("OpenRTM_aist." + file)
+        __import__("OpenRTM_aist." + file)
+        module = _sys.modules["OpenRTM_aist." + file]
         value = module if inner is None else getattr(module, inner)
         globals()[name] = value
         return value

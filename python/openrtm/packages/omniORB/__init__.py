@@ -3,10 +3,10 @@
 Types are descriptors: tuples that the stubs of omniidl register here (registerType). The extension module _openrtm_core encodes and
 decodes by them. A name that is missing raises AttributeError.
 """
-import importlib
 import os as _os
 import sys
-import types as _types
+
+_Module = type(sys)
 
 __version__ = "4.2.5"
 coreVersion = lambda: "4.2.5"
@@ -163,10 +163,15 @@ def findTypeCode(repoId):
     return typeCodeMapping.get(repoId)
 
 
+def _import(name):
+    __import__(name)
+    return sys.modules[name]
+
+
 # --- modules of stubs: while only the stub file is loaded, its modules are partial; their package takes over what is in them.
 
 def newModule(name):
-    module = _types.ModuleType(name)
+    module = _Module(name)
     _partial[name] = module
     return module
 
@@ -202,7 +207,7 @@ def importLater(name, stub):
     def missing(attribute):
         if not attribute.startswith("__"):
             for one in _later.pop(name, ()):
-                importlib.import_module(one)
+                _import(one)
             if attribute in vars(module):
                 return vars(module)[attribute]
         raise AttributeError("module %r has no attribute %r" % (name, attribute))
@@ -219,7 +224,7 @@ def _add_ours(name, module):
     with open(ours) as text:
         for line in text:
             if line.startswith("import ") and line.strip().endswith("_idl"):
-                importlib.import_module(line.split()[1])
+                _import(line.split()[1])
             elif line.startswith("omniORB.importLater("):
                 importLater(name, line.split('"')[1])
 
@@ -274,7 +279,7 @@ def importIDLString(text, args=None, inline=1):
 
 def _load(code, file):
     name = _os.path.splitext(_os.path.basename(file))[0].replace("-", "_") + "_idl"
-    module = _types.ModuleType(name)
+    module = _Module(name)
     module.__dict__["__file__"] = file
     exec(compile(code, file, "exec"), module.__dict__)
     names = tuple(module.__dict__.get("_exported_modules", ()))
@@ -322,8 +327,8 @@ def traceLevel(level=None):
 
 def __getattr__(name):
     if name in ("any", "URI", "minorCodes"):
-        return importlib.import_module("omniORB." + name)
-    codes = vars(importlib.import_module("omniORB.minorCodes"))
+        return _import("omniORB." + name)
+    codes = vars(_import("omniORB.minorCodes"))
     if name in codes and "_" in name.strip("_"):
         return codes[name]
     raise AttributeError("omniORB.%s is not part of this implementation (docs/python-components.md)" % name)
