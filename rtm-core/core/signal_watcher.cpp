@@ -1,16 +1,18 @@
 #include "core/signal_watcher.h"
 
-#include <fcntl.h>
-#include <poll.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
+#include <ctime>
 #include <future>
 #include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -23,13 +25,45 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds same_signal{50};  // as `timeout` sends two: to its child, and to the child's process group
 
-volatile std::sig_atomic_t write_end = -1;  // what the handler needs; set before any handler is installed
+// From the handler to the watcher, without a descriptor: a process whose component has closed all descriptors can still be ended. Number 0
+// is no signal: it ends the watcher.
+struct News {
+  News() { sem_init(&count, 0, 0); }
+  void forget() {
+    while (sem_trywait(&count) == 0) continue;
+    for (auto& number : numbers) number = 0;
+  }
+  sem_t count{};
+  std::array<std::atomic<unsigned>, NSIG> numbers{};
+};
+News news;
 
 void handle(int number) {
   const int saved = errno;
-  const auto byte = static_cast<unsigned char>(number);
-  [[maybe_unused]] const auto written = write(write_end, &byte, 1);
+  news.numbers[static_cast<std::size_t>(number)].fetch_add(1, std::memory_order_relaxed);  // the semaphore orders it
+  sem_post(&news.count);
   errno = saved;
+}
+
+// One that has arrived; -1: none within this time. Without a time it waits for one.
+int next_number(std::optional<std::chrono::milliseconds> longest) {
+  timespec end{};
+  if (longest) {
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    end.tv_nsec += longest->count() * 1'000'000;
+    end.tv_sec += end.tv_nsec / 1'000'000'000;
+    end.tv_nsec %= 1'000'000'000;
+  }
+  while ((longest ? sem_clockwait(&news.count, CLOCK_MONOTONIC, &end) : sem_wait(&news.count)) != 0)
+    if (errno != EINTR) return -1;
+  // The end comes after the signals before it.
+  for (std::size_t i = 1; i <= news.numbers.size(); ++i) {
+    const std::size_t number = i % news.numbers.size();
+    if (news.numbers[number].load(std::memory_order_relaxed) == 0) continue;
+    news.numbers[number].fetch_sub(1, std::memory_order_relaxed);
+    return static_cast<int>(number);
+  }
+  return -1;
 }
 
 void set_handler(int number, void (*handler)(int)) {
@@ -45,7 +79,6 @@ void set_handler(int number, void (*handler)(int)) {
 struct SignalWatcher::Impl {
   std::vector<int> signals;
   std::function<void(int)> call;
-  int ends[2] = {-1, -1};
   std::thread thread;
 
   // Once there has been a signal of a number, until another one of it ends the process.
@@ -85,19 +118,15 @@ struct SignalWatcher::Impl {
     std::set<int> seen;
     bool is_ending = false;
     while (!is_ending || !until.empty()) {
-      pollfd news{is_ending ? -1 : ends[0], POLLIN, 0};
-      const bool has_news = poll(&news, 1, until.empty() ? -1 : static_cast<int>(same_signal.count())) > 0;
-      unsigned char number = 0;
-      if (has_news && read(ends[0], &number, 1) == 1) {
-        if (number == 0) {
-          is_ending = true;
-        } else if (seen.insert(number).second) {
-          until[number] = Clock::now() + same_signal;
-          begin_call(number);
-        } else if (!until.contains(number) || Clock::now() >= until[number]) {
-          set_handler(number, SIG_DFL);
-          kill(getpid(), number);
-        }
+      const int number = next_number(until.empty() ? std::nullopt : std::optional(same_signal));
+      if (number == 0) {
+        is_ending = true;
+      } else if (number > 0 && seen.insert(number).second) {
+        until[number] = Clock::now() + same_signal;
+        begin_call(number);
+      } else if (number > 0 && (!until.contains(number) || Clock::now() >= until[number])) {
+        set_handler(number, SIG_DFL);
+        kill(getpid(), number);
       }
       give_back_due();
     }
@@ -107,9 +136,7 @@ struct SignalWatcher::Impl {
 
 SignalWatcher::SignalWatcher(const std::vector<int>& signals, std::function<void(int)> call) : impl_(std::make_unique<Impl>()) {
   impl_->call = std::move(call);
-  if (pipe2(impl_->ends, O_CLOEXEC) != 0) return;
-  fcntl(impl_->ends[1], F_SETFL, O_NONBLOCK);
-  write_end = impl_->ends[1];
+  news.forget();
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
   for (const int number : signals) {
     struct sigaction present {};
@@ -120,17 +147,12 @@ SignalWatcher::SignalWatcher(const std::vector<int>& signals, std::function<void
 }
 
 SignalWatcher::~SignalWatcher() {
-  if (!impl_->thread.joinable()) return;
-  const unsigned char end = 0;
-  [[maybe_unused]] const auto written = write(impl_->ends[1], &end, 1);
+  handle(0);
   impl_->thread.join();
   for (const int number : impl_->signals) {
     struct sigaction present {};
     if (sigaction(number, nullptr, &present) == 0 && present.sa_handler == &handle) set_handler(number, SIG_DFL);
   }
-  write_end = -1;
-  close(impl_->ends[0]);
-  close(impl_->ends[1]);
 }
 
 }  // namespace rt

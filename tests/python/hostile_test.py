@@ -1,6 +1,7 @@
 # Components in Python that do what nobody expects: each ends in one clear line, and nobody else stands still without a name.
 import pathlib
 import re
+import subprocess
 
 import pytest
 
@@ -294,3 +295,40 @@ def test_tools_read_the_ports_of_a_component_whose_callback_keeps_the_interprete
     ends(process, system, 1)
     assert "Hog0: onExecute has not returned for" in system.log(process)
     assert "it got as far as: naming" in system.log(process)
+
+
+def test_a_component_that_closes_all_descriptors_is_ended_by_a_signal(system, tmp_path):  # noqa: F811
+    file = written(tmp_path, "Closer", """
+    def onActivated(self, ec_id):
+        print("closing", flush=True)
+        os.closerange(3, 65536)
+        return RTC.RTC_OK
+""", extra="import os")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Closer0")
+    # The answer may be lost with its connection.
+    subprocess.run([f"{bin_dir}/rtse", "--ns", system.names, "act", "Closer0"], timeout=60, capture_output=True)
+    says(system, process, "closing")
+    process.terminate()
+    process.wait(60)
+
+
+def test_bad_values_that_differ_are_logged_a_few_at_once(system, tmp_path):  # noqa: F811
+    file = written(tmp_path, "Many", port % "TimedLong(RTC.Time(0, 0), 0)" + """
+    def onActivated(self, ec_id):
+        for number in range(3000):
+            self._d.data = float(number)
+            self._out.write()
+        time.sleep(1.1)
+        self._d.data = "last"
+        print("written", self._out.write(), flush=True)
+        return RTC.RTC_OK
+""", extra="import time")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Many0")
+    system.rtse("act", "Many0")
+    log = says(system, process, "written False")
+    lines = [line for line in log.splitlines() if "cannot be written to port Many0.out" in line]
+    assert "data: expected long, got float 0.0" in lines[0] and 8 < len(lines) < 100, lines
+    assert "other lines before this one are not in the log) a RTC/TimedLong" in lines[-1] and "got str 'last'" in lines[-1]
+    ends(process, system)
