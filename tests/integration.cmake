@@ -52,6 +52,8 @@ foreach(case wrong_usage optional_components misunderstood_values wrong_places s
   set_tests_properties(editor.${case} PROPERTIES LABELS integration TIMEOUT 300 SKIP_RETURN_CODE 77)
 endforeach()
 
+add_test(NAME editor.wrong_usage_is_exit_code_2 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/usage.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
+set_tests_properties(editor.wrong_usage_is_exit_code_2 PROPERTIES LABELS integration TIMEOUT 300)
 add_test(NAME editor.every_verb_names_a_missing_file COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/missing_files.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
 set_tests_properties(editor.every_verb_names_a_missing_file PROPERTIES LABELS integration TIMEOUT 300)
 

@@ -89,7 +89,7 @@ measure:
         subprocess.run([f"{bin_dir}/rtse", "results", place / "my plan.db", "--html", folder / "page.html"], cwd="/", check=True, timeout=100)
         page = (folder / "page.html").read_text()
         assert "data:image/png;base64," in page and f"rtse sweep '{folder}/my plan.yaml' --row 1" in page, number
-    assert "--by \"nobody\"" in rtse("results", folder / "plan.db", "--by", "nobody", code=1).stderr
+    assert "--by \"nobody\"" in rtse("results", folder / "plan.db", "--by", "nobody", code=2).stderr
 
 
 # What a page that rtse wrote says about its run.
@@ -324,7 +324,7 @@ def refused():
         path = plan(text + "\n")
         if text.startswith("system: "):
             pathlib.Path(path).write_text(START.split("\n", 1)[1] + text + "\n")
-        done = rtse("sweep", path, code=1)
+        done = rtse("sweep", path, code=2)
         assert expected in done.stderr and len(done.stderr.splitlines()) == 1, (text, done.stderr)
     # Of the path only what rows need: no sbatch, then nothing.
     tools = folder / "tools"
@@ -339,7 +339,7 @@ def refused():
     done = rtse("sweep", plan("repeat: 100000\n"), "--engine", "slurm", "--chunk", 2, "--task", "nowhere", code=None)
     assert "--task: expected FOLDER:ATTEMPT:TASK" in done.stderr, done.stderr
     for rows_asked in ("7..9", "3..6"):
-        done = rtse("sweep", plan("repeat: 5\n"), "--rows", rows_asked, code=1)
+        done = rtse("sweep", plan("repeat: 5\n"), "--rows", rows_asked, code=2)
         assert f"--rows {rows_asked}: the plan has 5 rows" in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
     for verb, *words in (("sweep", "-o", ""), ("sweep", "--keep", ""), ("hunt", "-o", "")):
         done = rtse(verb, plan(""), *words, code=2)
@@ -553,7 +553,7 @@ def faults():
         assert found.setdefault(row[0]["state"], fault) == fault, (fault, found)
     seen = json.loads(rtse("--json", "hunt", flight("", "search.yaml"), "--cases", 1).stdout)
     assert seen["finds"] == [], seen
-    done = rtse("sweep", flight('faults: [{at: 0, actuator: "quadcopter::imu", is: weak}]\n', "imu.yaml"), code=1)
+    done = rtse("sweep", flight('faults: [{at: 0, actuator: "quadcopter::imu", is: weak}]\n', "imu.yaml"), code=2)
     assert "fault weak of quadcopter::imu: it is no position2d or position3d and has no joints" in done.stderr, done.stderr
     # A host that is killed comes back; the run with it is the same each time.
     twice("one_process_each: true\nfaults: [{at: 0.3, for: 0.3, component: LaserObstacleAvoid0, is: kill}]\n", "kill.yaml")

@@ -56,9 +56,9 @@ def fleets():
         text = "    <rts:Components ".join(parts).split("    <rts:DataPortConnectors ")[0] + "    <rts:DataPortConnectors " + rest
         file.write(text.replace("SourceAll0", "SourceAll_{robot}").replace("SinkAll0", "SinkAll_{robot}"))
     lists = ["--for", f"robot=r0..r{count - 1}"]
-    refused("load", template, says="_{robot} is a template; expected --for robot=LIST")
-    refused("load", template, *lists, "--for", "side=l,r", says="does not contain {side}")
-    refused("load", template, "--for", "robot=r9..r0", says="is not a range")
+    refused("load", template, code=2, says="_{robot} is a template; expected --for robot=LIST")
+    refused("load", template, *lists, "--for", "side=l,r", code=2, says="does not contain {side}")
+    refused("load", template, "--for", "robot=r9..r0", code=2, says="is not a range")
     dry = rig.rtse("load", template, *lists, "--dry-run")
     assert dry.count("connect ") == count, dry
     rig.rtse("load", template, *lists)
@@ -130,10 +130,16 @@ def misunderstood_values():
                            ("inport.buffer.write.full_policy=drop", "one of overwrite, do_nothing, block"), ("buffer.read.timeout=-1", "seconds"),
                            ("sync_readwrite=perhaps", "YES or NO"), ("subscription_type=periodic", "a rate above 0 [Hz]"), ("io_mode=often", "flush, new or periodic")):
         key, given = value.split("=")
-        line = refused("con", *ports, "-p", value, says=allowed).stderr
+        line = refused("con", *ports, "-p", value, code=1 if key in ("subscription_type", "io_mode") else 2, says=allowed).stderr
         assert line.count("\n") == 1 and (f'got "{given}"' in line or given == "periodic"), line
+    for key, meant in (("subscripton_type", "subscription_type"), ("inport.bufer.length", "buffer.length")):
+        refused("con", *ports, "-p", f"{key}=new", code=2, says=f'property "{key}": ports of this runtime do not read it; did you mean {meant}?')
+    # A port alone needs a transport of topics, also where nothing would be done for two.
+    for more in ((), ("-d",)):
+        refused("con", *more, ports[0], says="expected a second port, or a transport of topics as in -p interface_type=ros2")
     assert json.loads(rig.rtse("--json", "cat", "SourceAll0:long"))["connectors"] == []
-    rig.rtse("con", *ports, "-i", "wire", "-p", "publisher.push_policy=FIFO", "-p", "buffer.length=20", "-p", "my.own=thing")
+    done = rig.try_rtse("con", *ports, "-i", "wire", "-p", "publisher.push_policy=FIFO", "-p", "buffer.length=20", "-p", "my.own=thing")
+    assert done.returncode == 0 and done.stderr == 'rtse: property "my.own": ports of this runtime do not read it\n', done
     # A profile of others is loaded all the same, and the line says what is not understood.
     rig.rtse("save", rig.path("system.xml"))
     text = open(rig.path("system.xml")).read().replace('"FIFO"', '"nope"')

@@ -53,9 +53,9 @@ def lines(*words):
 
 
 # With one line.
-def refused(*words, says):
+def refused(*words, says, code=1):
     done = rig.try_rtse(*words)
-    assert done.returncode == 1 and says in done.stderr and done.stderr.count("\n") == 1, done
+    assert done.returncode == code and says in done.stderr and done.stderr.count("\n") == 1, done
 
 
 # As a program: the case that it is called with.

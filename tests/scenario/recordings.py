@@ -452,10 +452,10 @@ def gone_to():
     assert abs(stands["time"] - fast["time"]) < 1e-9, (stands, fast)
     before = json.loads(rig.rtse(*call, "--back", "2").split("\n", 1)[0])
     assert abs(before["time"] - (fast["time"] - 0.2)) < 1e-9, (before, fast)
-    refused("goto", path, "--break", "LaserObstacleAvoid0:velocity.data.vx >", says="expected a value")
+    refused("goto", path, "--break", "LaserObstacleAvoid0:velocity.data.vx >", code=2, says="expected a value")
     refused("goto", path, "1", "--break", "time > 7", says="does not hold up to 1 s\n")
     refused("goto", path, "1", "--break", "LaserObstacleAvoid0:velocity.data.foo > 7", says="1 s; LaserObstacleAvoid0:velocity has no number data.foo\n")
-    refused("goto", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "1", says="is not a recording; for a system profile, give its world: -w WORLD")
+    refused("goto", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "1", code=2, says="is not a recording; for a system profile, give its world: -w WORLD")
     assert "rtse: the recorded run ended at 6 s\n" == rig.try_rtse("goto", path, "7", "--then", "true").stderr
     done = subprocess.run([f"{rig.bin_dir}/rtse", "--json", "goto", path, "1"], input="n\nb 2\nt 0.5\nq\n", stdout=subprocess.PIPE, timeout=120, text=True)
     times = [json.loads(line)["time"] for line in done.stdout.splitlines()]

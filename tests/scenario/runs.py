@@ -168,7 +168,7 @@ def unknown_names():
                 assert any(why in problem for problem in place.verdicts().values()), place.verdicts()
         # What cannot be run as it is has no result either.
         code, out, err = place.run(avoidance, course, "--property", "Nobody:a=b")
-        assert code == 1 and out == "" and "Nobody" in err, (code, out, err)
+        assert code == 2 and out == "" and "Nobody" in err, (code, out, err)
 
 
 # What is not a number is within no bounds.
@@ -290,7 +290,7 @@ def odds_and_ends():
         assert "phase 5" in (place.path / "kept/rtcd-0.log").read_text()
         for words in (["--property", "Nobody:a=b"], ["--property", "x"], ["--property", "Relay1:exec_cxt.sim_time.phase=99"]):
             code, out, err = place.run(system, world, "--duration", "1", *words)
-            assert code == (1 if words[1].startswith("Nobody") else 2) and "property" in err, (code, err)
+            assert code == 2 and "property" in err, (code, err)
         for words in (["--duration", "nan"], ["--seeds", ""], ["--seeds", "3..1"], ["--seed", "-5"], ["--seeds", "1..2", "--seed", "3"], ["--hang-timeout", "0"]):
             code, out, err = place.run(system, world, *words)
             assert code == 2 and len(err.splitlines()) == 1, (words, code, err)
@@ -300,7 +300,7 @@ def odds_and_ends():
                     ("--picture", str(place.path / "pipe")): "no regular file", ("--picture", f"{place.path}/same", "--junit", f"{place.path}/same"): "something else too"}
         for words, why in mistakes.items():
             code, out, err = place.run(system, world, *words)
-            assert code == 1 and why in err and "--keep" not in err, (words, code, err)
+            assert code == 2 and why in err and "--keep" not in err, (words, code, err)
         e = place.write("e.yaml", expectations("value: {port: 'Relay1:in', member: data, min: 0}"))
         code, out, err = place.run(system, world, "--duration", "1", "--expect", e)
         assert code == 2 and "Relay1:in: is not an OutPort" in err, err
@@ -314,7 +314,7 @@ def odds_and_ends():
         assert code == 0 and "exec_cxt.sim_time.server_id" in err and "none" in err, (code, err)
         bad = place.write("bad.xml", pathlib.Path(system).read_text().replace('rts:rate="10.0"', 'rts:rate="nan"'))
         code, out, err = place.run(bad, world)
-        assert code == 1 and "rate" in err and "nan" in err, err
+        assert code == 2 and "rate" in err and "nan" in err, err
         with open("/dev/full", "w") as full:
             done = subprocess.run([rtse, "run", system, "--world", world, "--duration", "1", "--module-path", lib_dir], text=True, stdout=full, stderr=subprocess.PIPE, env=place.environment)
         assert done.returncode == 1 and done.stderr.count("standard output: cannot be written") == 1, done

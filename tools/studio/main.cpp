@@ -73,6 +73,11 @@ int fail(const base::Error& error) {
   return 1;
 }
 
+int reject(const base::Error& error) {
+  fail(error);
+  return 2;
+}
+
 // As a browser has to be given it. What follows a '#' stays in the browser: no server, proxy or log gets the token from there. Always a
 // number: for "localhost" a browser asks ::1 and 127.0.0.1, and where only one of them is ours, another account may listen at the other
 // with a page that reads the token.
@@ -104,7 +109,7 @@ int serve(boost::asio::io_context& loop, const Settings& settings, const studio:
 
 int show_recording(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page) {
   if (!settings.start.world.empty())
-    return fail({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
+    return reject({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
   const auto recording = studio::RecordedStudio::open(loop, settings.start.system);
   if (!recording) return fail(recording.error());
   return serve(loop, settings, page, (*recording)->handlers(), settings.start.system);
@@ -112,7 +117,7 @@ int show_recording(boost::asio::io_context& loop, const Settings& settings, cons
 
 int show_run(boost::asio::io_context& loop, Settings settings, const studio::PageFiles& page) {
   if (!settings.start.system.empty() && settings.start.world.empty())
-    return fail({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
+    return reject({"system " + base::in_quotes(settings.start.system) + ": needs --world WORLD.sdf"});
   const tools::Orb orb;
   ErrorStream errors;
   std::optional<base::ChildProcess> host;

@@ -24,6 +24,8 @@ std::string hidden(const ComponentView& component, const std::string& set_id, co
 
 }  // namespace
 
+bool has_type(const ComponentView& component, const std::string& parameter) { return !hidden(component, "__type__", parameter).empty(); }
+
 std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value) {
   const auto problem = type_problem(hidden(component, "__type__", parameter), value);
   return problem.empty() ? constraint_problem(hidden(component, "__constraints__", parameter), value) : problem;

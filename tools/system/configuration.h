@@ -12,6 +12,8 @@ namespace tools {
 // Null: the component has no such set.
 const ConfigurationSetView* find_set(const ComponentView& component, const std::string& id);
 
+// Whether the component declares a type for this parameter.
+bool has_type(const ComponentView& component, const std::string& parameter);
 // "" or what a value of this parameter must be, by the type and the constraint that the component declares.
 std::string value_problem(const ComponentView& component, const std::string& parameter, const std::string& value);
 

@@ -8,10 +8,52 @@
 
 namespace tools {
 
+namespace {
+
+constexpr std::array<std::string_view, 27> known_keys{"allow_dup_connection",
+                                                      "buffer.length",
+                                                      "buffer.read.empty_policy",
+                                                      "buffer.read.timeout",
+                                                      "buffer.write.full_policy",
+                                                      "buffer.write.timeout",
+                                                      "buffer_type",
+                                                      "call_timeout",
+                                                      "data_type",
+                                                      "dataflow_type",
+                                                      "fan_out",
+                                                      "fault",
+                                                      "fsm_event_name",
+                                                      "interface_type",
+                                                      "io_mode",
+                                                      "looks_on",
+                                                      "marshaling_type",
+                                                      "publisher.push_policy",
+                                                      "publisher.push_rate",
+                                                      "publisher.skip_count",
+                                                      "push_rate",
+                                                      "reconnect",
+                                                      "serializer.cdr.endian",
+                                                      "shem_default_size",
+                                                      "subscription_type",
+                                                      "sync_readwrite",
+                                                      "timestamp_policy"};
+
+}  // namespace
+
 bool is_own_transport(std::string_view interface_type) {
   constexpr std::array<std::string_view, 4> ours{"corba_cdr", "data_service", "direct", "shared_memory"};
   return std::ranges::find(ours, interface_type) != ours.end();
 }
+
+std::vector<std::string> connector_keys() { return {known_keys.begin(), known_keys.end()}; }
+
+bool is_connector_key(std::string_view key) {
+  for (const std::string_view begin : {"dataport.", "inport.", "outport."}) {
+    if (key.starts_with(begin)) key.remove_prefix(begin.size());
+  }
+  return key.starts_with("interface_option.") || key.starts_with("corba_cdr.") || std::ranges::find(known_keys, key) != known_keys.end();
+}
+
 namespace {
 
 constexpr std::chrono::milliseconds connect_limit{10'000};

@@ -12,6 +12,11 @@ namespace tools {
 // Of the runtime itself, all of which connect two ports; other interface types are of modules.
 bool is_own_transport(std::string_view interface_type);
 
+// The keys of a connection that ports of this runtime read, without "dataport."; each also as inport.KEY and outport.KEY, for one end.
+std::vector<std::string> connector_keys();
+// Whether ports read "dataport.KEY". What a transport of a module reads is known to the module alone.
+bool is_connector_key(std::string_view key);
+
 // Connects ports in the given order; the first starts. Empty id: the runtime makes one. The error says what does not fit.
 Result<void> connect_ports(const std::vector<const PortView*>& ports, const std::string& id, const std::string& name,
                            const Properties& properties);

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -70,41 +69,11 @@ Result<void> set_component(SavedSystem& system, const std::string& path, const s
   return {};
 }
 
-// What ports of rtm-sim read of a connection; each also as inport.KEY and outport.KEY, for one end.
-constexpr std::array connector_keys = {"allow_dup_connection",
-                                       "buffer.length",
-                                       "buffer.read.empty_policy",
-                                       "buffer.read.timeout",
-                                       "buffer.write.full_policy",
-                                       "buffer.write.timeout",
-                                       "buffer_type",
-                                       "call_timeout",
-                                       "data_type",
-                                       "dataflow_type",
-                                       "fan_out",
-                                       "fault",
-                                       "interface_type",
-                                       "io_mode",
-                                       "marshaling_type",
-                                       "publisher.push_policy",
-                                       "publisher.push_rate",
-                                       "publisher.skip_count",
-                                       "reconnect",
-                                       "serializer.cdr.endian",
-                                       "shem_default_size",
-                                       "subscription_type",
-                                       "sync_readwrite",
-                                       "timestamp_policy"};
-
 // Transports of others read what they like.
-bool is_known_key(const SavedConnector& connector, std::string key) {
+bool is_known_key(const SavedConnector& connector, const std::string& key) {
   const std::string& type = connector.interface_type;
   if (!connector.is_data || !(type.empty() || tools::is_own_transport(type))) return true;
-  key = key.substr(std::string("dataport.").size());
-  for (const char* end : {"inport.", "outport."}) {
-    if (key.starts_with(end)) key.erase(0, std::string(end).size());
-  }
-  return key.starts_with("interface_option.") || std::ranges::find(connector_keys, key) != connector_keys.end();
+  return tools::is_connector_key(key);
 }
 
 Result<void> set_connector(SavedSystem& system, const std::string& path, const std::vector<std::string>& words, const std::string& value) {
@@ -118,7 +87,7 @@ Result<void> set_connector(SavedSystem& system, const std::string& path, const s
   const auto old = std::ranges::find_if(values, [&](const auto& one) { return one.first == key; });
   if (old == values.end() && !is_known_key(*found, key))
     return Error{path + ": no connection has a property " + base::in_quotes(words[2]) +
-                 "; properties: " + base::join(std::vector<std::string>(connector_keys.begin(), connector_keys.end()), ", ")};
+                 "; properties: " + base::join(tools::connector_keys(), ", ")};
   if (old != values.end()) old->second = value;
   if (old == values.end()) values.emplace_back(key, value);
   if (key == "dataport.subscription_type") found->subscription_type = value;
@@ -202,6 +171,14 @@ bool can_be_started(const std::string& name) {
                              [&](const std::string& folder) { return access((folder + "/" + program).c_str(), X_OK) == 0; });
 }
 
+Result<void> check_programs() {
+  for (const char* program : {"sim-server", "rtcd", "omniNames"}) {
+    if (!can_be_started(program))
+      return Error{std::string("program ") + program + ": cannot be started; expected it beside rtse or in PATH"};
+  }
+  return {};
+}
+
 Result<Campaign> Campaign::prepare(Plan plan) {
   const auto spawned = spawned_models(plan);
   Campaign campaign(std::move(plan));
@@ -252,10 +229,6 @@ Result<void> Campaign::survey_world(const std::vector<std::string>& spawned) {
 }
 
 Result<void> Campaign::check_files() const {
-  for (const char* program : {"sim-server", "rtcd", "omniNames"}) {
-    if (!can_be_started(program))
-      return Error{std::string("program ") + program + ": cannot be started; expected it beside rtse or in PATH"};
-  }
   for (const auto& [kind, file] :
        {std::pair("system", &plan_->run.system), std::pair("world", &plan_->run.world), std::pair("expect", &plan_->run.expectations)}) {
     std::error_code error;

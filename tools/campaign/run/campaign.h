@@ -1,4 +1,4 @@
-// A plan that was read and checked with everything that it refers to: files exist, paths name parameters, programs can be started. So
+// A plan that was read and checked with everything that it refers to: files exist and paths name parameters. So
 // errors of a plan are reported before the first run. Constant after prepare(); any thread.
 #pragma once
 
@@ -16,6 +16,8 @@ namespace campaign {
 
 // Whether a program is there: beside ours, else in PATH.
 bool can_be_started(const std::string& name);
+// Those that every row needs.
+Result<void> check_programs();
 
 class Campaign {
  public:

@@ -85,10 +85,11 @@ std::string status_line(const HuntProgress& progress, std::chrono::seconds budge
 
 void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   auto plan = read_plan(call.plan);
-  if (!plan) return console.fail(plan.error());
+  if (!plan) return console.reject(plan.error());
   if (call.seed >= 0) plan->hunt.seed = static_cast<std::uint64_t>(call.seed);
+  if (const auto ready = check_programs(); !ready) return console.fail(ready.error());
   const auto campaign = Campaign::prepare(std::move(*plan));
-  if (!campaign) return console.fail(campaign.error());
+  if (!campaign) return console.reject(campaign.error());
   base::catch_interrupts();
   HuntOptions options;
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));

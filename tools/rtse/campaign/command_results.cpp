@@ -35,8 +35,8 @@ void show_results(Console& console, const ResultsCall& call) {
   if (!results) return console.fail(results.error());
   for (const auto& parameter : call.by) {
     if (std::ranges::find(results->parameters, parameter) == results->parameters.end())
-      return console.fail({"--by " + base::in_quotes(parameter) + ": no varied value has this name; it has " +
-                           (results->parameters.empty() ? "nothing" : base::join(results->parameters, ", "))});
+      return console.reject({"--by " + base::in_quotes(parameter) + ": no varied value has this name; it has " +
+                             (results->parameters.empty() ? "nothing" : base::join(results->parameters, ", "))});
   }
   if (call.csv) {
     print_csv(std::cout, *results);

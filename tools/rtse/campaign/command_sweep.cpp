@@ -87,7 +87,7 @@ void remove_files_of_run(const fs::path& folder) {
 // One row, with its files kept: what the command that repeats a row does.
 void run_one(const Session& session, Console& console, const Campaign& campaign, const SweepCall& call) {
   if (call.row > campaign.rows())
-    return console.fail({"row " + std::to_string(call.row) + ": the plan has " + std::to_string(campaign.rows()) + " rows"});
+    return console.reject({"row " + std::to_string(call.row) + ": the plan has " + std::to_string(campaign.rows()) + " rows"});
   const auto row = campaign.row(call.row);
   if (!row) return console.fail(row.error());
   const auto folder = call.keep.empty() ? "row-" + std::to_string(call.row) : call.keep;
@@ -232,15 +232,16 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
     return;
   }
   auto plan = read_plan(call.plan);
-  if (!plan) return console.fail(plan.error());
+  if (!plan) return console.reject(plan.error());
+  if (const auto ready = check_programs(); !ready) return console.fail(ready.error());
   const auto campaign = Campaign::prepare(std::move(*plan));
-  if (!campaign) return console.fail(campaign.error());
+  if (!campaign) return console.reject(campaign.error());
   base::catch_interrupts();
   if (call.engine == "parallel") return print_commands(*campaign, call);
   if (call.row > 0) return run_one(session, console, *campaign, call);
   const auto options = options_of(session, call);
   if (options.last_row > campaign->rows())
-    return console.fail({"--rows " + call.rows + ": the plan has " + std::to_string(campaign->rows()) + " rows"});
+    return console.reject({"--rows " + call.rows + ": the plan has " + std::to_string(campaign->rows()) + " rows"});
   if (!call.task.empty()) {
     if (const auto done = run_task(session.orb(), *campaign, options, *parse_task(call.task), console); !done) console.fail(done.error());
     return;

@@ -97,7 +97,7 @@ void check_component(const Matched& matched, const SavedComponent& saved, const 
 void check_system(const Session& session, Console& console, const std::string& file, const std::vector<std::string>& lists,
                   const std::string& state) {
   const auto system = read_system(file, lists);
-  if (!system) return console.fail(system.error());
+  if (!system) return console.reject(system.error());
   const auto matched = Matched::read(session, *system, {.contexts = true, .connectors = true, .configuration = true});
   if (!matched) return console.fail(matched.error());
   Differences differences;

@@ -60,6 +60,13 @@ Result<void> check_value(const ComponentView& component, const std::string& para
                problem + " (--force sets it anyway)"};
 }
 
+// A parameter that was a number and gets a text, where the component declares no type: only its log says whether it takes the value.
+std::string doubt(const ComponentView& component, const std::string& parameter, const std::string& before, const std::string& now) {
+  if (has_type(component, parameter) || !base::parse_number(before) || base::parse_number(now)) return {};
+  return "component " + component.path + ": parameter " + parameter + " was the number " + before + " and is now " + base::in_quotes(now) +
+         "; the component declares no type and may keep the old value";
+}
+
 void configure(const Session& session, Console& console, const ConfigurationOptions& options) {
   auto component = session.component(options.path, {.configuration = true});
   if (!component) return console.fail(component.error());
@@ -93,8 +100,10 @@ void configure(const Session& session, Console& console, const ConfigurationOpti
   }
   auto values = set->values;
   bool known = false;
+  std::string doubtful;
   for (auto& [key, value] : values) {
     if (key != arguments[0]) continue;
+    doubtful = doubt(*component, key, value, arguments[1]);
     value = arguments[1];
     known = true;
   }
@@ -103,6 +112,7 @@ void configure(const Session& session, Console& console, const ConfigurationOpti
     if (const auto good = check_value(*component, arguments[0], arguments[1]); !good) return console.fail(good.error());
   }
   if (const auto done = set_values(*component, id, values); !done) return console.fail(done.error());
+  if (!doubtful.empty()) console.warn(doubtful);
   // Values reach the component when the active set is activated once more. Until then it has none, also when another set was changed.
   const auto active = component->active_set.empty() && options.set.empty() ? id : component->active_set;
   if (active.empty()) return;

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <set>
 
+#include "base/suggestion.h"
 #include "base/text.h"
 #include "corba/ports/connection_values.h"
 #include "corba/ports/peer_watch.h"
@@ -26,6 +27,22 @@ Result<Properties> parse_properties(const std::vector<std::string>& texts, bool 
   return properties;
 }
 
+// Keys of data ports that nobody reads; transports of modules have keys of their own. An error for what was misspelled.
+Result<void> check_keys(Console& console, const Properties& properties) {
+  const auto transport = property(properties, "dataport.interface_type");
+  if (!transport.empty() && !is_own_transport(transport)) return {};
+  for (const auto& [key, value] : properties) {
+    if (!key.starts_with("dataport.") || is_connector_key(key)) continue;
+    const auto name = key.substr(std::string_view("dataport.").size());
+    const auto end = name.starts_with("inport.") || name.starts_with("outport.") ? name.find('.') + 1 : 0;
+    const auto meant = base::suggestion(name.substr(end), connector_keys());
+    const std::string line = "property " + base::in_quotes(name) + ": ports of this runtime do not read it" + meant;
+    if (!meant.empty()) return Error{line};
+    console.warn(line);
+  }
+  return {};
+}
+
 bool are_connected(const PortView& a, const PortView& b) {
   for (const auto& connector : a.connectors) {
     for (CORBA::ULong i = 0; i < connector.ports.length(); ++i) {
@@ -35,12 +52,13 @@ bool are_connected(const PortView& a, const PortView& b) {
   return false;
 }
 
-// A connection of the port alone, to a topic, has these properties already. A topic may leave out its first slash.
+// A connection of the port alone, to a topic, has these properties already. A topic may leave out its first slash. Without properties no
+// topic is meant.
 bool is_on_topic(const PortView& port, const Properties& properties) {
   const auto plain = [](const std::string& key, const std::string& value) {
     return key.ends_with(".topic") && value.starts_with('/') ? value.substr(1) : value;
   };
-  return std::ranges::any_of(port.connectors, [&](const auto& connector) {
+  return !properties.empty() && std::ranges::any_of(port.connectors, [&](const auto& connector) {
     return connector.ports.length() == 1 && std::ranges::all_of(properties, [&](const auto& one) {
              return plain(one.first, property(connector.properties, one.first)) == plain(one.first, one.second);
            });
@@ -66,9 +84,11 @@ void connect(const Session& session, Console& console, const ConnectOptions& opt
   for (const auto& port : found) ports.push_back(&port.port);
   if (options.no_duplicates && ports.size() > 1 && are_connected(*ports[0], *ports[1])) return;
   auto properties = parse_properties(options.properties, ports.front()->is_data_port());
-  if (!properties) return console.fail(properties.error());
+  if (!properties) return console.reject(properties.error());
   if (const auto wrong = corba::misunderstood_values(*properties); !wrong.empty())
-    return console.fail({"connecting " + base::join(options.ports, " and ") + ": " + base::join(wrong, "; ")});
+    return console.reject({"connecting " + base::join(options.ports, " and ") + ": " + base::join(wrong, "; ")});
+  if (const auto known = ports.front()->is_data_port() ? check_keys(console, *properties) : Result<void>(); !known)
+    return console.reject(known.error());
   if (options.no_duplicates && ports.size() == 1 && is_on_topic(*ports[0], *properties)) return;
   if (const auto done = connect_ports(ports, options.id, options.name, *properties); !done) console.fail(done.error());
 }
@@ -166,7 +186,6 @@ void disconnect(const Session& session, Console& console, const std::vector<std:
   if (!id.empty()) return disconnect_by_id(session, console, id);
   if (paths.size() == 2) return disconnect_pair(session, console, paths[0], paths[1]);
   if (paths.size() == 1) return disconnect_all(session, console, paths[0]);
-  console.fail({"dis: expected one component or port, two ports, or -i ID"});
 }
 
 }  // namespace

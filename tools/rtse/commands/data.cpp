@@ -168,9 +168,9 @@ void inject(const Session& session, Console& console, const InjectOptions& optio
   std::vector<std::vector<unsigned char>> payloads;
   for (const auto& text : options.values) {
     const auto value = parse_value(type, text, base::SystemClock().now().count());
-    if (!value) return console.fail({"port " + port->port.full_name + ": " + value.error().message});
+    if (!value) return console.reject({"port " + port->port.full_name + ": " + value.error().message});
     auto payload = encode(type, *value);
-    if (!payload) return console.fail({"port " + port->port.full_name + ": " + payload.error().message});
+    if (!payload) return console.reject({"port " + port->port.full_name + ": " + payload.error().message});
     payloads.push_back(std::move(*payload));
   }
   auto tap = Tap::connect(session.orb(), port->port, {}, {});

@@ -90,7 +90,7 @@ Result<void> write_skeleton(const NewComponent& component, bool is_python, const
 
 void make_component(Console& console, const Options& options) {
   const auto component = component_of(options);
-  if (!component) return console.fail(component.error());
+  if (!component) return console.reject(component.error());
   const auto folder = options.folder.empty() ? component->name : options.folder;
   const bool is_python = options.language == "python";
   if (const auto written = write_skeleton(*component, is_python, folder); !written) return console.fail(written.error());

@@ -58,17 +58,12 @@ void print_row(const RunResult& result) {
               result.state_hash.empty() ? "-" : result.state_hash.c_str(), unmet.empty() ? "-" : base::printable(unmet).c_str());
 }
 
-void reject(Console& console, const RunResult& result) {
-  if (result.refusal == RunResult::Refusal::expectations) return console.reject({result.problem});
-  console.fail({result.problem});
-}
-
 // A line on standard output, or a row of the table of seeds; what is wrong on standard error, with the seed before it when there are
 // several.
 // Of what was not run because it was asked for wrongly there is no result.
 void report(Console& console, const RunResult& result, bool is_row) {
   const bool is_refused = result.refusal != RunResult::Refusal::none;
-  if (is_refused && !console.json()) return reject(console, result);
+  if (is_refused && !console.json()) return console.reject({result.problem});
   if (console.json()) {
     std::cout << to_json(result).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (is_row) {
@@ -85,7 +80,7 @@ void report(Console& console, const RunResult& result, bool is_row) {
   std::fflush(stdout);
   const std::string seed = is_row ? "seed " + std::to_string(result.seed) + ": " : "";
   for (const auto& note : result.notes) console.warn(seed + note);
-  if (is_refused) return reject(console, result);
+  if (is_refused) return console.reject({result.problem});
   if (!result.problem.empty()) console.fail({seed + result.problem});
   for (const auto& verdict : result.verdicts) {
     if (!verdict.problem.empty()) console.fail({seed + failure_text(verdict)});
@@ -188,7 +183,7 @@ std::vector<RunResult> run_seeds(const Session& session, Console& console, const
         const auto mine = telling.take();
         if (result.refusal != RunResult::Refusal::none) {
           if (is_refused.exchange(true)) return;  // as each seed would be
-          reject(console, result);
+          console.reject({result.problem});
           results.push_back(std::move(result));
           return;
         }
@@ -248,12 +243,12 @@ class RunProgress final : public Reporter {
 // Prints one line per run and one per unmet expectation. Without `seeds_text` one run with the seed of the options, else one for each,
 // `jobs` of them at a time.
 void run(const Session& session, Console& console, const RunOptions& options, const std::optional<std::string>& seeds_text, int jobs) {
-  if (const auto good = check_files(options); !good) return console.fail(good.error());
+  if (const auto good = check_files(options); !good) return console.reject(good.error());
   base::catch_interrupts();
   std::vector<RunResult> results;
   if (seeds_text) {
     const auto seeds = parse_seeds(*seeds_text);
-    if (!seeds) return console.fail(seeds.error());
+    if (!seeds) return console.reject(seeds.error());
     results = run_seeds(session, console, options, *seeds, jobs);
   } else {
     RunProgress progress(console);

@@ -47,7 +47,7 @@ void save_system(const Session& session, Console& console, const SaveCall& call)
 template <class F>
 void change_system(Console& console, const SystemFile& file, bool dry_run, F change) {
   const auto system = read_system(file.name, file.lists);
-  if (!system) return console.fail(system.error());
+  if (!system) return console.reject(system.error());
   const Changes changes = change(*system);
   if (dry_run) {
     for (const auto& action : changes.actions) std::cout << action << '\n';

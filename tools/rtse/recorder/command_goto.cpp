@@ -217,14 +217,14 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
   std::optional<Expression> condition;
   if (!options.condition.empty()) {
     auto parsed = Expression::parse(options.condition);
-    if (!parsed) return console.fail(parsed.error());
+    if (!parsed) return console.reject(parsed.error());
     condition = std::move(*parsed);
   }
   std::optional<RecordedRun> recorded;
   tools::RunOptions call;
   if (options.world.empty()) {
     if (!is_recording(options.what))
-      return console.fail({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
+      return console.reject({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
     if (!run) return console.fail(run.error());
     if (const auto lost = run->lost(); run->script().empty() && !lost.empty()) console.warn(lost);
@@ -257,6 +257,7 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
     tools::RunHooks hooks{.driver = [&](tools::RunningSystem& system) { return stand.drive(system); }};
     if (*script) hooks.script = script->get(), hooks.simulator_options = (*script)->simulator_options();
     const auto made = tools::run_system(session.orb(), call, console, hooks);
+    if (made.refusal != tools::RunResult::Refusal::none) return console.reject({made.problem});
     if (!made.problem.empty()) return console.fail({made.problem});
     if (!stand.wish()) return;
     // The same run once more, and not so far.

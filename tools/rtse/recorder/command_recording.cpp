@@ -388,7 +388,7 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
       ->check(base::output_name());
   tools::add_page_options(*export_command, *page);
   choose(export_command, [exported, page](const Session&, Console& console) {
-    if (page->file.empty() == exported->folder.empty()) return console.fail({"export: expected either --output FOLDER or --html FILE"});
+    if (page->file.empty() == exported->folder.empty()) return console.reject({"export: expected either --output FOLDER or --html FILE"});
     page->file.empty() ? export_samples(console, *exported) : export_page(console, exported->selection, *page);
   });
 
