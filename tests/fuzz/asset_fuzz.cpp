@@ -14,15 +14,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "base/text.h"
+#include "fuzz/asset_mutations.h"
 #include "fuzz/fork_server.h"
 #include "physics/physics.h"
 #include "rays/ray_scene.h"
@@ -41,7 +40,6 @@ extern "C" const char* __ubsan_default_options() { return "halt_on_error=1:print
 namespace {
 
 namespace fs = std::filesystem;
-using Below = std::function<std::size_t(std::size_t)>;
 
 void require(bool holds, const char* what) {
   if (holds) return;
@@ -169,104 +167,14 @@ bool run(const std::string& file, const Options& options, Count& count) {
   return is_deadly || is_late;
 }
 
-const std::vector<std::string> words{"nan",
-                                     "inf",
-                                     "-1",
-                                     "0",
-                                     "1e38",
-                                     "1e-38",
-                                     "4294967295",
-                                     "2147483647",
-                                     "-2147483648",
-                                     "65536",
-                                     "99999999",
-                                     "<",
-                                     "/>",
-                                     "\"",
-                                     "{",
-                                     "}",
-                                     "[",
-                                     "]",
-                                     "\n",
-                                     " ",
-                                     "#",
-                                     "//",
-                                     "\xff",
-                                     "property list uchar int x",
-                                     "element face 1000000",
-                                     "<p>x</p>",
-                                     "url=\"#n\"",
-                                     "count=\"7\"",
-                                     "1 2 3"};
-
-std::string mutate(std::string text, const std::string& other, const Below& below) {
-  const bool is_gentle = below(2) == 0;  // numbers alone, so that more than the first line of the file is read
-  for (std::size_t changes = 1 + below(below(3) == 0 ? 5 : 2); changes > 0 && !text.empty(); --changes) {
-    const std::size_t at = below(text.size());
-    const std::size_t length = std::min(text.size() - at, below(below(4) == 0 ? 200 : 12) + 1);
-    switch (is_gentle ? 6 + below(2) : below(9)) {
-      case 0:
-        text[at] = static_cast<char>(below(256));
-        break;
-      case 1:
-        text.erase(at, length);
-        break;
-      case 2:
-        text.insert(at, words[below(words.size())]);
-        break;
-      case 3:
-        text.replace(at, length, words[below(words.size())]);
-        break;
-      case 4:
-        text.insert(below(text.size()), text.substr(at, length));
-        break;
-      case 5:
-        text.resize(at);
-        break;
-      case 6: {  // another number
-        const std::size_t digit = text.find_first_of("0123456789", at);
-        if (digit != std::string::npos) text.replace(digit, text.find_first_not_of("0123456789.e-", digit) - digit, words[below(11)]);
-        break;
-      }
-      case 7: {  // four bytes, as binary formats count with
-        const std::uint32_t values[] = {0, 1, 0xff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 0x10000, 0x7f800000, 0x7fc00000};
-        const std::uint32_t value = values[below(std::size(values))];
-        for (std::size_t i = 0; i < 4 && at + i < text.size(); ++i) text[at + i] = static_cast<char>(value >> (8 * i));
-        break;
-      }
-      default:
-        if (!other.empty()) text.insert(at, other.substr(below(other.size()), length));
-    }
-  }
-  return text;
-}
-
-struct Seed {
-  fs::path file;
-  std::string content;
-};
-
-std::vector<Seed> seeds_of(std::vector<fs::path> files) {
-  std::erase_if(files, [](const fs::path& file) { return file.extension() == ".mtl" || file.extension() == ".py"; });
-  std::sort(files.begin(), files.end());
-  std::vector<Seed> seeds;
-  for (const fs::path& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    seeds.push_back({file, {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}});
-  }
-  return seeds;
-}
-
-Count run_seed(const std::vector<Seed>& seeds, std::size_t which, const Options& options) {
+Count run_seed(const std::vector<fuzz::Seed>& seeds, std::size_t which, const Options& options) {
   const std::string extension = seeds[which].file.extension().string();
-  std::mt19937 random(options.seed + static_cast<unsigned>(which));
-  const Below below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   Count count;
   run(seeds[which].file.string(), options, count);
   const std::string last = "asset_fuzz_last" + extension;
   for (long i = 0; i < options.runs; ++i) {
     fs::remove(last);
-    std::ofstream(last, std::ios::binary) << mutate(seeds[which].content, seeds[below(seeds.size())].content, below);
+    std::ofstream(last, std::ios::binary) << fuzz::mutation(seeds, which, options.seed, i);
     const bool is_kept = run(fs::absolute(last).string(), options, count);
     if (!is_kept || options.keep.empty()) continue;
     const std::string name = seeds[which].file.stem().string() + "_" + std::to_string(options.seed) + "_" + std::to_string(i) + extension;
@@ -304,7 +212,7 @@ int main(int argc, char** argv) {
       files.emplace_back(word);
     }
   }
-  const auto seeds = seeds_of(std::move(files));
+  const auto seeds = fuzz::seeds_of(std::move(files));
   if (seeds.empty()) {
     std::fprintf(stderr, "usage: asset_fuzz [--fork] [--seed N] [--runs N] [--limit MS] [--bodies N] [--keep FOLDER] FILE...\n");
     return 2;

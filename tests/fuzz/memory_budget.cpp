@@ -6,13 +6,17 @@
 #include <cstdlib>
 #include <new>
 
+// All functions of this file that allocate or release lie side by side; the linker knows where.
+#define ALLOCATION __attribute__((noinline, section("allocations")))
+extern "C" const char __start_allocations[], __stop_allocations[];
+
 namespace {
 
 // Relaxed: sums alone; nothing is read because of them.
 std::atomic<long> left{0};
 std::atomic<bool> is_limited{false};
 
-void* allocate(std::size_t size) noexcept {
+ALLOCATION void* allocate(std::size_t size) noexcept {
   if (!is_limited.load(std::memory_order_relaxed)) return std::malloc(size);
   const auto wanted = static_cast<long>(size);
   if (wanted < 0 || left.load(std::memory_order_relaxed) < wanted) return nullptr;
@@ -21,13 +25,13 @@ void* allocate(std::size_t size) noexcept {
   return memory;
 }
 
-void* allocate_or_throw(std::size_t size) {
+ALLOCATION void* allocate_or_throw(std::size_t size) {
   void* memory = allocate(size);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
 
-void release(void* memory) noexcept {
+ALLOCATION void release(void* memory) noexcept {
   if (is_limited.load(std::memory_order_relaxed)) left.fetch_add(static_cast<long>(malloc_usable_size(memory)), std::memory_order_relaxed);
   std::free(memory);
 }
@@ -41,15 +45,20 @@ void limit_memory(std::size_t bytes) {
   is_limited.store(true, std::memory_order_relaxed);
 }
 
+bool is_allocation(std::uintptr_t address) {
+  return address >= reinterpret_cast<std::uintptr_t>(__start_allocations) &&
+         address <= reinterpret_cast<std::uintptr_t>(__stop_allocations);
+}
+
 }  // namespace fuzz
 
-void* operator new(std::size_t size) { return allocate_or_throw(size); }
-void* operator new[](std::size_t size) { return allocate_or_throw(size); }
-void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept { return allocate(size); }
-void* operator new[](std::size_t size, const std::nothrow_t& /*unused*/) noexcept { return allocate(size); }
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete[](void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t /*unused*/) noexcept { release(memory); }
-void operator delete[](void* memory, std::size_t /*unused*/) noexcept { release(memory); }
-void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept { release(memory); }
-void operator delete[](void* memory, const std::nothrow_t& /*unused*/) noexcept { release(memory); }
+ALLOCATION void* operator new(std::size_t size) { return allocate_or_throw(size); }
+ALLOCATION void* operator new[](std::size_t size) { return allocate_or_throw(size); }
+ALLOCATION void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept { return allocate(size); }
+ALLOCATION void* operator new[](std::size_t size, const std::nothrow_t& /*unused*/) noexcept { return allocate(size); }
+ALLOCATION void operator delete(void* memory) noexcept { release(memory); }
+ALLOCATION void operator delete[](void* memory) noexcept { release(memory); }
+ALLOCATION void operator delete(void* memory, std::size_t /*unused*/) noexcept { release(memory); }
+ALLOCATION void operator delete[](void* memory, std::size_t /*unused*/) noexcept { release(memory); }
+ALLOCATION void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept { release(memory); }
+ALLOCATION void operator delete[](void* memory, const std::nothrow_t& /*unused*/) noexcept { release(memory); }

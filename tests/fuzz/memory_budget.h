@@ -4,10 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace fuzz {
 
 // From now on this process has so many bytes more than it has now.
 void limit_memory(std::size_t bytes);
+
+// Whether a frame of a stack is operator new or delete as they are here: what is wrong there is the caller's fault.
+bool is_allocation(std::uintptr_t address);
 
 }  // namespace fuzz
