@@ -25,7 +25,7 @@ void Drive::bindDrive() {
 
 void Drive::attached(const Device& device) {
   commander_.set_simulated_time(in_simulated_time());  // before the first velocity comes
-  if (const auto done = commander_.attach(device); !done) RTC_ERROR(("%s", done.error().message.c_str()));
+  if (const auto done = commander_.attach(device); !done) say_limited(true, done.error().message);
 }
 
 void Drive::detaching() { commander_.detach(); }

@@ -19,6 +19,10 @@ Say IfaceComponent::say() {
   };
 }
 
+void IfaceComponent::say_limited(bool is_problem, const std::string& line) {
+  if (const auto said = limit_.next(line)) say()(is_problem, *said);
+}
+
 // Its own, unless port_names has another one; a pair that is none is skipped with a line.
 std::string IfaceComponent::port_name(const std::string& own) {
   std::string name = own;
@@ -54,7 +58,7 @@ void IfaceComponent::bindDevice() {
 bool IfaceComponent::attach() {
   const auto device = configured();
   if (const auto done = link_.attach(device, subscribe_); !done) {
-    RTC_ERROR(("%s", done.error().message.c_str()));
+    if (const auto line = limit_.next(done.error().message)) RTC_ERROR(("%s", line->c_str()));
     return false;
   }
   attached(device);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "iface_link.h"
+#include "line_limit.h"
 #include "specification.h"
 
 namespace iface {
@@ -47,6 +48,8 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   // Carries the sample to the ports. Not called for samples that a fault has made invalid.
   virtual void publish(const shm::Iface&) {}
   Say say();
+  // For what each call of onActivated or onDeactivated can log: limited, since clients of the wire make such calls, too.
+  void say_limited(bool is_problem, const std::string& line);
   // The newest sample, after follow_configuration().
   void publish_newest();
 
@@ -63,6 +66,7 @@ class IfaceComponent : public RTC::DataFlowComponentBase {
   bool subscribe_;
   IfaceLink link_;
   std::uint64_t described_ = 0;  // of link_.attachments()
+  LineLimit limit_;
 };
 
 }  // namespace iface

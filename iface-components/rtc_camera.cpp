@@ -57,7 +57,7 @@ RTC::ReturnCode_t RTCCamera::onActivated(RTC::UniqueId ec_id) {
 }
 
 RTC::ReturnCode_t RTCCamera::onDeactivated(RTC::UniqueId ec_id) {
-  RTC_INFO(("%s frames sent, %s missed", std::to_string(sent_).c_str(), std::to_string(missed_).c_str()));
+  say_limited(false, std::to_string(sent_) + " frames sent, " + std::to_string(missed_) + " missed");
   return IfaceComponent::onDeactivated(ec_id);
 }
 

@@ -219,11 +219,14 @@ void RTCMap::follow_configuration() {
 RTC::ReturnCode_t RTCMap::onActivated(RTC::UniqueId) {
   follow_configuration();
   if (!area_of(area_)) {
-    RTC_ERROR(("area must be four numbers, xmin,ymin,xmax,ymax [m], got \"%s\"", area_.c_str()));
-    return RTC::RTC_ERROR;
+    return reject("area must be four numbers, xmin,ymin,xmax,ymax [m], got " + base::in_quotes(area_));
   }
   if (highest_ > lowest_) return RTC::RTC_OK;
-  RTC_ERROR(("highest must be above lowest (%s m), got %s", base::format_number(lowest_).c_str(), base::format_number(highest_).c_str()));
+  return reject("highest must be above lowest (" + base::format_number(lowest_) + " m), got " + base::format_number(highest_));
+}
+
+RTC::ReturnCode_t RTCMap::reject(const std::string& why) {
+  if (const auto line = limit_.next(why)) RTC_ERROR(("%s", line->c_str()));
   return RTC::RTC_ERROR;
 }
 

@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include "line_limit.h"
 #include "specification.h"
 
 struct MapSettings {
@@ -101,11 +102,14 @@ class RTCMap : public RTC::DataFlowComponentBase {
 
  private:
   void follow_configuration();
+  // Logs why the configuration makes no map; RTC_ERROR.
+  RTC::ReturnCode_t reject(const std::string& why);
 
   MapSettings settings_;
   double lowest_ = 0.05, highest_ = 0.5;
   std::string area_, row_order_ = "bottom_up", values_ = "grey";
   int movable_ = 0;
+  iface::LineLimit limit_;
   MapSource source_;
   OGMapService map_;
   OGMapServerService server_;

@@ -70,7 +70,7 @@ bool RTCMulticamera::attach() {
     };
     Eye eye{iface::IfaceLink(shm::IfaceType::camera, say), std::nullopt, {}};
     if (const auto done = eye.link.attach({server_id_, name}, true); !done) {
-      RTC_ERROR(("%s", done.error().message.c_str()));
+      if (const auto line = limit_.next(done.error().message)) RTC_ERROR(("%s", line->c_str()));
       eyes_.clear();
       return false;
     }

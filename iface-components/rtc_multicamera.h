@@ -20,6 +20,7 @@
 
 #include "camera_image.h"
 #include "iface_link.h"
+#include "line_limit.h"
 #include "specification.h"
 
 // Calls from any thread.
@@ -65,6 +66,7 @@ class RTCMulticamera : public RTC::DataFlowComponentBase {
   std::string device_id_, cameras_;
   std::string attached_to_;  // the configuration of that
   std::vector<Eye> eyes_;
+  iface::LineLimit limit_;  // of lines about cameras that are not there
   RTC::MultiCameraImages images_;
   RTC::OutPort<RTC::MultiCameraImages> images_out_;
   RTC::CorbaPort service_port_;

@@ -110,14 +110,14 @@ RTC::ReturnCode_t RTCSimulation::ask(const shm::Request& request) {
   }
   const auto reply = ask_server(server_id_, request);
   if (reply) return RTC::RTC_OK;
-  RTC_ERROR(("%s", reply.error().message.c_str()));
+  if (const auto line = limit_.next(reply.error().message)) RTC_ERROR(("%s", line->c_str()));
   return RTC::RTC_ERROR;
 }
 
 RTC::ReturnCode_t RTCSimulation::attach() {
   service_.set_server(server_id_);
   if (const auto done = link_.attach({server_id_, "world"}, false); !done) {
-    RTC_ERROR(("%s", done.error().message.c_str()));
+    if (const auto line = limit_.next(done.error().message)) RTC_ERROR(("%s", line->c_str()));
     return RTC::RTC_ERROR;
   }
   return RTC::RTC_OK;
@@ -132,7 +132,7 @@ RTC::ReturnCode_t RTCSimulation::onDeactivated(RTC::UniqueId) {
   link_.detach();
   // Without a simulator no time goes on that could be stopped.
   if (const auto world = shm::Iface::open(static_cast<std::uint32_t>(server_id_), shm::IfaceType::simulation, "world"); !world) {
-    RTC_WARN(("%s: no simulation to pause", world.error().message.c_str()));
+    if (const auto line = limit_.next(world.error().message + ": no simulation to pause")) RTC_WARN(("%s", line->c_str()));
     return RTC::RTC_OK;
   }
   return ask(shm::PauseRequest{});

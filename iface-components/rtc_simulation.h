@@ -17,6 +17,7 @@
 
 #include "errand.h"
 #include "iface_link.h"
+#include "line_limit.h"
 
 // Calls from any thread, each with a line of its own to the simulator.
 class SimulationServiceImpl : public virtual POA_rtmsim::SimulationService, public virtual PortableServer::RefCountServantBase {
@@ -58,6 +59,7 @@ class RTCSimulation : public RTC::DataFlowComponentBase {
   int server_id_ = 0;
   iface::IfaceLink link_;
   iface::Errand errand_;
+  iface::LineLimit limit_;  // of lines about a simulator that is not there
   RTC::TimedDouble time_;
   RTC::OutPort<RTC::TimedDouble> time_out_;
   RTC::CorbaPort simulation_port_;
