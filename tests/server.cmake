@@ -1,6 +1,6 @@
 # sim-server and simctl as processes; each case has a server of its own.
 foreach(script_and_cases
-    "server requests output_that_takes_no_more motion suggestions same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names fleet waits rate paused_is_idle"
+    "server requests output_that_takes_no_more motion tags suggestions same_state looked_at_while_paused looked_at_each_device shows_every_type exports check names fleet waits rate paused_is_idle"
     "server_faults faults bad_requests no_room scribbled_over killed living_server_is_refused ends ends_while_it_loads cut_short shared"
     "maps box_is_400_cells map_server_reads_it thin_and_turned map_is_a_floor_plan bad_input"
     "server_time drives_for_simulated_seconds a_stopped_client_drives_no_further pushes_for_simulated_seconds the_schedule_stays echoes_every_sample"

@@ -136,6 +136,25 @@ def motion():
     stop(process)
 
 
+# A reader writes a tag that it has in its reach.
+def tags():
+    process = started("-u", world=f"{source}/worlds/devices.sdf")
+    data = lambda: [(tag["id"], tag["data"]) for tag in read("echo", "rover::rfid", "-n", "1")["tags"]]
+    assert data() == [("E200-0017", "shelf 3")]
+    ok("tag", "rover::rfid", "E200-0017", "shelf 42")
+    ok("step", "200")
+    assert data() == [("E200-0017", "shelf 42")]
+    refused("tag", "rover::rfid", "E200-9", "x", says='has no tag "E200-9" in reach; it has E200-0017')
+    refused("tag", "rover::rfid", "E200-0017", "two\nlines", says="must have no line breaks")
+    refused("tag", "rover::rfid", "E200-0017", "x" * 128, says="must have at most 127 bytes, got 128")
+    refused("tag", "rover::ins", "E200-0017", "x", says="is no reader of RFID tags")
+    refused("tag", "rover::rfd", "E200-0017", "x", says="; did you mean rover::rfid?")
+    refused("tag", "rover::rfid", "E200-0017", code=2)
+    ok("reset")
+    assert data() == [("E200-0017", "shelf 3")]
+    stop(process)
+
+
 # A name with a slip has the one that was meant in its message.
 def suggestions():
     process = started("-u")
@@ -443,4 +462,4 @@ def paused_is_idle():
     stop(process)
 
 
-run(requests, output_that_takes_no_more, motion, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, fleet, waits, rate, paused_is_idle)
+run(requests, output_that_takes_no_more, motion, tags, suggestions, same_state, looked_at_while_paused, looked_at_each_device, shows_every_type, exports, check, names, fleet, waits, rate, paused_is_idle)

@@ -194,6 +194,14 @@ void add_control(base::Command& app, Work& work) {
   motors->add_option("HOW", *how, "on or off")->required()->check(base::one_of({"on", "off"}));
   motors->callback([&work, driven, how] { work = [=](Control& c) { c.ask(shm::SetMotorsRequest{*driven, *how == "on"}); }; });
 
+  auto* tag =
+      app.add_subcommand("tag", "Write the data of an RFID tag that a reader has in its reach, until a reset; echo IFACE shows them");
+  auto written = option_value<shm::WriteTagRequest>();
+  tag->add_option("IFACE", written->iface, "rfid iface: the reader")->required();
+  tag->add_option("TAG", written->id, "ID of the tag")->required();
+  tag->add_option("DATA", written->data, "New data: at most 127 bytes, without line breaks")->required();
+  tag->callback([&work, written] { work = [written](Control& c) { c.ask(*written); }; });
+
   auto* attach = app.add_subcommand("attach", "Attach what a gripper or a detachable joint holds; without NAME show all: attach [NAME]");
   auto held = option_value<std::string>();
   attach->add_option("NAME", *held, "MODEL::GRIPPER, or MODEL::CHILD_MODEL of a detachable joint");
@@ -419,8 +427,8 @@ int main(int argc, char** argv) {
   add_pictures(app, work);
   app.group_subcommands("Look", {"list", "info", "dump", "echo", "stats", "participants", "tree", "models", "contacts", "wait"})
       ->group_subcommands("Time", {"pause", "run", "step", "rtf", "reset", "drop"})
-      ->group_subcommands("Robots and models",
-                          {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "attach", "detach", "spawn", "delete"})
+      ->group_subcommands("Robots and models", {"pose", "velocity", "joints", "wrench", "odometry", "motors", "fault", "tag", "attach",
+                                                "detach", "spawn", "delete"})
       ->group_subcommands("Record", {"screenshot", "record", "export", "map"})
       ->group_subcommands("Clean up", {"clean"});
   const base::TerminalGuard output(std::cout, STDOUT_FILENO), errors(std::cerr, STDERR_FILENO);  // a world names what it likes

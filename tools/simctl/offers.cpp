@@ -30,6 +30,7 @@ bool fits(IfaceType type, const std::string& value, const std::string& command) 
   if (value == "CAMERA" || value == "--camera") return type == IfaceType::camera;
   if (command == "velocity") return is_drive || type == IfaceType::truth;
   if (command == "odometry" || command == "motors") return is_drive;
+  if (command == "tag") return type == IfaceType::rfid;
   if (command == "fault") return type != IfaceType::truth && type != IfaceType::simulation && shm::row_of(type).sample_size > 0;
   return true;
 }
@@ -55,7 +56,7 @@ std::optional<std::vector<base::Offer>> offers(const std::string& value, const s
   if (value == "JOINT") return joint_offers(before);
   static constexpr std::array asked{"IFACE", "MODEL", "CAMERA", "--server-id", "--follow", "--camera"};
   if (std::ranges::find(asked, value) == asked.end()) return std::nullopt;
-  static constexpr std::array sharp{"odometry", "motors", "velocity", "fault", "joints"};
+  static constexpr std::array sharp{"odometry", "motors", "velocity", "fault", "joints", "tag"};
   const auto command = std::ranges::find_first_of(before, sharp);
   std::vector<base::Offer> found;
   std::set<std::string> seen;
