@@ -14,7 +14,7 @@ namespace {
 
 constexpr double margin = 0.3;  // of neighbourhoods [m]
 constexpr std::size_t most_shards = 16;
-constexpr double same_event = 1;  // [s] between two times that a model leaves the numbers
+constexpr double same_event = 60;  // [s] that a model keeps to the numbers until it is told of again that it left them
 
 }  // namespace
 
@@ -178,7 +178,7 @@ void Physics::Impl::move_to(ModelInstance& model, int shard) {
 void Physics::Impl::put_back_insane(Shard& shard) {
   for (auto* model : std::vector<ModelInstance*>(shard.models)) {
     if (model->is_sane()) continue;
-    // What leaves them again at once is one event, not one in each step.
+    // What leaves them again and again is one event, not one each time.
     const bool is_told = model->put_back_at && static_cast<double>(steps_ - *model->put_back_at) * world_->physics.step < same_event;
     model->put_back_at = steps_;
     if (!is_told) {

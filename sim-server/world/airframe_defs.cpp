@@ -33,6 +33,15 @@ double coefficient_of(const ParameterNode& parameters, const std::string& elemen
   return 0;
 }
 
+// One that a plugin needs.
+double positive_of(const ParameterNode& parameters, const std::string& element, std::string& problem) {
+  const auto text = parameters.text_of({element});
+  const double number = coefficient_of(parameters, element, problem);
+  if (number > 0 || !problem.empty()) return number;
+  problem = text ? "<" + element + "> must be a positive number, got " + base::in_quotes(*text) : "expected a <" + element + ">";
+  return 0;
+}
+
 base::Result<void> add_surfaces(const ModelDef& model, const PluginDef& plugin, AirframeDef& def) {
   for (const ParameterNode& node : plugin.parameters.children) {
     if (node.name != "control_surface") continue;
@@ -66,16 +75,13 @@ base::Result<AirframeDef> airframe_of(const ModelDef& model, const PluginDef& pl
       if (is_coefficient(row, column)) def.coefficients(row, column) = coefficient_of(p, name, problem);
     }
   }
+  def.aspect_ratio = positive_of(p, "AR", problem);
+  def.efficiency = positive_of(p, "eff", problem);
   if (!problem.empty()) return airframe_error(plugin, problem);
   def.stall = p.number_of({"alpha_stall"}).value_or(def.stall);
   def.pitch_stalled = p.number_of({"Cema_stall"}).value_or(0);
   def.area = p.number_of({"area"}).value_or(1);
   def.density = p.number_of({"air_density"}).value_or(def.density);
-  def.aspect_ratio = p.number_of({"AR"}).value_or(0);
-  def.efficiency = p.number_of({"eff"}).value_or(0);
-  if (!(def.aspect_ratio > 0) || !(def.efficiency > 0))
-    return airframe_error(plugin, "<AR> and <eff> must be positive, got " + base::format_number(def.aspect_ratio) + " and " +
-                                      base::format_number(def.efficiency));
   def.span = std::sqrt(def.area * def.aspect_ratio);
   def.chord = p.number_of({"mac"}).value_or(0);
   if (def.chord == 0) def.chord = def.area / def.span;
@@ -114,11 +120,10 @@ base::Result<FloatingHullDef> floating_hull_of(const ModelDef&, const PluginDef&
   const ParameterNode& p = plugin.parameters;
   FloatingHullDef def;
   def.link = link;
-  def.radius = p.number_of({"hull_radius"}).value_or(0), def.length = p.number_of({"hull_length"}).value_or(0);
+  std::string problem;
+  def.radius = positive_of(p, "hull_radius", problem), def.length = positive_of(p, "hull_length", problem);
+  if (!problem.empty()) return airframe_error(plugin, problem);
   def.level = p.number_of({"fluid_level"}).value_or(0), def.density = p.number_of({"fluid_density"}).value_or(def.density);
-  if (!(def.radius > 0) || !(def.length > 0))
-    return airframe_error(plugin, "<hull_radius> and <hull_length> must be positive, got " + base::format_number(def.radius) + " and " +
-                                      base::format_number(def.length));
   const ParameterNode* points = p.child("points");
   for (const ParameterNode& point : points != nullptr ? points->children : std::vector<ParameterNode>{}) {
     ParameterNode one;

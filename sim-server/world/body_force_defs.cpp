@@ -1,5 +1,6 @@
 #include "world/body_force_defs.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,26 +49,43 @@ bool take_coefficient(HydrodynamicsDef& def, std::string_view name, double value
   return true;
 }
 
+// VRX's plugin: its numbers are positive, and its added mass has no Coriolis forces.
+bool is_simple(const PluginDef& plugin) {
+  std::string name = base::to_lower(plugin.filename + " " + plugin.name);
+  std::erase(name, '_');
+  return name.find("simplehydrodynamics") != std::string::npos;
+}
+
+// What VRX's plugin does where its file has no number, in Fossen's signs.
+void take_defaults_of_simple(HydrodynamicsDef& def) {
+  def.linear.diagonal().setConstant(-20);
+  def.added.diagonal() << -5, -5, -0.1, -0.1, -0.1, -1;
+  def.has_coriolis = false;
+}
+
 std::optional<HydrodynamicsDef> hydrodynamics_of_plugin(const ModelDef& model, const PluginDef& plugin,
                                                         std::vector<std::string>& left_out) {
   const auto link = link_of_plugin(model, plugin, left_out);
   if (!link) return std::nullopt;
   HydrodynamicsDef def;
   def.link = *link;
+  if (is_simple(plugin)) take_defaults_of_simple(def);
   for (const ParameterNode& child : plugin.parameters.children) {
     const auto value = base::parse_number(child.text);
-    if (!take_coefficient(def, child.name, value.value_or(0)) || (value && std::abs(*value) <= largest)) continue;
+    if (!take_coefficient(def, child.name, is_simple(plugin) ? -value.value_or(0) : value.value_or(0)) ||
+        (value && std::abs(*value) <= largest))
+      continue;
     left_out.push_back(about(plugin) + "<" + child.name + "> must be a number within 1e9, got " + base::in_quotes(child.text) +
                        "; the plugin is left out");
     return std::nullopt;
   }
   def.current = vector_of(plugin.parameters, "default_current", def.current);
-  def.has_coriolis = !plugin.parameters.bool_of({"disable_coriolis"}).value_or(false);
+  def.has_coriolis = def.has_coriolis && !plugin.parameters.bool_of({"disable_coriolis"}).value_or(false);
   if (plugin.parameters.bool_of({"disable_added_mass"}).value_or(false)) def.added.setZero();
   return def;
 }
 
-// True: there were positive ones on the diagonals.
+// True: there were some on the diagonals that drive.
 bool turn_signs(HydrodynamicsDef& def) {
   bool has_turned = false;
   const auto turn = [&](double& number) {
@@ -79,6 +97,13 @@ bool turn_signs(HydrodynamicsDef& def) {
     if (product.to == product.by && product.by == product.with) turn(product.value);
   }
   return has_turned;
+}
+
+// No motion of the link has a negative energy.
+bool is_possible(const Matrix6& added) {
+  const Matrix6 mass = -0.5 * (added + added.transpose());
+  const Vector6 energies = Eigen::SelfAdjointEigenSolver<Matrix6>(mass, Eigen::EigenvaluesOnly).eigenvalues();
+  return energies.minCoeff() >= -1e-9 * energies.cwiseAbs().maxCoeff();
 }
 
 std::optional<WingDef> wing_of_plugin(const ModelDef& model, const PluginDef& plugin, std::vector<std::string>& left_out) {
@@ -210,12 +235,17 @@ WindDef wind_of(const WorldDef& world, std::vector<std::string>& left_out) {
 }
 
 std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vector<std::string>& left_out, std::vector<std::string>& notes) {
-  auto all = all_of<HydrodynamicsDef>(model, PluginKind::hydrodynamics, left_out, hydrodynamics_of_plugin);
-  for (HydrodynamicsDef& def : all) {
-    if (turn_signs(def)) {
-      notes.push_back("model " + base::in_quotes(model.name) + ": Hydrodynamics of link " + base::in_quotes(model.links[def.link].name) +
-                      ": positive damping or added mass would drive the link; the numbers are taken as negative");
+  std::vector<HydrodynamicsDef> all;
+  for (const PluginDef& plugin : model.plugins) {
+    if (kind_of(plugin) != PluginKind::hydrodynamics) continue;
+    auto def = hydrodynamics_of_plugin(model, plugin, left_out);
+    if (!def) continue;
+    if (turn_signs(*def)) {
+      const char *found = is_simple(plugin) ? "negative" : "positive", *taken = is_simple(plugin) ? "positive" : "negative";
+      notes.push_back("model " + base::in_quotes(model.name) + ": Hydrodynamics of link " + base::in_quotes(model.links[def->link].name) +
+                      ": " + found + " damping or added mass would drive the link; the numbers are taken as " + taken);
     }
+    all.push_back(std::move(*def));
   }
   for (std::uint32_t link = 0; link < model.links.size(); ++link) {
     const LinkDef& def = model.links[link];
@@ -231,6 +261,12 @@ std::vector<HydrodynamicsDef> hydrodynamics_of(const ModelDef& model, std::vecto
     const Eigen::Vector3d& c = def.center_of_mass;
     to_center.topRightCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
     of_link->added -= to_center.transpose() * *def.added_mass * to_center;
+  }
+  for (HydrodynamicsDef& def : all) {
+    if (is_possible(def.added)) continue;
+    left_out.push_back("model " + base::in_quotes(model.name) + ": added mass of link " + base::in_quotes(model.links[def.link].name) +
+                       ": it must be positive in every direction, and its cross terms are too large for that; the added mass is left out");
+    def.added.setZero();
   }
   for (const PluginDef& plugin : model.plugins) {
     if (kind_of(plugin) != PluginKind::lighter_than_air) continue;

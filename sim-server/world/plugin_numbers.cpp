@@ -29,7 +29,7 @@ enum class Must {
   vector_not_negative,
   push,
   ratio,
-  own  // refused by the plugin's own reader alone, since it has no default
+  own  // refused by the plugin's own reader alone: it has no default, or what is default depends on others
 };
 
 struct NumberRow {
@@ -173,8 +173,8 @@ constexpr std::array airship_rows{
     NumberRow{"axial_drag_coeff", own},
 };
 constexpr std::array hull_rows{
-    NumberRow{"hull_radius", positive},
-    NumberRow{"hull_length", positive},
+    NumberRow{"hull_radius", own},
+    NumberRow{"hull_length", own},
     NumberRow{"fluid_level", number},
     NumberRow{"fluid_density", positive},
 };

@@ -8,6 +8,7 @@
 
 #include "physics/aerodynamics.h"
 #include "support/physics_fixture.h"
+#include "world/world_loader.h"
 
 namespace sim {
 namespace {
@@ -112,7 +113,9 @@ TEST(Airframe, glides_as_its_lift_and_drag_say) {
 
 TEST(Airframe, that_is_wrong_is_left_out_with_one_line) {
   for (const auto& [numbers, expected] :
-       {std::pair{"<CLa>5</CLa>", "<AR> and <eff> must be positive, got 0 and 0; the plugin is left out"},
+       {std::pair{"<CLa>5</CLa>", "expected a <AR>; the plugin is left out"},
+        {"<AR>-6</AR><eff>1</eff>", "<AR> must be a positive number, got \"-6\"; the plugin is left out"},
+        {"<AR>6</AR><eff>much</eff>", "<eff> must be a number within 1e9, got \"much\"; the plugin is left out"},
         {"<AR>6</AR><eff>1</eff><CLa>steep</CLa>", "<CLa> must be a number within 1e9, got \"steep\"; the plugin is left out"},
         {"<AR>6</AR><eff>1</eff><upward>1 0 0</upward>", "<forward> and <upward> must be two directions; the plugin is left out"},
         {"<AR>6</AR><eff>1</eff><control_surface><name>x</name></control_surface>", "model \"plane\" has no joint \"x\"; the plugin"},
@@ -188,10 +191,50 @@ TEST(FloatingHull, carries_a_boat_at_the_depth_of_its_weight) {
       "<gravity>0 0 -9.81</gravity><model name='boat'><link name='base'><inertial><mass>" + std::to_string(mass) +
       "</mass><inertia><ixx>120</ixx><iyy>390</iyy><izz>440</izz></inertia></inertial></link>" + at_side(surface, "1") +
       at_side(surface, "-1") +
-      "<plugin filename='libSimpleHydrodynamics.so' name='vrx::SimpleHydrodynamics'><link_name>base</link_name><zW>-900</zW><kP>-900</kP>"
-      "<mQ>-900</mQ></plugin></model>"));
+      "<plugin filename='libSimpleHydrodynamics.so' name='vrx::SimpleHydrodynamics'><link_name>base</link_name><zW>900</zW><kP>900</kP>"
+      "<mQ>900</mQ></plugin></model>"));
+  EXPECT_TRUE(f.notes.empty()) << "VRX's numbers are positive";
   f.run(30);
   EXPECT_NEAR(f.position("boat").z(), -0.1, 0.002);
+}
+
+// Its file needs no number, and its added mass turns no boat that drifts: VRX has no Coriolis forces.
+TEST(SimpleHydrodynamics, has_the_numbers_of_vrx_where_the_file_has_none) {
+  const auto boat = [](const std::string& numbers) {
+    return world_of_text(
+        "<gravity>0 0 0</gravity><model name='boat'><link name='base'><inertial><mass>95</mass></inertial></link>"
+        "<plugin filename='libSimpleHydrodynamics.so' name='vrx::SimpleHydrodynamics'><link_name>base</link_name>" +
+        numbers + "</plugin></model>");
+  };
+  PhysicsFixture f(boat("<xU>0</xU>"));
+  ASSERT_TRUE(f.physics.set_model_twist(0, {{1, 0.5, 0}, {0, 0, 0}}));
+  f.run(5);
+  const Twist after = f.physics.link_twist(f.link("boat"));
+  EXPECT_NEAR(after.linear.x(), 1, 1e-3);
+  EXPECT_NEAR(after.linear.y(), 0.5 * std::exp(-20 * 5 / (95 + 5.0)), 2e-3);
+  EXPECT_NEAR(after.angular.norm(), 0, 1e-9);
+  EXPECT_TRUE(f.notes.empty());
+  PhysicsFixture driven(boat("<xU>-10</xU>"));
+  EXPECT_THAT(driven.notes, testing::ElementsAre(testing::HasSubstr("negative damping or added mass would drive the link")));
+}
+
+TEST(FloatingHull, that_is_wrong_is_left_out_with_one_line) {
+  for (const auto& [numbers, expected] :
+       {std::pair{"<hull_length>4</hull_length>", "expected a <hull_radius>; the plugin is left out"},
+        {"<hull_length>4</hull_length><hull_radius>-1</hull_radius>", "<hull_radius> must be a positive number, got \"-1\""},
+        {"<hull_length>4</hull_length><hull_radius>wide</hull_radius>", "<hull_radius> must be a number within 1e9, got \"wide\""},
+        {"<hull_length>4</hull_length><hull_radius>0.2</hull_radius>", "expected <points> with a <point>"}}) {
+    auto loaded = load_world_text(std::string("<sdf version='1.9'><world name='w'><model name='m'><link name='base'/><plugin "
+                                              "filename='libSurface.so' name='vrx::Surface'><link_name>base</link_name>") +
+                                      numbers + "</plugin></model></world></sdf>",
+                                  {}, "w.sdf", ModelPath{});
+    ASSERT_TRUE(loaded);
+    std::vector<std::string> lines, notes;
+    for (const Finding& finding : loaded->findings) lines.push_back(finding.message);
+    EXPECT_TRUE(floating_hulls_of(loaded->world.models[0], lines, notes).empty());
+    ASSERT_EQ(lines.size(), 1U) << numbers;
+    EXPECT_THAT(lines[0], testing::HasSubstr(expected));
+  }
 }
 
 TEST(Airship, without_one_of_its_coefficients_is_left_out_with_one_line) {

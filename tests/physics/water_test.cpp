@@ -65,6 +65,15 @@ TEST(Boat, rights_itself_when_its_metacentre_is_above_its_weight) {
   EXPECT_LT(std::abs(narrow.physics.model_pose(0).linear()(2, 2)), 0.5);
 }
 
+// Its middle is 0.3 m above the keel; BM = B^2 / (12 d) = 0.333 m, so that GM = 0.125 + 0.333 - 0.3 = 0.158 m.
+TEST(Boat, is_righted_by_its_weight_at_the_arm_of_its_metacentre) {
+  constexpr double roll = 0.01, metacentre = 0.25 / 2 + 1.0 / (12 * 0.25) - 0.3;
+  PhysicsFixture f(world_of_text(pond + body("boat", 0.05, 500, {2, 1, 0.6}, "", roll)));
+  f.run(0.01);
+  const double inertia = 500.0 / 12 * (1 + 0.36);
+  EXPECT_NEAR(f.physics.link_twist(f.link("boat")).angular.x() / 0.01, -500 * 9.81 * metacentre * roll / inertia, 0.002);
+}
+
 TEST(Boat, that_nobody_damps_keeps_its_energy) {
   PhysicsFixture f(world_of_text(pond + body("boat", 0.15, 500, {2, 1, 0.6})));
   double highest = 0;
@@ -153,6 +162,43 @@ TEST(Hydrodynamics, coriolis_forces_of_added_mass_do_no_work) {
   EXPECT_NEAR(energy() / start, 1, 0.005);
 }
 
+// A slender hull with a fin behind, as auv_controls.sdf of gz-sim has it: the water that it takes along across its way turns it off its
+// course (Munk's moment) faster than the fin turns it back. How fast a drift grows is the larger root of the linear equations of sway and
+// yaw.
+TEST(Hydrodynamics, the_moment_of_added_mass_turns_a_slender_hull_off_its_course_as_the_linear_equations_say) {
+  constexpr double m = 148, inertia = 42, speed = 2, fin = 0.5 * 1000 * speed * 0.0244 * 4.13, arm = 1.05;
+  constexpr double x_added = 4.876, y_added = 126.32, r_added = 33.46;
+  const auto growth_of = [&](const std::string& more) {
+    PhysicsFixture f(world_of_text(
+        weightless +
+        "<model name='auv'><link name='hull'><inertial><mass>148</mass><inertia><ixx>3</ixx><iyy>42</iyy><izz>42</izz></inertia>"
+        "</inertial></link><plugin filename='gz-sim-lift-drag-system' name='fin'><link_name>hull</link_name><air_density>1000"
+        "</air_density><cla>4.13</cla><cda>0</cda><alpha_stall>0.17</alpha_stall><area>0.0244</area><upward>0 1 0</upward>"
+        "<cp>-1.05 0 0</cp></plugin>" +
+        hydrodynamics("<xDotU>-4.876</xDotU><yDotV>-126.32</yDotV><zDotW>-126.32</zDotW><mDotQ>-33.46</mDotQ><nDotR>-33.46</nDotR>" +
+                      more) +
+        "</model>"));
+    EXPECT_TRUE(f.physics.set_model_twist(0, {{speed, 1e-5, 0}, {0, 0, 0}}));
+    const auto drift = [&] {
+      const Eigen::Vector3d v = f.physics.model_pose(0).linear().transpose() * f.physics.link_twist(f.link("auv")).linear;
+      return std::abs(v.y());
+    };
+    f.run(8);
+    const double before = drift();
+    f.run(8);
+    return std::log(drift() / before) / 8;
+  };
+  Eigen::Matrix2d mass, moved;
+  mass << m + y_added, 0, 0, inertia + r_added;
+  moved << -fin, fin * arm - (m + x_added) * speed, fin * arm - (y_added - x_added) * speed, -fin * arm * arm;
+  const Eigen::Matrix2d a = mass.inverse() * moved;
+  const double expected = a.trace() / 2 + std::sqrt(a.trace() * a.trace() / 4 - a.determinant());
+  EXPECT_NEAR(expected, 0.355, 0.01);
+  EXPECT_NEAR(growth_of(""), expected, 0.01 * expected);
+  // Without that moment the fin keeps the hull on its course.
+  EXPECT_LT(growth_of("<disable_coriolis>true</disable_coriolis>"), -0.1);
+}
+
 TEST(Hydrodynamics, damping_that_is_too_strong_for_the_step_stops_the_body) {
   PhysicsFixture f(world_of_text(weightless + body("sub", 0, 1, {1, 1, 1}, hydrodynamics("<xU>-1e6</xU><nR>-1e6</nR>"))));
   ASSERT_TRUE(f.physics.set_model_twist(0, {{1, 0, 0}, {0, 0, 1}}));
@@ -181,6 +227,17 @@ TEST(Hydrodynamics, positive_numbers_of_older_files_slow_down_too) {
     f.physics.step();
   }
   EXPECT_NEAR(f.physics.link_twist(f.link("sub")).linear.x(), 1, 1e-6);
+}
+
+TEST(Hydrodynamics, added_mass_that_is_negative_in_some_direction_is_left_out_with_a_line) {
+  PhysicsFixture f(
+      world_of_text(weightless + body("sub", 0, 50, {1, 1, 1},
+                                      hydrodynamics("<xDotU>-10</xDotU><yDotV>-10</yDotV><xDotV>-30</xDotV><yDotU>-30</yDotU>"))));
+  ASSERT_EQ(f.dropped.size(), 1U);
+  EXPECT_THAT(f.dropped[0], testing::HasSubstr("added mass of link \"hull\": it must be positive in every direction"));
+  ASSERT_TRUE(f.physics.set_model_twist(0, {{1, -1, 0}, {0, 0, 0}}));
+  f.run(1);
+  EXPECT_NEAR(f.physics.link_twist(f.link("sub")).linear.norm(), std::sqrt(2), 1e-9);
 }
 
 TEST(Hydrodynamics, is_the_same_after_a_reset) {
