@@ -323,6 +323,10 @@ class World:
         close = get_close_matches(name, self.ifaces(), 1)
         raise NotFound(f"no iface {name!r}" + (f"; did you mean {close[0]!r}?" if close else ""))
 
+    def write_tag(self, reader: str, id: str, data: str) -> None:
+        """Writes data into an RFID tag that this rfid iface has in its reach: at most 127 bytes, for all readers, until a reset."""
+        self._line().write_tag(reader, id, data, self.timeout)
+
     # ---- faults
 
     def fault(self, iface: str, kind: str, amount: float | None = None, duration: float = 0.0) -> None:

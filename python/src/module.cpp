@@ -137,6 +137,10 @@ void add_requests(py::class_<Simulator>& type) {
            [](Simulator& s, const std::string& iface, Given x, Given y, Given a, Given timeout) {
              s.ask(shm::ResetOdometryRequest{iface, number("x", x), number("y", y), number("a", a), false, {}}, timeout_of(timeout));
            })
+      .def("write_tag",
+           [](Simulator& s, Given iface, Given id, Given data, Given timeout) {
+             s.ask(shm::WriteTagRequest{text("iface", iface), text("id", id), text("data", data)}, timeout_of(timeout));
+           })
       .def("set_motors",
            [](Simulator& s, const std::string& iface, Given on, Given timeout) {
              s.ask(shm::SetMotorsRequest{iface, flag("on", on)}, timeout_of(timeout));

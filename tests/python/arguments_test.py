@@ -57,6 +57,9 @@ def calls(world):
     yield "World.fault kind", lambda given: world.fault("pioneer2dx::laser", given), [*no_text, "odd"]
     yield "World.fault amount", lambda given: world.fault("pioneer2dx::laser", "bias", given), [one for one in no_finite if one is not None]
     yield "World.fault duration", lambda given: world.fault("pioneer2dx::laser", "off", duration=given), [*no_number, math.nan, -1]
+    yield "World.write_tag reader", lambda given: world.write_tag(given, "tag", "data"), no_text
+    yield "World.write_tag id", lambda given: world.write_tag("pioneer2dx::laser", given, "data"), no_text
+    yield "World.write_tag data", lambda given: world.write_tag("pioneer2dx::laser", "tag", given), no_text
     yield "World.end_faults kind", lambda given: world.end_faults("", given), no_text
     yield "World.screenshot width", lambda given: world.screenshot(given, 10), [*no_whole, 0, 100000]
     yield "World.screenshot height", lambda given: world.screenshot(10, given), [*no_whole, 0, 100000]

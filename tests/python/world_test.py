@@ -225,6 +225,24 @@ def test_faults_are_injected_listed_and_ended(course_world):
         course_world.fault("pioneer2dx::lasr", "off")
 
 
+def test_a_reader_writes_a_tag_in_its_reach(worlds):
+    with rtmsim.World(worlds / "devices.sdf") as world:
+        def tags():
+            world.step(100)
+            found = world.read("rover::rfid")["tags"]
+            return list(zip(found["id"], found["data"]))
+
+        assert tags() == [("E200-0017", "shelf 3")]
+        world.write_tag("rover::rfid", "E200-0017", "shelf 42")
+        assert tags() == [("E200-0017", "shelf 42")]
+        with pytest.raises(rtmsim.Error, match="has no tag \"E200-9\" in reach; it has E200-0017"):
+            world.write_tag("rover::rfid", "E200-9", "x")
+        with pytest.raises(rtmsim.NotFound, match="rover::rfd"):
+            world.write_tag("rover::rfd", "E200-0017", "x")
+        world.reset()
+        assert tags() == [("E200-0017", "shelf 3")]
+
+
 def test_joints_follow_commands_by_name_and_by_number(worlds):
     with rtmsim.World(worlds / "arm.sdf") as world:
         names = [name for name, type in world.ifaces().items() if type == "joints"]
