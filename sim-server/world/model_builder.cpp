@@ -363,7 +363,7 @@ class ModelBuilder {
       sensor.plugins.push_back(build_plugin(plugin, scope, context_));
       auto* cameras = std::get_if<CameraSetDef>(&sensor.data);
       if (cameras == nullptr || kind_of(sensor.plugins.back()) != PluginKind::thermal_sensor) continue;
-      for (CameraDef& camera : cameras->cameras) read_thermal_sensor(sensor.plugins.back(), camera.thermal);
+      for (CameraDef& camera : cameras->cameras) read_thermal_sensor(plugin, sensor.plugins.back(), camera.thermal, context_.complaints);
     }
     auto* contact = std::get_if<ContactDef>(&sensor.data);
     if (!contact || !link) return;

@@ -207,6 +207,8 @@ constexpr std::array slip_rows{
     NumberRow{"wheel_radius", positive},
 };
 
+constexpr std::array thermal_rows{NumberRow{"resolution", positive}, NumberRow{"min_temp", amount}, NumberRow{"max_temp", positive}};
+
 // Elements of trajectory controllers come once for each joint.
 constexpr std::array joint_rows{
     NumberRow{"p_gain", gain},
@@ -266,6 +268,8 @@ std::array<std::span<const NumberRow>, 2> rows_of(PluginKind kind) {
       return {wind_rows};
     case PluginKind::wheel_slip:
       return {slip_rows};
+    case PluginKind::thermal_sensor:
+      return {thermal_rows};
     case PluginKind::joint_controller:
       return {joint_rows};
     default:

@@ -26,29 +26,40 @@ void read_label(pugi::xml_node plugin, VisualDef& visual, Complaints& complaints
 
 void read_heat(pugi::xml_node plugin, VisualDef& visual, Complaints& complaints) {
   HeatDef heat;
+  bool is_good = true;
+  const auto take = [&](double& number, const char* element) {
+    if (!plugin.child(element)) return;
+    const auto read = base::parse_number(text_at(plugin, element));
+    is_good = is_good && read;
+    number = read.value_or(number);
+  };
   if (plugin.child("temperature")) {
-    heat.lowest = heat.highest = number_at(plugin, "temperature", heat.lowest);
+    take(heat.lowest, "temperature");
+    heat.highest = heat.lowest;
   } else {
     heat.signature = text_at(plugin, "heat_signature");
-    heat.lowest = number_at(plugin, "min_temp", heat.lowest);
-    heat.highest = number_at(plugin, "max_temp", heat.highest);
+    take(heat.lowest, "min_temp"), take(heat.highest, "max_temp");
     if (!heat.signature.starts_with('/')) heat.signature.clear();  // which has been reported
   }
-  const bool is_good = heat.lowest >= coldest && heat.highest >= heat.lowest && heat.highest <= hottest;
-  if (is_good) {
+  if (is_good && heat.lowest >= coldest && heat.highest >= heat.lowest && heat.highest <= hottest) {
     visual.heat = heat;
     return;
   }
+  const std::string low = text_at(plugin, "min_temp", base::format_number(heat.lowest)),
+                    high = text_at(plugin, "max_temp", base::format_number(heat.highest));
   complaints.warn(plugin, "temperature of " + describe_in_context(plugin.parent()) + " must be from 0 to 100000 K, got " +
-                              base::format_number(heat.lowest) + " to " + base::format_number(heat.highest) + "; it is as warm as the air");
+                              base::in_quotes(text_at(plugin, "temperature", low + " to " + high)) + "; it is as warm as the air");
 }
 
-// The plugins Label and Thermal of the visual itself.
+// The plugins of the visual itself: Label and Thermal.
 void read_visual_plugins(pugi::xml_node node, VisualDef& visual, Complaints& complaints) {
   for (const pugi::xml_node plugin : node.children("plugin")) {
     const PluginKind kind = kind_of_plugin(plugin.attribute("filename").value(), plugin.attribute("name").value());
     if (kind == PluginKind::label) read_label(plugin, visual, complaints);
     if (kind == PluginKind::thermal) read_heat(plugin, visual, complaints);
+    if (kind == PluginKind::unknown)
+      complaints.warn(plugin, "unknown plugin " + base::in_quotes(plugin.attribute("filename").value()) + " (" +
+                                  describe_in_context(plugin) + ") is ignored");
   }
 }
 
@@ -96,16 +107,22 @@ void inherit_labels(ModelDef& model) {
   }
 }
 
-void read_thermal_sensor(const PluginDef& plugin, ThermalDef& thermal) {
-  const auto positive = [&](const char* name, double usual) {
-    const double value = plugin.parameters.number_of({name}).value_or(usual);
-    return value > 0 && std::isfinite(value) ? value : usual;
-  };
-  thermal.resolution = positive("resolution", thermal.resolution);
-  if (!thermal.is_wide) thermal.resolution = std::max(thermal.resolution, 1.0);
+void read_thermal_sensor(pugi::xml_node node, const PluginDef& plugin, ThermalDef& thermal, Complaints& complaints) {
+  const ParameterNode& p = plugin.parameters;
+  thermal.resolution = p.number_of({"resolution"}).value_or(thermal.resolution);
+  const auto say = [&](const std::string& what) { complaints.warn(node, what + " (" + describe_in_context(node) + ")"); };
+  if (const double finest = thermal.is_wide ? 1e-6 : 1; thermal.resolution < finest) {
+    say("<resolution> must be " + base::format_number(finest) + " K or more with " + (thermal.is_wide ? "16" : "8") + " bits, got " +
+        base::format_number(thermal.resolution) + "; that is taken");
+    thermal.resolution = finest;
+  }
   const double most = thermal.resolution * (thermal.is_wide ? 65535 : 255);
-  thermal.lowest = std::clamp(plugin.parameters.number_of({"min_temp"}).value_or(0), 0.0, most);
-  thermal.highest = std::clamp(positive("max_temp", most), thermal.lowest, most);
+  const double low = p.number_of({"min_temp"}).value_or(0), high = p.number_of({"max_temp"}).value_or(most);
+  thermal.lowest = low, thermal.highest = std::min(high, most);
+  if (low < thermal.highest) return;
+  thermal.lowest = 0, thermal.highest = most;
+  say("<min_temp> must be less than <max_temp> and " + base::format_number(most) + " K, the highest that it can show, got " +
+      base::format_number(low) + " and " + base::format_number(high) + "; all that it can show is taken");
 }
 
 }  // namespace sim

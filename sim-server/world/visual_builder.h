@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <pugixml.hpp>
 #include <string>
 #include <vector>
 
+#include "world/complaints.h"
 #include "world/world_def.h"
 
 namespace sim {
@@ -16,7 +18,7 @@ std::uint8_t label_of(const std::vector<PluginDef>& plugins, const std::string& 
 // Visuals without a label of their own have that of the nearest model around them.
 void inherit_labels(ModelDef& model);
 
-// The range of a thermal camera, from its plugin ThermalSensor.
-void read_thermal_sensor(const PluginDef& plugin, ThermalDef& thermal);
+// The range of a thermal camera, from its plugin ThermalSensor; a range that cannot be is reported.
+void read_thermal_sensor(pugi::xml_node node, const PluginDef& plugin, ThermalDef& thermal, Complaints& complaints);
 
 }  // namespace sim

@@ -1,5 +1,6 @@
 // Cameras that show labels, boxes and temperatures, against boxes whose place in the image is easy to calculate. The camera stands in the
 // origin and looks along x with a view of 90 degrees: f = half its width.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -260,6 +261,43 @@ TEST(ThermalCamera, a_heat_signature_runs_from_the_lowest_temperature_to_the_hig
   std::filesystem::remove(file);
   EXPECT_NEAR(kelvin(image, 35, 40, unit), 280, 0.5);
   EXPECT_NEAR(kelvin(image, 65, 40, unit), 320, 0.5);
+}
+
+// What is said of a world with a camera of 8 or 16 bits and this plugin in it, and a cube with that heat.
+std::vector<std::string> lines_of(const std::string& format, const std::string& sensor, const std::string& heat) {
+  const auto loaded = load_world_text(
+      "<sdf version='1.9'><world name='w'>" +
+          camera("thermal_camera", "<format>" + format + "</format>",
+                 "<plugin filename='gz-sim-thermal-sensor-system' name='gz::sim::systems::ThermalSensor'>" + sensor + "</plugin>") +
+          cube("a", 2, 1.5, warm(heat), "") + "</world></sdf>",
+      {}, "w.sdf", ModelPath{});
+  std::vector<std::string> lines;
+  for (const Finding& finding : loaded->findings) lines.push_back(finding.message);
+  return lines;
+}
+
+TEST(ThermalCamera, numbers_that_cannot_be_have_one_line_each) {
+  const std::string usual = "<temperature>300</temperature>";
+  EXPECT_THAT(lines_of("L16", "<min_temp>253.15</min_temp><max_temp>500</max_temp><resolution>0.01</resolution>", usual),
+              testing::IsEmpty());
+  for (const auto& [sensor, expected] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"<resolution>0</resolution>", "<resolution> of"},
+           {"<resolution>fine</resolution>", "<resolution> of"},
+           {"<resolution>0.5</resolution>", "must be 1 K or more with 8 bits, got 0.5"},
+           {"<min_temp>-5</min_temp>", "<min_temp> of"},
+           {"<min_temp>inf</min_temp>", "<min_temp> of"},
+           {"<max_temp>nan</max_temp>", "<max_temp> of"},
+           {"<max_temp>0</max_temp>", "<max_temp> of"},
+           {"<min_temp>300</min_temp><max_temp>200</max_temp>", "got 300 and 200"},
+           {"<min_temp>800</min_temp>", "and 765 K, the highest that it can show"}})
+    EXPECT_THAT(lines_of("L8", sensor, usual), testing::ElementsAre(testing::HasSubstr(expected))) << sensor;
+  for (const auto& [heat, expected] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"<temperature>-1</temperature>", "got \"-1\""},
+           {"<temperature>warm</temperature>", "got \"warm\""},
+           {"<temperature>1e6</temperature>", "got \"1e6\""},
+           {"<min_temp>nan</min_temp><max_temp>300</max_temp>", "got \"nan to 300\""},
+           {"<min_temp>310</min_temp><max_temp>300</max_temp>", "got \"310 to 300\""}})
+    EXPECT_THAT(lines_of("L16", "", heat), testing::ElementsAre(testing::HasSubstr(expected))) << heat;
 }
 
 TEST(ThermalCamera, that_shares_its_name_with_a_camera_of_another_link_gets_a_number) {
