@@ -179,8 +179,8 @@ constexpr std::array hull_rows{
     NumberRow{"fluid_density", positive},
 };
 constexpr std::array bladder_rows{
-    NumberRow{"min_volume", amount},     NumberRow{"max_volume", amount},      NumberRow{"neutral_volume", amount},
-    NumberRow{"default_volume", amount}, NumberRow{"fluid_density", positive}, NumberRow{"max_inflation_rate", positive},
+    NumberRow{"min_volume", own},     NumberRow{"max_volume", own},         NumberRow{"neutral_volume", amount},
+    NumberRow{"default_volume", own}, NumberRow{"fluid_density", positive}, NumberRow{"max_inflation_rate", positive},
     NumberRow{"surface", number},
 };
 
@@ -382,7 +382,8 @@ bool takes_several_names(PluginKind kind) {
 
 bool takes_one_name(PluginKind kind) {
   using enum PluginKind;
-  constexpr std::array kinds{hydrodynamics, lift_drag, advanced_lift_drag, lighter_than_air, thruster, buoyancy_engine, rotor, joint_force};
+  constexpr std::array kinds{hydrodynamics,   lift_drag, advanced_lift_drag, lighter_than_air, floating_hull, thruster,
+                             buoyancy_engine, rotor,     joint_force};
   return std::ranges::find(kinds, kind) != kinds.end();
 }
 

@@ -108,6 +108,9 @@ TEST(BuoyancyEngine, that_is_wrong_is_left_out_with_one_line) {
   for (const auto& [text, expected] :
        {std::pair{diver("<min_volume>0.004</min_volume><max_volume>0.003</max_volume>"),
                   "<min_volume>, <default_volume> and <max_volume> must ascend, got 0.004, 0.004 and 0.003; the plugin is left out"},
+        {diver("<min_volume>0.001</min_volume><max_volume>full</max_volume>"), "<max_volume> must be a number of 0 or more, got \"full\""},
+        {diver("<max_volume>nan</max_volume>"), "<max_volume> must be a number of 0 or more, got \"nan\""},
+        {diver("<default_volume>-0.5</default_volume>"), "<default_volume> must be a number of 0 or more, got \"-0.5\""},
         {diver("<default_volume>0.5</default_volume>"), "must ascend, got 3e-05, 0.5 and 0.00099; the plugin is left out"}}) {
     SimulationFixture f(world_of_text(air + text));
     ASSERT_EQ(f.dropped.size(), 1U);

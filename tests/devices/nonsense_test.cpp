@@ -113,6 +113,10 @@ const std::vector<Plugin>& plugins() {
         {"CD0", number},
         {"Cema", number},
         {"Cellp", number},
+        {"Cenr", number},
+        {"CYb", number},
+        {"Cema_stall", number},
+        {"num_ctrl_surfaces", not_negative},
         {"area", positive},
         {"mac", not_negative},
         {"air_density", positive},
@@ -128,7 +132,18 @@ const std::vector<Plugin>& plugins() {
        {{"xU", number}, {"zWabsW", number}, {"xDotU", number}, {"nRabsR", number}, {"kP", number}}},
       {"BuoyancyEngine",
        with_plugin("buoyancy-engine", "<link_name>a</link_name>"),
-       {{"fluid_density", positive}, {"max_inflation_rate", positive}, {"surface", number}}},
+       {{"fluid_density", positive},
+        {"max_inflation_rate", positive},
+        {"surface", number},
+        {"min_volume", not_negative},
+        {"max_volume", not_negative},
+        {"default_volume", not_negative},
+        {"neutral_volume", not_negative}}},
+      {"Surface",
+       with_plugin(
+           "surface",
+           "<link_name>a</link_name><hull_length>4</hull_length><hull_radius>0.2</hull_radius><points><point>0 0 0</point></points>"),
+       {{"hull_length", positive}, {"hull_radius", positive}, {"fluid_level", number}, {"fluid_density", positive}}},
       {"JointController", with_plugin("joint-controller", "<joint_name>j</joint_name>"), {{"initial_velocity", number}}},
       {"JointPositionController",
        with_plugin("joint-position-controller", "<joint_name>j</joint_name>"),
@@ -246,6 +261,38 @@ TEST(Nonsense, a_name_that_is_not_there_or_comes_twice_has_one_line) {
   }
   (void)testing::internal::GetCapturedStderr();
   EXPECT_EQ(problems, "");
+}
+
+// What other simulators of water do that nothing here does: each plugin has one line with its name, whatever is in it.
+TEST(Undriven, plugins_of_uuv_simulator_and_vrx_have_one_line_that_names_them) {
+  const std::string hydrodynamics =
+      "<fluid_density>1028</fluid_density><link name='a'><neutrally_buoyant>0</neutrally_buoyant><volume>0.1</volume>"
+      "<hydrodynamic_model><type>fossen</type><added_mass>1 0 0 0 0 0</added_mass><linear_damping>-7 -7 -7 -1 -1 -1</linear_damping>"
+      "</hydrodynamic_model></link>";
+  const std::string thruster =
+      "<thruster><linkName>b</linkName><jointName>j</jointName><topicName>cmd</topicName><maxForceFwd>250</maxForceFwd></thruster>"
+      "<dynamics><type>FirstOrder</type></dynamics><conversion><type>Basic</type><rotorConstant>0.0003</rotorConstant></conversion>";
+  for (const char* file : {"libuuv_underwater_object_ros_plugin.so", "libuuv_thruster_ros_plugin.so", "libuuv_fin_ros_plugin.so",
+                           "libusv_gazebo_dynamics_plugin.so", "libusv_gazebo_thrust_plugin.so", "libbuoyancy_gazebo_plugin.so",
+                           "libwavefield_model_plugin.so", "libPolyhedraBuoyancyDrag.so"}) {
+    const auto lines = try_out("<model name='m'><link name='a'/><plugin name='p' filename='" + std::string(file) + "'>" + hydrodynamics +
+                               thruster + "</plugin></model>")
+                           .lines;
+    EXPECT_THAT(lines, testing::ElementsAre(testing::AllOf(testing::HasSubstr(file), testing::HasSubstr("is ignored")))) << file;
+  }
+  for (const char* file : {"libuuv_underwater_world_ros_plugin.so", "libusv_gazebo_wind_plugin.so", "libwavefield_world_plugin.so",
+                           "libUSVWind.so", "libWavefield.so"}) {
+    const auto lines = try_out("<model name='m'><link name='a'/></model><plugin name='p' filename='" + std::string(file) +
+                               "'><wave><amplitude>0.3</amplitude><period>5</period></wave><wind_obj><name>m</name></wind_obj></plugin>")
+                           .lines;
+    EXPECT_THAT(lines, testing::ElementsAre(testing::AllOf(testing::HasSubstr(file), testing::HasSubstr("is ignored")))) << file;
+  }
+  const auto of_visual = try_out(
+      "<model name='m'><link name='a'><visual name='v'><geometry><box><size>1 1 1</size></box></geometry>"
+      "<plugin filename='libWaveVisual.so' name='vrx::WaveVisual'><static>false</static><wavefield><size>6000 "
+      "6000</size></wavefield></plugin>"
+      "</visual></link></model>");
+  EXPECT_THAT(of_visual.lines, testing::ElementsAre(testing::HasSubstr("libWaveVisual.so")));
 }
 
 TEST(Nonsense, two_controllers_of_a_joint_and_one_of_a_wheel_that_a_drive_turns_have_one_line) {

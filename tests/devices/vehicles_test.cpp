@@ -67,6 +67,23 @@ TEST(Rotor, pushes_with_the_square_of_its_speed_and_turns_its_body_the_other_way
   EXPECT_GT(f.simulation->physics().link_twist({0, 0}).angular.z(), 0.1) << "those that turn clockwise turn it to the left";
 }
 
+// Its drag and its rolling moment go with its speed and the flow across its axis.
+TEST(Rotor, drags_and_rolls_its_body_in_the_flow_across_its_axis) {
+  SimulationFixture f(world_of_text(weightless + quadcopter("x3", "0 0 5 0 0 0", false)));
+  Joints joints(f, "x3");
+  for (std::size_t i = 0; i < 4; ++i) joints.command(i, RTMSIM_JOINT_VELOCITY, 500);
+  ASSERT_TRUE(f.simulation->physics().set_model_twist(0, {{1, 0, 0}, {0, 0, 0}}));
+  f.run(0.1);
+  const auto before = f.simulation->physics().link_twist({0, 0});
+  f.run(0.2);
+  const auto after = f.simulation->physics().link_twist({0, 0});
+  const double drag = 4 * 500 * 8.06428e-5 / 1.52;
+  // The body begins to tilt, and its thrust with it.
+  EXPECT_NEAR(std::log(before.linear.x() / after.linear.x()) / 0.2, drag, 0.08 * drag);
+  const double inertia = 0.0347563 + 0.005 * 2 * (0.22 * 0.22 + 0.2 * 0.2), rolling = -4 * 500 * 1e-6 / inertia;
+  EXPECT_NEAR((after.angular.x() - before.angular.x()) / 0.2, rolling, -0.05 * rolling);
+}
+
 // --- multicopters
 
 TEST(Multicopter, falls_until_a_client_commands_it_and_then_hovers_at_660_radians_a_second) {
@@ -381,6 +398,47 @@ TEST(Boat, with_two_thrusters_goes_and_turns_as_it_is_told) {
   f.run(30);
   EXPECT_LT(std::abs(sample(pilot).velocity[0]) + std::abs(sample(pilot).velocity[5]), 0.02);
   EXPECT_NEAR(height(f, "boat"), 0.05, 0.02);
+}
+
+TEST(Boat, that_is_weak_is_slower_and_a_halted_one_goes_on_as_it_was_told) {
+  SimulationFixture f(world_of_text(pond + boat()));
+  auto pilot = f.open(IfaceType::position3d, "boat::position3d");
+  const auto fault = [&](shm::FaultKind kind) {
+    ASSERT_TRUE(f.simulation->add_fault({"boat::position3d", kind, 0.5, f.simulation->time()}));
+  };
+  command(pilot, {0.8, 0, 0, 0, 0, 0});
+  fault(shm::FaultKind::weak);
+  f.run(40);
+  EXPECT_NEAR(sample(pilot).velocity[0], 0.4, 0.02);
+  EXPECT_EQ(f.simulation->end_faults({}, std::nullopt), 1U);
+  f.run(40);
+  fault(shm::FaultKind::halted);
+  command(pilot, {0, 0, 0, 0, 0, 0});
+  f.run(20);
+  EXPECT_NEAR(sample(pilot).velocity[0], 0.8, 0.03);
+}
+
+TEST(Boat, and_torpedo_are_the_same_after_a_reset_and_with_more_threads) {
+  const auto sail = [](SimulationFixture& f) {
+    auto pilot = f.open(IfaceType::position3d, "boat::position3d");
+    Joints joints(f, "auv");
+    command(pilot, {0.7, 0, 0, 0, 0, 0.1});
+    joints.command(0, RTMSIM_JOINT_VELOCITY, 60);
+    f.run(3);
+    return f.simulation->hash();
+  };
+  std::string all = pond + boat() + torpedo("auv", torpedo_thruster, "0 5 -2 0 0 0");
+  for (int i = 0; i < 8; ++i)
+    all += torpedo("still" + std::to_string(i), torpedo_thruster, "0 " + std::to_string(10 + 5 * i) + " -2 0.1 0 0");
+  SimulationFixture one(world_of_text(all));
+  const auto hash = sail(one);
+  std::vector<std::string> notes;
+  ASSERT_TRUE(one.simulation->reset(notes));
+  EXPECT_EQ(sail(one), hash);
+  one.simulation.reset();
+  one.server.reset();
+  SimulationFixture many(world_of_text(all), 1, 3);
+  EXPECT_EQ(sail(many), hash);
 }
 
 // As docs/worlds.md has it: goals, and how far they came. --gtest_filter=*Table* prints its rows.

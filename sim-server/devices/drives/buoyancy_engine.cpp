@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/text.h"
 #include "devices/drives/body.h"
@@ -23,10 +24,19 @@ base::Result<BuoyancyEngine::Bladder> bladder_of(const ModelDef& model, ModelId 
   const ParameterNode& p = plugin.parameters;
   BuoyancyEngine::Bladder bladder;
   bladder.link = {id, link};
-  bladder.low = p.number_of({"min_volume"}).value_or(bladder.low);
-  bladder.high = p.number_of({"max_volume"}).value_or(bladder.high);
+  std::optional<base::Error> problem;
+  const auto volume = [&](const char* element, double otherwise) {
+    const auto text = p.text_of({element});
+    const double number = text ? base::parse_number(*text).value_or(-1) : otherwise;
+    if (!(number >= 0) && !problem)
+      problem = base::Error{fmt::format("{}: plugin {}: <{}> must be a number of 0 or more, got {}; the plugin is left out", plugin.source,
+                                        base::in_quotes(plugin.name), element, base::in_quotes(*text))};
+    return number;
+  };
+  bladder.low = volume("min_volume", bladder.low), bladder.high = volume("max_volume", bladder.high);
+  bladder.start = volume("default_volume", bladder.low);
+  if (problem) return *problem;
   bladder.neutral = p.number_of({"neutral_volume"}).value_or(bladder.neutral);
-  bladder.start = p.number_of({"default_volume"}).value_or(bladder.low);
   bladder.density = p.number_of({"fluid_density"}).value_or(bladder.density);
   bladder.pump = p.number_of({"max_inflation_rate"}).value_or(bladder.pump);
   bladder.surface = p.number_of({"surface"});
