@@ -103,11 +103,30 @@ Eigen::Isometry3d isometry(const shm::Pose& pose) {
   return Eigen::Translation3d(pose.x, pose.y, pose.z) * Eigen::Quaterniond(pose.qw, pose.qx, pose.qy, pose.qz).normalized();
 }
 
+std::string_view content_of(const shm::CameraInfo& camera) {
+  switch (static_cast<shm::Format>(camera.format)) {
+    case shm::Format::labels:
+      return "labels";
+    case shm::Format::thermal8:
+    case shm::Format::thermal16:
+      return "temperatures";
+    case shm::Format::mono8:
+      return "grey";
+    case shm::Format::mono16:
+      return "grey of 16 bits";
+    default:
+      return "colours";
+  }
+}
+
 }  // namespace
 
 base::Result<StereoPair> stereo_pair(const shm::CameraInfo& left, const shm::CameraInfo& right) {
   constexpr double parallel = 0.5 * std::numbers::pi / 180, least_base = 1e-3, off = 0.02, same_focal = 1e-3;
   const auto size = [](const shm::CameraInfo& info) { return std::to_string(info.width) + " x " + std::to_string(info.height); };
+  if (content_of(left) != content_of(right))
+    return base::Error{"the images show " + std::string(content_of(left)) + " and " + std::string(content_of(right)) +
+                       "; expected the same"};
   if (left.width != right.width || left.height != right.height)
     return base::Error{"the images have " + size(left) + " and " + size(right) + " pixels; expected the same size"};
   if (!(left.fx > 0) || std::abs(left.fx - right.fx) > same_focal * left.fx)

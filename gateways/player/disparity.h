@@ -19,8 +19,9 @@ struct StereoPair {
   double base = 0;                   // from the left to the right camera [m]
 };
 
-// The error says what is no pair: they have the same size and focal length, look the same way (0.5 degrees), and the second is to the
-// right of the first, at least 1 mm, and neither above nor before it by more than 2 % of that.
+// The error says what is no pair: they have the same size and focal length, show the same (colours, grey, temperatures, labels), look the
+// same way (0.5 degrees), and the second is to the right of the first, at least 1 mm, and neither above nor before it by more than 2 % of
+// that.
 base::Result<StereoPair> stereo_pair(const shm::CameraInfo& left, const shm::CameraInfo& right);
 
 // Of every `step`-th pixel of every `step`-th row, so that a row has at most 400.

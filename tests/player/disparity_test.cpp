@@ -13,7 +13,7 @@ namespace {
 
 shm::CameraInfo camera_at(double x, double y, double z, double yaw = 0) {
   shm::CameraInfo info{};
-  info.width = 120, info.height = 60;
+  info.width = 120, info.height = 60, info.format = RTMSIM_FORMAT_RGB8;
   info.fx = info.fy = 100;
   info.cx = 60, info.cy = 30;
   info.pose = {x, y, z, std::cos(yaw / 2), 0, 0, std::sin(yaw / 2)};
@@ -39,6 +39,13 @@ TEST(StereoPair, refuses_cameras_that_are_none_with_what_was_expected) {
   auto large = camera_at(0, -0.1, 0);
   large.width = 640, large.height = 480;
   EXPECT_EQ(refusal(left, large), "the images have 120 x 60 and 640 x 480 pixels; expected the same size");
+  auto thermal = camera_at(0, -0.1, 0);
+  thermal.format = RTMSIM_FORMAT_THERMAL16;
+  EXPECT_EQ(refusal(left, thermal), "the images show colours and temperatures; expected the same");
+  auto grey = camera_at(0, -0.1, 0);
+  grey.format = RTMSIM_FORMAT_MONO8;
+  EXPECT_EQ(refusal(grey, left), "the images show grey and colours; expected the same");
+  EXPECT_EQ(refusal(grey, grey).substr(0, 13), "the second is");
   auto tele = camera_at(0, -0.1, 0);
   tele.fx = 200;
   EXPECT_EQ(refusal(left, tele), "the focal lengths are 100 and 200 pixels; expected the same");

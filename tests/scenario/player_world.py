@@ -171,12 +171,13 @@ def stereo():
 def stereo_of_no_pair():
     with Rig() as rig:
         with open(f"{rig.work}/ports.yaml", "w") as file:
-            file.write("ports:\n  - port: 0\n    devices: {'stereo:0': [mast::stereo::left, mast::camera], 'stereo:1': [mast::stereo::right, mast::stereo::left]}\n")
+            file.write("ports:\n  - port: 0\n    devices: {'stereo:0': [mast::stereo::left, mast::camera], 'stereo:1': [mast::stereo::right, mast::stereo::left], 'stereo:2': [mast::camera, mast::thermal]}\n")
         rig.sim(world=f"{source}/worlds/devices.sdf")
         rig.gateway("--config", f"{rig.work}/ports.yaml", robots=1)
         client = Client(rig.ports[0])
         for index, line in enumerate(("stereo of mast::stereo::left and mast::camera: the images have 320 x 240 and 640 x 480 pixels; expected the same size",
-                                      "in the first one's frame; expected it to the right, at 0, -BASE, 0")):
+                                      "in the first one's frame; expected it to the right, at 0, -BASE, 0",
+                                      "stereo of mast::camera and mast::thermal: the images show colours and temperatures; expected the same")):
             assert not client.access(STEREO, index, OPEN)
             await_("a line", lambda: line in rig.log(rig.process))
 
