@@ -65,14 +65,19 @@ TEST(Battery, follows_the_equations_of_gz_sim) {
   EXPECT_EQ(sample.state, RTMSIM_BATTERY_DRAINS);
 }
 
-TEST(Battery, with_a_constant_voltage_loses_what_the_load_takes) {
+TEST(Battery, with_a_constant_voltage_loses_what_the_load_takes_and_is_empty_after_2_291_hours) {
   SimulationFixture f(
       world_of_text(post(battery("<voltage>12.592</voltage><open_circuit_voltage_constant_coef>12.592</open_circuit_voltage_constant_coef>"
                                  "<capacity>1.2009</capacity><smooth_current_tau>0</smooth_current_tau><power_load>6.6</power_load>"
-                                 "<start_draining>true</start_draining>"))));
+                                 "<start_draining>true</start_draining>"),
+                         "0.05")));
   auto iface = f.open(IfaceType::battery, "m::pack");
   f.run(600);
   EXPECT_NEAR(1 - now(iface).level, 0.07274, 2e-5);
+  f.run(2.290 * 3600 - 600);
+  EXPECT_EQ(now(iface).state, RTMSIM_BATTERY_DRAINS);
+  f.run(0.002 * 3600);
+  EXPECT_EQ(now(iface).state, RTMSIM_BATTERY_EMPTY);
 }
 
 TEST(Battery, keeps_its_charge_until_a_motor_works) {

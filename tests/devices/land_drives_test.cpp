@@ -410,24 +410,27 @@ TEST(LandDrives, stand_on_a_slope_and_roll_down_it_without_motors) {
 }
 
 TEST(LandDrives, that_are_weak_go_a_part_of_the_way_and_halted_ones_go_on_as_they_were_told) {
-  LandRide ride(mecanum_text(), "base::position2d");
-  ride.command(0, 0.4, 0);
-  ride.after(0.5);
-  FaultOrder fault;
-  fault.iface = "base::position2d";
-  fault.kind = shm::FaultKind::weak;
-  fault.amount = 0.5;
-  fault.until = std::chrono::seconds(2);
-  ASSERT_TRUE(ride.f.simulation->add_fault(fault));
-  EXPECT_NEAR(ride.after(1).true_velocity[1], 0.2, 0.004);
-  ride.after(1);
-  fault.kind = shm::FaultKind::halted;
-  fault.until = std::chrono::seconds(5);
-  ASSERT_TRUE(ride.f.simulation->add_fault(fault));
-  ride.after(0.1);
-  ride.command(0, 0, 0);
-  EXPECT_NEAR(ride.after(1).true_velocity[1], 0.4, 0.004);
-  EXPECT_NEAR(ride.after(2).true_velocity[1], 0, 1e-3) << "then it hears";
+  for (const Kind& kind : land_kinds()) {
+    LandRide ride(kind.text, kind.iface);
+    FaultOrder fault;
+    fault.iface = kind.iface;
+    const auto until = [&](shm::FaultKind what, int seconds) {
+      fault.kind = what, fault.amount = 0.5, fault.until = std::chrono::seconds(seconds);
+      ASSERT_TRUE(ride.f.simulation->add_fault(fault));
+    };
+    const auto speed = [](const shm::Position2dSample& sample) { return sample.true_velocity[0]; };
+    ride.command(0.4, 0, 0);
+    const double whole = speed(ride.after(2));
+    EXPECT_NEAR(whole, 0.4, 0.02) << kind.iface;
+    until(shm::FaultKind::weak, 4);
+    EXPECT_NEAR(speed(ride.after(1.9)), 0.5 * whole, 0.01) << kind.iface;
+    EXPECT_NEAR(speed(ride.after(2.1)), whole, 0.01) << kind.iface;
+    until(shm::FaultKind::halted, 9);
+    ride.after(0.1);
+    ride.command(0, 0, 0);
+    EXPECT_NEAR(speed(ride.after(2)), whole, 0.01) << kind.iface;
+    EXPECT_NEAR(speed(ride.after(3)), 0, 2e-3) << kind.iface << " hears again";
+  }
 }
 
 TEST(LandDrives, run_the_same_with_one_and_two_threads_and_after_a_reset) {
