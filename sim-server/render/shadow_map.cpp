@@ -9,6 +9,7 @@ namespace {
 constexpr double largest_region = 120;  // [m] that one map covers; beyond, it follows the focus
 constexpr double focus_region = 80;     // [m]
 constexpr double focus_step = 20;       // [m]
+constexpr double region_step = 2;       // [m]; what moves within it leaves the map as it is
 
 Eigen::Matrix3d axes_for(const Eigen::Vector3d& to_light) {
   const Eigen::Vector3d other = std::abs(to_light.z()) < 0.99 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
@@ -48,20 +49,25 @@ Eigen::Vector3d ShadowMap::snapped(const Eigen::Vector3d& focus) const {
   return {std::round(p.x() / focus_step) * focus_step, std::round(p.y() / focus_step) * focus_step, 0};
 }
 
+// All casters, in steps: it follows from where they are now, not from where they were at the first picture.
+Eigen::AlignedBox3d ShadowMap::region_of(const Scene& scene, std::span<const Eigen::Isometry3d> poses) const {
+  Eigen::AlignedBox3d region;
+  for (const auto& drawable : scene.drawables) {
+    if (!is_caster(drawable)) continue;
+    const Eigen::Vector3d centre = axes_ * (poses[drawable.link] * drawable.centre);
+    region.extend(Eigen::Vector3d(centre - Eigen::Vector3d::Constant(drawable.radius)));
+    region.extend(Eigen::Vector3d(centre + Eigen::Vector3d::Constant(drawable.radius)));
+  }
+  if (region.isEmpty()) return {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)};
+  return {Eigen::Vector3d((region.min() / region_step).array().floor() * region_step),
+          Eigen::Vector3d((region.max() / region_step).array().ceil() * region_step)};
+}
+
 void ShadowMap::fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
                     const Eigen::Vector3d& focus) {
   to_light_ = to_light;
   axes_ = axes_for(to_light);
-  region_.setEmpty();
-  for (const auto& drawable : scene.drawables) {
-    if (!is_caster(drawable)) continue;
-    const Eigen::Vector3d centre = axes_ * (poses[drawable.link] * drawable.centre);
-    // What moves gets room to do so before the map must be fitted anew.
-    const double room = drawable.radius + (scene.links[drawable.link].is_static ? 0.0 : 2.0);
-    region_.extend(Eigen::Vector3d(centre - Eigen::Vector3d::Constant(room)));
-    region_.extend(Eigen::Vector3d(centre + Eigen::Vector3d::Constant(room)));
-  }
-  if (region_.isEmpty()) region_ = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1));
+  region_ = region_of(scene, poses);
   covers_all_ = region_.sizes().head<2>().maxCoeff() <= largest_region;
   focus_ = snapped(focus);
   const double side = covers_all_ ? region_.sizes().head<2>().maxCoeff() * 1.02 : focus_region;
@@ -88,19 +94,12 @@ bool ShadowMap::still_fits(const Scene& scene, std::span<const Eigen::Isometry3d
                            const Eigen::Vector3d& focus, int size) const {
   if (!is_valid_ || size != size_ || poses.size() != poses_.size() || to_light != to_light_) return false;
   if (!covers_all_ && snapped(focus) != focus_) return false;
-  for (const auto& drawable : scene.drawables) {
-    if (!is_caster(drawable)) continue;
-    const Eigen::Isometry3d& pose = poses[drawable.link];
-    if (scene.links[drawable.link].is_static) {
-      if (!is_same(pose, poses_[drawable.link])) return false;
-    } else if (covers_all_) {
-      const Eigen::Vector3d centre = axes_ * (pose * drawable.centre);
-      const Eigen::Array2d outside =
-          (centre - region_.center()).head<2>().array().abs() + drawable.radius - 0.5 * region_.sizes().head<2>().array();
-      if (outside.maxCoeff() > 0) return false;
-    }
-  }
-  return true;
+  const auto stands = [&](const Drawable& drawable) {
+    return !is_caster(drawable) || !scene.links[drawable.link].is_static || is_same(poses[drawable.link], poses_[drawable.link]);
+  };
+  if (!std::ranges::all_of(scene.drawables, stands)) return false;
+  const Eigen::AlignedBox3d region = region_of(scene, poses);
+  return region.min() == region_.min() && region.max() == region_.max();
 }
 
 // Whether the shadow of the sphere round it, from the ceiling to the floor, is not wholly on the outer side of one plane.

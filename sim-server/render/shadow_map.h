@@ -44,6 +44,7 @@ class ShadowMap {
     int left = 0, bottom = 0, right = 0, top = 0;
   };
   void allocate(int size);
+  Eigen::AlignedBox3d region_of(const Scene& scene, std::span<const Eigen::Isometry3d> poses) const;
   void fit(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light, const Eigen::Vector3d& focus);
   bool still_fits(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const Eigen::Vector3d& to_light,
                   const Eigen::Vector3d& focus, int size) const;
