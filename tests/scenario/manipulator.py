@@ -237,7 +237,8 @@ def alarms():
     ok("moveLinearCartesianRel", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -0.3)
     await_("an alarm", lambda: state() & ~moving == servo | alarm)
     answer, text = call("getActiveAlarm")
-    assert answer == OK and re.fullmatch(r"2 joint \d is at its highest effort and does not move", text), text
+    # The hand that no longer presses may spring back faster than a joint may move.
+    assert answer == OK and re.fullmatch(r"2 joint \d is at its highest effort and does not move( 3 joint \d moves at .*)?", text), text
     assert log().count("alarm 2: joint") == 1, log()
     assert call("movePTPJointAbs", *start)[0] == STATUS and call("setSoftLimitJoint", *(0, 1) * 6)[0] == STATUS and call("openGripper")[0] == STATUS
     ok("clearAlarms")

@@ -235,7 +235,7 @@ def of_a_run():
     velocity = next(c for c in info["channels"] if c["topic"] == "/LaserObstacleAvoid0/velocity")
     assert velocity["missing"] == 0 and velocity["first"] <= 0.2 and velocity["last"] >= 4.8, velocity
     done = rig.try_rtse(*call, "--record", "/no/such/folder/a.mcap")
-    assert done.returncode == 1 and "/no/such/folder" in done.stderr, done
+    assert done.returncode == 2 and "/no/such/folder" in done.stderr, done
 
 
 # What the simulator shows, in messages that other people's readers know: one of each kind of device, field for field.
@@ -320,7 +320,7 @@ def replayed():
     os.mkdir(empty)
     refused(*call, "--module-path", empty, says="module LaserObstacleAvoid.so or LaserObstacleAvoid.py is not in --module-path")
     refused("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "1", "--module-path", empty,
-            says=f'module path "{empty}": holds no modules (*.so, *.py)')
+            says=f'module path "{empty}": holds no modules (*.so, *.py)', code=2)
     refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
     refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
     refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
