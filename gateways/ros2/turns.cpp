@@ -6,14 +6,14 @@
 
 namespace ros2 {
 namespace {
-constexpr std::chrono::milliseconds look_period{100};
+constexpr std::chrono::milliseconds participant_look_period{100};
 }
 
 bool Turns::join() {
   if (participant_) return true;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_look_) return false;
-  next_look_ = now + look_period;
+  next_look_ = now + participant_look_period;
   auto joined = shm::Participant::join(server_id_, {.name = "ros2-gateway", .phase = 1, .period = period_});
   if (!joined) return false;
   participant_ = std::make_shared<shm::Participant>(std::move(*joined));

@@ -114,7 +114,7 @@ def page_fails(folder):
         os.mkdir(page)
         problems = process.communicate(timeout=watchdog)[1]
     recording = f"{page}.{process.pid}.mcap"
-    assert process.returncode == 1 and problems == f'rtse: page "{page}": Is a directory; the recording is kept: {recording}\n', problems
+    assert process.returncode == 1 and problems == f'rtse: page "{page}": is a folder; the recording is kept: {recording}\n', problems
     assert sorted(os.listdir(folder)) == ["run.html", os.path.basename(recording)], os.listdir(folder)
     os.rmdir(page)
     done(f"{bin_dir}/rtse", "page", recording, "-o", page)
@@ -144,7 +144,7 @@ def messages(folder):
     assert done(rtse, "page", bad, "-o", nowhere, code=1) == f'rtse: page "{nowhere}": No such file or directory\n'
     assert done(rtse, "page", bad, "-o", page, code=1) == f'rtse: page "{page}": "{bad}": is not an MCAP file: it does not start with the magic bytes\n'
     assert done(rtse, "page", bad, "-o", bad, code=1) == f'rtse: page "{bad}": is the recording; expected another file\n'
-    assert done(*run_words(1, "--page", nowhere), code=1) == f'rtse: file "{nowhere}": there is no folder {os.path.dirname(nowhere)}\n'
+    assert done(*run_words(1, "--page", nowhere), code=2) == f'rtse: file "{nowhere}": there is no folder {os.path.dirname(nowhere)}\n'
     pipe, link = (os.path.join(folder, name) for name in ("pipe", "link"))
     os.mkfifo(pipe)
     os.symlink(pipe, link)
@@ -155,7 +155,7 @@ def messages(folder):
     for words in (["page", bad, "-o", ""], run_words(1, "--page", "")[1:], ["recording", "export", bad, "--html", ""], ["replay", bad, "--into", "A", "--compare", "--page", ""]):
         problem = done(rtse, *words, code=2)
         assert 'expected the name of a file or folder, got ""' in problem and problem.count("\n") == 1, problem
-    problem = done(*run_words(1, "--page", "/proc/run.html"), code=1)
+    problem = done(*run_words(1, "--page", "/proc/run.html"), code=2)
     assert problem == 'rtse: file "/proc/run.html": cannot be written: No such file or directory\n', problem
     viewer = done(f"{bin_dir}/rtse-page", bad, "-o", page, "--viewer", nowhere, code=1)
     assert viewer.startswith(f"rtse-page: the viewer is missing: {nowhere}; "), viewer
