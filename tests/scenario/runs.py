@@ -297,7 +297,7 @@ def odds_and_ends():
         os.mkfifo(place.path / "pipe")
         missing = f"{place.path}/missing"
         mistakes = {("--module-path", missing): f"module path \"{missing}\"", ("--resource-path", missing): "resource path", ("--junit", system): "something else too",
-                    ("--picture", str(place.path / "pipe")): "no regular file", ("--picture", f"{place.path}/same", "--junit", f"{place.path}/same"): "something else too"}
+                    ("--picture", str(place.path / "pipe")): "no ordinary file", ("--picture", f"{place.path}/same", "--junit", f"{place.path}/same"): "something else too"}
         for words, why in mistakes.items():
             code, out, err = place.run(system, world, *words)
             assert code == 2 and why in err and "--keep" not in err, (words, code, err)
@@ -319,7 +319,7 @@ def odds_and_ends():
             done = subprocess.run([rtse, "run", system, "--world", world, "--duration", "1", "--module-path", lib_dir], text=True, stdout=full, stderr=subprocess.PIPE, env=place.environment)
         assert done.returncode == 1 and done.stderr.count("standard output: cannot be written") == 1, done
         code, out, err = place.run(system, world, "--picture", f"{missing}/p.png")
-        assert code == 1 and missing in err, err
+        assert code == 2 and missing in err, err
 
 
 def child_of(process, program):
