@@ -355,7 +355,7 @@ def why_not():
     rig.rtse("mgr", "create", "SinkAll?instance_name=SinkAll0")  # it is there
     refused("mgr", "create", "NoSuchType", says='no type "NoSuchType"')
     refused("mgr", "unload", "SinkAll.so", says="components of it exist")
-    refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38")
+    refused("inject", "SinkAll0:float", "1e39", says="at most 3.4e38", code=2)
 
 
 # A name can be a command for a terminal: it is shown there, not carried out. Programs get the octets as they are.
