@@ -343,7 +343,7 @@ def shared():
             os.chmod(work.name, 0o755)
             os.chmod(f"{work.name}/secret.sdf", 0o600)
             done = as_stranger(f"{bin_dir}/simctl", "-s", server_id, "spawn", f"{work.name}/secret.sdf")
-            assert done.returncode == 1 and "cannot be read" in done.stderr, done
+            assert done.returncode == 2 and "cannot be read" in done.stderr, done
             done = as_stranger(f"{bin_dir}/simctl", "-s", server_id, "screenshot", f"{work.name}/x.png")
             assert done.returncode == 1 and "Permission denied" in done.stderr, done
     stop(process)
