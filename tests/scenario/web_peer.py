@@ -40,7 +40,7 @@ class Socket:
     """One WebSocket."""
 
     # The token goes as a subprotocol, as the page sends it; `in_url`: as viewers send it that are given a URL and nothing else.
-    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=10, receive_buffer=0, in_url=False):
+    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=60, receive_buffer=0, in_url=False):
         self.line = socket.socket()
         if receive_buffer:
             self.line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
