@@ -187,5 +187,5 @@ def test_importing_the_module_loads_neither_numpy_nor_a_subprocess():
 def test_the_option_wants_a_pipe_as_standard_input():
     done = subprocess.run([sim_server, course, "-s", server_ids.claim(), "--ends-with-input"], stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, timeout=60)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "expected a pipe as standard input" in done.stderr
