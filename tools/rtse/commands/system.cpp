@@ -1,10 +1,10 @@
 // save, load, start, stop, teardown: whole systems, as RTSProfile files.
 #include <iostream>
 
+#include "base/output_name.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
 #include "system/profile/system_template.h"
-#include "base/output_name.h"
 #include "system/saved_system.h"
 
 namespace tools {
