@@ -7,7 +7,7 @@
 
 namespace base {
 
-// Not empty: nothing would be written, and nobody would be told.
+// Not empty: such a name would be ignored in silence.
 inline Check output_name() {
   return {[](const std::string& name) {
     return name.empty() ? std::string("expected the name of a file or folder, got \"\"") : std::string();

@@ -158,7 +158,7 @@ void Gateway::choose_sources() {
   watched_ = std::move(watched);
 }
 
-// While nobody reads its ifaces, a simulator makes several steps at once. Their clocks would come in bursts.
+// A simulator whose ifaces have no reader makes several steps at once. Their clocks would come in bursts.
 void Gateway::choose_clock() {
   constexpr double bursts = 200;  // [Hz] of steps together, at most
   const bool is_fast = options_.clock_rate == 0 || options_.clock_rate > bursts / 2;

@@ -16,7 +16,7 @@ namespace ros2 {
 
 // Names of robots that are spawned with a namespace.
 struct Namespaces {
-  std::function<std::string(const std::string& space)> user_of;                        // the robot that has it; empty: nobody
+  std::function<std::string(const std::string& space)> user_of;                        // the robot that has it; empty: none
   std::function<void(const std::string& model, const std::string& space)> on_spawned;  // empty: the usual one
 };
 

@@ -89,7 +89,7 @@ measure:
         subprocess.run([f"{bin_dir}/rtse", "results", place / "my plan.db", "--html", folder / "page.html"], cwd="/", check=True, timeout=100)
         page = (folder / "page.html").read_text()
         assert "data:image/png;base64," in page and f"rtse sweep '{folder}/my plan.yaml' --row 1" in page, number
-    assert "--by \"nobody\"" in rtse("results", folder / "plan.db", "--by", "nobody", code=2).stderr
+    assert "--by \"unknown\"" in rtse("results", folder / "plan.db", "--by", "unknown", code=2).stderr
 
 
 # What a page that rtse wrote says about its run.

@@ -48,7 +48,7 @@ struct Outcome {
   std::map<std::string, std::vector<std::byte>> samples;  // the last of every iface
 };
 
-// Half a second with nobody there, a look at one iface while time stands still, and fifty steps with everybody there.
+// Half a second without subscribers, a look at one iface while time stands still, and fifty steps with subscribers to all.
 Outcome run_with_a_look_at(const std::string& looked_at) {
   SimulationFixture f(every_device());
   f.simulation->pictures().set_synchronous(true);

@@ -25,7 +25,7 @@ def paused():
         await_("the clock of the reset", lambda: wire.seconds(peer.messages("/clock", "rosgraph_msgs/Clock")[-1]["clock"]) == 0)
 
 
-# A simulator that nobody watches makes several steps at once. Who wants the clock of each step watches it.
+# A simulator without readers makes several steps at once. A reader gets the clock of each step.
 def steps():
     def is_watched():
         return next(one["subscribers"] for one in json.loads(rig.simctl("--json", "list")) if one["type"] == "simulation") > 0
