@@ -55,11 +55,13 @@ fs::path library_folder() {
   return fs::path(real_path(info.dli_fname)).parent_path();
 }
 
-// Of the same installation or build folder; else wherever PATH has it.
+// Of the same installation or build folder; else wherever PATH has it. Where packages of OpenRTM-aist are too, `rtcprof` may be theirs.
 std::string profile_program_path() {
   const auto lib = library_folder();
   for (const auto& prefix : {lib.parent_path(), lib.parent_path().parent_path()}) {
-    if (const auto path = prefix / "bin" / profile_program; is_file(path)) return path.string();
+    for (const auto* name : {"rtcprof.rtm-sim", profile_program}) {
+      if (const auto path = prefix / "bin" / name; is_file(path)) return path.string();
+    }
   }
   return profile_program;
 }
@@ -88,7 +90,7 @@ bool ends_until(pid_t child, steady_clock::time_point deadline) {
 // start, or 0.
 std::optional<std::string> output_of(const std::vector<std::string>& words, std::chrono::seconds timeout, int& start_error) {
   base::expect_no_data_held();
-  constexpr std::size_t longest = std::size_t{4} << 20;
+  constexpr std::size_t longest = std::size_t{64} << 20;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
   posix_spawn_file_actions_t actions;
@@ -244,11 +246,11 @@ struct ModuleManager::Impl {
     return manager->configValue("manager.modules.init_func_prefix") + base_name + (suffix.empty() ? "Init" : suffix);
   }
 
-  // The program that prints the profiles in a module, and its arguments.
+  // The program that prints the profiles in a module, and its arguments; none: ours, which looks into many at a time.
   std::vector<std::string> profile_command() const {
-    const auto given = base::split_list(manager->configValue("manager.modules.C++.profile_cmd"), ' ');
-    const bool is_own = given.empty() || (given.size() == 1 && (given[0] == profile_program || given[0] == "rtcprof2"));
-    return is_own ? std::vector<std::string>{profile_program_path()} : given;
+    auto given = base::split_list(manager->configValue("manager.modules.C++.profile_cmd"), ' ');
+    if (given.size() == 1 && (given[0] == profile_program || given[0] == "rtcprof2")) given.clear();
+    return given;
   }
 
   std::optional<Module> find(const std::string& name, const std::string& file) const {
@@ -259,23 +261,43 @@ struct ModuleManager::Impl {
     return std::nullopt;
   }
 
-  std::vector<coil::Properties> profiles_of(const fs::path& file) {
+  static Profile nothing_known_of(const std::string& file) {
     std::error_code error;
-    Profile profile;
-    profile.time = fs::last_write_time(file, error);
-    profile.size = fs::file_size(file, error);
+    return {fs::last_write_time(file, error), fs::file_size(file, error), {}};
+  }
+
+  // Fills known_profiles for the files that are new or have changed.
+  void look_into(const std::vector<std::string>& files) {
+    std::vector<std::string> changed;
     {
       auto known = known_profiles.lock();
-      const auto at = known->find(file.string());
-      if (at != known->end() && at->second.time == profile.time && at->second.size == profile.size) return at->second.profiles;
+      for (const auto& file : files) {
+        const auto profile = nothing_known_of(file);
+        const auto at = known->find(file);
+        if (at == known->end() || at->second.time != profile.time || at->second.size != profile.size) changed.push_back(file);
+      }
     }
-    auto command = profile_command();
-    command.push_back(file.string());
+    const auto given = profile_command();
+    const std::size_t most = given.empty() ? 200 : 1;
+    const auto command = given.empty() ? std::vector<std::string>{profile_program_path(), "--each"} : given;
+    for (std::size_t first = 0; first < changed.size(); first += most) {
+      const auto begin = changed.begin() + static_cast<std::ptrdiff_t>(first);
+      auto found = profiles_by_file(command, {begin, begin + static_cast<std::ptrdiff_t>(std::min(most, changed.size() - first))});
+      auto known = known_profiles.lock();
+      for (auto& [file, profile] : found) known->insert_or_assign(file, std::move(profile));
+    }
+  }
+
+  // What the command prints of these files; nothing when it does not start.
+  static std::map<std::string, Profile> profiles_by_file(std::vector<std::string> command, const std::vector<std::string>& files) {
+    std::map<std::string, Profile> found;
+    for (const auto& file : files) found.emplace(file, nothing_known_of(file));
+    command.insert(command.end(), files.begin(), files.end());
     int start_error = 0;
-    const auto output = output_of(command, std::chrono::seconds(10), start_error);
+    const auto output = output_of(command, std::chrono::seconds(10) * files.size(), start_error);
     if (start_error != 0) {
-      base::log(base::Level::warn, "manager", "cannot start {} to inspect module {}: {}", command.front(), file.string(),
-                std::strerror(start_error));
+      base::log(base::Level::warn, "manager", "cannot start {} to inspect module {}{}: {}", command.front(), files.front(),
+                files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more" : "", std::strerror(start_error));
       return {};
     }
     std::string block;
@@ -290,13 +312,15 @@ struct ModuleManager::Impl {
       }
       coil::Properties properties;
       for (const auto& entry : rt::parse_config(block).entries) properties.setProperty(entry.key, entry.value);
-      properties.setProperty("module_file_name", file.filename().string());
-      properties.setProperty("module_file_path", file.string());
-      profile.profiles.push_back(std::move(properties));
       block.clear();
+      const auto file = files.size() == 1 ? files.front() : properties.getProperty("module_file_path");
+      const auto at = found.find(file);
+      if (at == found.end()) continue;
+      properties.setProperty("module_file_name", fs::path(file).filename().string());
+      properties.setProperty("module_file_path", file);
+      at->second.profiles.push_back(std::move(properties));
     }
-    known_profiles.lock()->insert_or_assign(file.string(), profile);
-    return profile.profiles;
+    return found;
   }
 };
 
@@ -424,8 +448,7 @@ std::vector<coil::Properties> ModuleManager::getLoadedModules() const {
 }
 
 std::vector<coil::Properties> ModuleManager::getLoadableModules() {
-  std::vector<coil::Properties> result;
-  std::vector<std::string> seen;
+  std::vector<std::string> files;
   const auto suffixes = impl_->suffixes();
   for (const auto& folder : impl_->load_path()) {
     std::error_code error;
@@ -433,10 +456,15 @@ std::vector<coil::Properties> ModuleManager::getLoadableModules() {
       const auto extension = entry.path().extension().string();
       if (std::find(suffixes.begin(), suffixes.end(), extension) == suffixes.end() || !is_file(entry.path())) continue;
       const auto file = real_path(entry.path());
-      if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
-      seen.push_back(file);
-      for (auto& profile : impl_->profiles_of(file)) result.push_back(std::move(profile));
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     }
+  }
+  impl_->look_into(files);
+  std::vector<coil::Properties> result;
+  auto known = impl_->known_profiles.lock();
+  for (const auto& file : files) {
+    const auto at = known->find(file);
+    if (at != known->end()) result.insert(result.end(), at->second.profiles.begin(), at->second.profiles.end());
   }
   return result;
 }

@@ -220,6 +220,28 @@ TEST(Keys, module_paths_suffixes_and_functions) {
   EXPECT_EQ(manager.make("FailOnRequest"), "FailOnRequest0");
 }
 
+TEST(Keys, modules_that_cannot_be_looked_into_cost_only_their_own_profiles) {
+  support::TemporaryFolder folder;
+  std::filesystem::copy_file(modules + "/damaged/EndsOnLoad.so", folder.path() / "EndsOnLoad.so");
+  for (const auto* name : {"EchoConsumer.so", "EchoProvider.so", "FailOnRequest.so"})
+    std::filesystem::copy_file(modules + "/" + name, folder.path() / name);
+  std::ofstream(folder.path() / "Text.so") << "no library";
+  Started manager({"manager.modules.load_path:" + folder.path().string()});
+  for (int again = 0; again < 2; ++again) {
+    std::set<std::string> found;
+    for (const auto& profile : manager->getLoadableModules())
+      found.insert(profile.getProperty("implementation_id") + " in " + profile.getProperty("module_file_name") + " of " +
+                   std::filesystem::path(profile.getProperty("module_file_path")).parent_path().filename().string());
+    const auto in = " of " + folder.path().filename().string();
+    EXPECT_EQ(found, (std::set<std::string>{"EchoConsumer in EchoConsumer.so" + in, "EchoProvider in EchoProvider.so" + in,
+                                            "FailOnRequest in FailOnRequest.so" + in}));
+  }
+  // One that is there later, or another one in its place, is seen.
+  std::filesystem::remove(folder.path() / "Text.so");
+  std::filesystem::copy_file(modules + "/SinkAll.so", folder.path() / "SinkAll.so");
+  EXPECT_EQ(manager->getLoadableModules().size(), 4u);
+}
+
 TEST(Keys, module_profile_command_is_asked_for_profiles) {
   support::TemporaryFolder folder;
   const auto script = (folder.path() / "profiles").string();
