@@ -11,31 +11,15 @@ rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIE
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)
 rtmsim_component(ManipulatorCaller scenario/manipulator_caller.cpp)
 rtmsim_component(ManipulatorCallerWithoutModule scenario/manipulator_caller_without_module.cpp IDL scenario/without_module/ManipulatorWithoutModule.idl)
-foreach(case moves without_module settings bad_values queue alarms emergency low_level dead_client reset)
-  add_test(NAME manipulator.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/manipulator.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(manipulator.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
-foreach(case simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors attach)
-  add_test(NAME arms.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/arms.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(arms.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+scenario_cases(manipulator. manipulator moves without_module settings bad_values queue alarms emergency low_level dead_client reset)
+scenario_cases(arms. arms simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors attach)
 
 # Every interface component against a living simulator, in real processes.
 rtmsim_component(SimulationProbe scenario/simulation_probe.cpp)
 rtmsim_component(DeviceProbe scenario/device_probe.cpp)
-foreach(case sonar imu gps bumper ranger places point_cloud odometry goals meters others names simulation motors wrong_device camera_formats camera_parameters camera_service camera_jpeg depth_camera drone
-    wrong_camera_device restarted_server)
-  add_test(NAME components.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/components.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(components.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+scenario_cases(components. components sonar imu gps bumper ranger places point_cloud odometry goals meters others names simulation motors wrong_device)
+scenario_cases(components. camera_components camera_formats camera_parameters camera_service camera_jpeg depth_camera drone wrong_camera_device restarted_server)
 
 # Components of devices that look.
 rtmsim_component(SeenProbe scenario/seen_probe.cpp)
-foreach(case logical_camera boxes fiducial multicamera thermal map)
-  add_test(NAME seen_devices.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/seen_devices.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(seen_devices.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+scenario_cases(seen_devices. seen_devices logical_camera boxes fiducial multicamera thermal map)

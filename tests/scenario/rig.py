@@ -23,6 +23,12 @@ class Rig(System):
     def host(self, *components, options=()):
         return self.rtcd("-o", "naming.update.interval:1", *options, *components, cwd=self.work)
 
+    # As a program: the case that it was called with.
+    def run_case(self, case, cases):
+        with self:
+            cases[case]()
+        print("ok")
+
     def there(self, *components):
         self.rtse("wait", *components, "--state", "any", "--timeout", str(watchdog))
 
