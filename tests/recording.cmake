@@ -3,16 +3,9 @@ rtmsim_test(mcap_test recording/mcap_test.cpp LIBRARIES mcap)
 rtmsim_test(ros_messages_test recording/ros_messages_test.cpp LIBRARIES recorder)
 rtmsim_test(expression_test recording/expression_test.cpp LIBRARIES recorder)
 rtmsim_test(recorder_line_test recording/recorder_line_test.cpp LIBRARIES recorder)
-foreach(case views excluded whole_run same_run killed full_disk compared played kept of_a_run replayed repeated lives hashed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like simulator_ends bad_input)
-  add_test(NAME recordings.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
-foreach(case of_a_run killed again reset taken full_disk of_a_killed_recorder)
-  add_test(NAME recorded_rings.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recorded_rings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(recorded_rings.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+scenario_cases(recordings. recordings views excluded whole_run same_run killed full_disk compared played kept of_a_run repeated lives hashed simulator_ends bad_input)
+scenario_cases(recordings. recorded_again replayed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like)
+scenario_cases(recorded_rings. recorded_rings of_a_run killed again reset taken full_disk of_a_killed_recorder)
 if(RTMSIM_STUDIO_PAGE)
   foreach(case same given_up killed)
     add_test(NAME followed_page.${case}
@@ -27,11 +20,7 @@ if(RTMSIM_STUDIO_PAGE)
 endif()
 add_test(NAME recordings.of_others COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/recordings_of_others.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 set_tests_properties(recordings.of_others PROPERTIES LABELS integration TIMEOUT 300)
-foreach(case astray bombs broken_ring flipped large letters many_broken pictures names targets terminal)
-  add_test(NAME hostile_recordings.${case}
-    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scenario/hostile_recordings.py ${case} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY} ${PROJECT_SOURCE_DIR})
-  set_tests_properties(hostile_recordings.${case} PROPERTIES LABELS integration TIMEOUT 300)
-endforeach()
+scenario_cases(hostile_recordings. hostile_recordings astray bombs broken_ring flipped large letters many_broken pictures names targets terminal)
 # By hand: RECORDING_REPEATS=100 python3 tests/scenario/recordings.py repeated build/release/bin build/release/lib .
 
 # The format as others read and write it: libraries from npm.

@@ -58,8 +58,14 @@ def refused(*words, says, code=1):
     assert done.returncode == code and says in done.stderr and done.stderr.count("\n") == 1, done
 
 
+# A run of the obstacle system: its recording, the hash of its state at the end.
+def recorded_run(name, duration, *words):
+    path = rig.path(name)
+    done = json.loads(rig.rtse("--json", "run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "--world", f"{rig.source}/worlds/obstacle_course.sdf",
+                               "--duration", str(duration), "--record", path, *words).splitlines()[-1])
+    return path, done["state_hash"]
+
+
 # As a program: the case that it is called with.
 def run_case(cases):
-    with rig:
-        cases[case]()
-    print("ok")
+    rig.run_case(case, cases)
