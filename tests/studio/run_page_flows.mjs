@@ -1,5 +1,5 @@
 // The page that `rtse run --page` leaves, from a disk and without a network. run_page_flows.mjs BIN_DIR SOURCE_DIR LIB_DIR
-import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -7,8 +7,9 @@ import { deflateSync, inflateSync } from 'node:zlib';
 import { flows as recorded_flows, moment, near, recorded_place, robot, scrub } from './recorded_steps.mjs';
 import { mutate_in_page } from './mutate_in_page.mjs';
 import { blocks_of, json_of, mutated, random } from './page_mutations.mjs';
+import { looks_like_the_studio, small } from './page_pixels.mjs';
 import { write_pages } from './run_pages.mjs';
-import { becomes, check, compared, has_world, is_ready, open, Rig, run, same, until, watchdog } from './rig.mjs';
+import { becomes, check, has_world, is_ready, open, Rig, run, same, until, watchdog } from './rig.mjs';
 
 const [bin, source, lib] = process.argv.slice(2);
 const worlds = join(source, 'worlds');
@@ -202,49 +203,22 @@ const flows = [
     same(await page.locator('.mark-lane i').count(), 0, 'marks');
     await page.context().close();
   }],
-  ['a farm with a camera, a leader with its follower, and a hundred robots have pages', async ({ rig, browser }) => {
-    await write_pages(rig, lib, source, async ({ name, html, robots }) => {
-      const page = await open_file(browser, html);
+  ['pages of an obstacle course, a farm with a camera, a leader, a failed run and a hundred robots look like the studio', async ({ rig, browser }) => {
+    await write_pages(rig, lib, source, async ({ name, html, file, robots }) => {
+      const page = await open_file(browser, html, '', small);
       await has_world(page);
-      await scrub(page, 1.5);
       const moving = await page.evaluate(() => window.studio.store.world.models.filter((m) => !m.static).length);
       check(moving >= robots, `${name}: ${moving} models`);
+      console.log(`      ${name}: ${(statSync(html).size / 1e6).toFixed(2)} MB`);
+      await looks_like_the_studio({ rig, browser }, page, file);
       if (name === 'farm') {
         await page.evaluate(() => window.studio.bottom.show_image(`camera:${window.studio.store.world.ifaces.find((i) => i.type === 'camera').name}`));
         await until('an image', () => page.evaluate(() => document.querySelector('.images img')?.naturalWidth > 0));
       }
+      same(page.requests, [page.url().replace(/#.*/, '')], 'requests');
       same(page.problems, [], name);
-      console.log(`      ${name}: ${(statSync(html).size / 1e6).toFixed(2)} MB`);
       await page.context().close();
     });
-  }],
-  ['the world is drawn as rtm-studio draws the recording', async ({ rig, browser, html, file }) => {
-    const studio = rig.start('rtm-studio', [file, '-p', '0', ...(process.env.STUDIO_PAGE ? ['--page', process.env.STUDIO_PAGE] : [])]);
-    const url = await until('rtm-studio', () => /http:\/\/\S+/.exec(studio.log())?.[0]);
-    const drawn = async (page) => {
-      await has_world(page);
-      await scrub(page, 7);
-      await until('the fan', () => page.evaluate(() => [...window.studio.world.ranges.fans.values()][0]?.parts[1].geometry.getAttribute('position')?.count > 0));
-      return page.evaluate(() => {
-        const { world } = window.studio;
-        world.element.style.cssText = 'position:fixed;left:0;top:0;width:640px;height:480px;z-index:9';
-        world.resize();
-        world.whole();
-        world.trails.forget(); // they are of what each page has been through
-        world.draw(true);
-        return world.canvas.toDataURL('image/png');
-      });
-    };
-    const other = await open(browser, url), wanted = await drawn(other);
-    await other.context().close();
-    const page = await open_file(browser, html), mine = await drawn(page);
-    await page.context().close();
-    const tool = await open(browser, 'about:blank');
-    const { mean, far } = await compared(tool, mine, wanted);
-    await tool.context().close();
-    await rig.end(studio);
-    console.log(`      mean difference ${mean.toFixed(3)}, ${(100 * far).toFixed(2)} % of the pixels differ by more than 32`);
-    check(mean <= 2 && far < 0.01, `mean difference ${mean}`);
   }],
   ['scrubbing ends at the time of the hand, and shows times on the way', async ({ browser, html }) => {
     const page = await open_file(browser, html);
