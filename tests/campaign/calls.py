@@ -78,3 +78,11 @@ def after_mount(mount, *words, **environment):
         why = why or probe.stderr.strip()
     print(f"skipped: {case} needs a mount namespace: {why}")
     sys.exit(77)
+
+
+# As a program: the case that it is called with.
+def run_case(cases):
+    try:
+        cases[case]()
+    finally:
+        subprocess.run(["rm", "-rf", str(folder)], check=False)

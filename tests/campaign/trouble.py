@@ -6,7 +6,7 @@ import shutil
 import sqlite3
 import subprocess
 
-from calls import after_mount, bin_dir, case, folder, interrupted_at, plan, rows, rtse, twice
+from calls import after_mount, bin_dir, folder, interrupted_at, plan, rows, rtse, run_case, twice
 
 
 # What is seen of a component whose host was killed, and is there again.
@@ -124,7 +124,4 @@ hunt:
     assert "did not finish its tick" in (folder / "hang.finds/find-1.yaml").read_text()
 
 
-try:
-    {"kills": kills, "shared": shared, "machine": machine, "finds": finds}[case]()
-finally:
-    subprocess.run(["rm", "-rf", str(folder)], check=False)
+run_case(globals())

@@ -1,10 +1,5 @@
 # Components of ours whose contexts are of other processes (`rtse join`), in lock step: called_in_time.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
-import sys
-
-from foreign_members import Mixed, relay
-
-case, bin_dir, lib_dir, source = sys.argv[1:]
-empty = f"{source}/worlds/empty.sdf"
+from foreign_rig import Mixed, bin_dir, case, empty, lib_dir, relay, source
 
 
 def knows_the_time():
