@@ -88,9 +88,8 @@ Ending ending_of(int status, std::string report) {
 
 std::string first_frame(const std::string& report) {
   for (const std::string& line : base::split_list(report, '\n')) {
-    const auto number = line.find(" #"), open = line.find('('), plus = line.rfind("+0x");
-    if (number == std::string::npos || open == std::string::npos || plus == std::string::npos || plus < open) continue;
-    const auto address = line.find("0x", number);
+    const auto address = line.find("0x"), open = line.find('('), plus = line.rfind("+0x");
+    if (!line.starts_with('#') || open == std::string::npos || plus == std::string::npos || plus < open) continue;
     if (address < open && is_allocation(std::strtoull(line.c_str() + address, nullptr, 16))) continue;
     const std::string module = line.substr(open + 1, plus - open - 1);
     const std::string name = module.substr(module.rfind('/') + 1);
