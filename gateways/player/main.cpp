@@ -27,9 +27,9 @@ const base::Check is_key{[](const std::string& text) {
                          },
                          "KEY"};
 
-int fail(const base::Error& error) {
+int fail(const base::Error& error, int code = 1) {
   std::cerr << base::for_terminal("player-gateway: " + error.message + "\n");
-  return 1;
+  return code;
 }
 
 }  // namespace
@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
       ->envname("RTMSIM_PLAYER_AUTH");
   app.add_flag("--open", options.door.is_open)->description("Accept every client that reaches the ports, without a key");
   app.add_option("--config", config, "Mapping file, or a configuration file of Player: devices of each port (docs/player.md)")
+      ->check(base::existing_file())
       ->excludes(port);
   app.add_flag("-q,--quiet", is_quiet)->description("Do not log clients that send bytes of another protocol");
   bool is_table_asked = false;
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
   if (is_quiet) base::set_log_level(base::Level::warn);
   if (!config.empty()) {
     auto ports = gateway::read_config(config);
-    if (!ports) return fail(ports.error());
+    if (!ports) return fail(ports.error(), 2);
     options.config = std::move(*ports);
   }
   block_signals();

@@ -53,17 +53,17 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-int fail(const std::string& message) {
+int fail(const std::string& message, int code = 1) {
   std::cerr << "rtcprof: " << message << '\n';
-  return 1;
+  return code;
 }
 
 // Prints the profiles, each with the line `more` before its end.
 int print_profiles(const std::string& file, const std::string& function, const std::string& more) {
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) return fail(dlerror());
+  if (handle == nullptr) return fail(dlerror(), 2);
   void* symbol = dlsym(handle, function.c_str());
-  if (symbol == nullptr) return fail(file + " has no function " + function);
+  if (symbol == nullptr) return fail(file + " has no function " + function, 2);
   auto& manager = RTC::Manager::profile_reader();
   reinterpret_cast<void (*)(RTC::Manager*)>(symbol)(&manager);
   for (const auto& profile : manager.getFactoryProfiles()) {

@@ -19,6 +19,7 @@
 #include "base/terminal.h"
 #include "base/text.h"
 #include "base/warm_start.h"
+#include "base/whole_file.h"
 #include "render/assets.h"
 #include "render/scene.h"
 #include "server/describe.h"
@@ -157,15 +158,19 @@ int run(const Options& options, Signals& signals) {
   auto access = shm::parse_access(options.shm_mode, options.shm_group);
   if (!access) return reject(access.error().message);
   const ModelPath model_path = ModelPath::from_environment(options.resource_paths, installed_worlds());
+  for (const auto& file : {options.hash_log, options.record}) {
+    if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
+      return reject(writable.error().message);
+  }
   auto loaded = load_world(options.world, model_path);
-  if (!loaded) return fail(loaded.error().message);
+  if (!loaded) return reject(loaded.error().message);
   std::size_t dropped = 0;
   for (const auto& finding : loaded->findings) {
     if (finding.severity == Finding::Severity::dropped) ++dropped;
     const int wanted = finding.severity == Finding::Severity::dropped ? 0 : finding.severity == Finding::Severity::warning ? 1 : 2;
     if (options.check || options.verbosity >= wanted) print_line(finding.text());
   }
-  if (const auto added = add_named_gains(options.gains, loaded->world); !added) return fail(added.error().message);
+  if (const auto added = add_named_gains(options.gains, loaded->world); !added) return reject(added.error().message);
   auto world = std::make_shared<const WorldDef>(std::move(loaded->world));
 
   // Who only looks takes no server's place; ids of this kind cannot be asked for.

@@ -89,7 +89,7 @@ def gains():
                        (file("wrong.yaml", "pid_gains: {elbow: {p: fast}}\n"), "none of them can be used"), (file("bad.yaml", "a: [\n"), "is no YAML: line"),
                        (f"{rig.work}/none.yaml", "no such file")):
         done = subprocess.run([f"{rig.bin_dir}/sim-server", f"{rig.source}/worlds/arm.sdf", "--check", "-v", "0", "--gains", path], capture_output=True, text=True, timeout=60)
-        assert done.returncode == 1 and line in done.stderr and done.stderr.count("sim-server: gains ") == 1, (path, done.stderr)
+        assert done.returncode == 2 and line in done.stderr and done.stderr.count("sim-server: gains ") == 1, (path, done.stderr)
 
 
 def act_array():

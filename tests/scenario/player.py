@@ -409,7 +409,7 @@ def config():
             wrong = rig.try_gateway(*words)
             assert wrong.returncode == 2 and len(wrong.stderr.splitlines()) == 1, wrong
         wrong = rig.try_gateway("--config", f"{rig.work}/none.yaml")
-        assert wrong.returncode == 1 and "none.yaml" in wrong.stderr
+        assert wrong.returncode == 2 and "none.yaml" in wrong.stderr
         wrong = rig.try_gateway("--address", "nowhere", "--port", "0")
         assert wrong.returncode == 1 and "nowhere" in wrong.stderr
 

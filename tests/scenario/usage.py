@@ -25,6 +25,9 @@ calls = [
     (["rtse", "demo", "--duration", "never"], "never"), (["rtse", "dis"], "expected one component or port"), (["rtse", "diff", system], "required"),
     (["simctl", "spawn", "crate", "--for", "robot"], "robot"), (["simctl", "pose", "crate", "1"], "expected X Y YAW"), (["simctl", "rtf", "fast"], "fast"),
     (["sim-server", course, "--shm-mode", "0999"], "0999"), (["sim-server", course, "--shm-group", "no such group"], "no such group"),
+    (["sim-server", "none.sdf"], "no such file"), (["sim-server", "bad.xml", "--check"], "bad.xml"), (["sim-server", course, "--gains", "none.yaml"], "none.yaml"),
+    (["sim-server", course, "--hash-log", "nowhere/x"], "there is no folder"), (["sim-server", course, "--record", "."], "is a folder"),
+    (["player-gateway", "--config", "none.yaml"], "no such file"), (["player-gateway", "--config", "."], "is a folder"), (["rtcprof", "none.so"], "none.so"),
     (["sim-server", course, "--ends-with-input"], "expected a pipe"), (["sim-server", course, "--fault", "weak"], "weak"), (["sim-server"], "WORLD"),
 ]
 environment = dict(os.environ, RTCTREE_NAMESERVERS="127.0.0.1:1", RTMSIM_SERVER_ID="9000")
