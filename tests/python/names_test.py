@@ -1,4 +1,6 @@
 # Small helpers of the flat namespace, in the forms of 1.x and 2.x.
+import subprocess
+import sys
 import threading
 
 import OpenRTM_aist
@@ -85,6 +87,27 @@ def test_a_star_import_brings_what_is_loaded_later_too():
     exec("from OpenRTM_aist import *", names)
     for name in ("DataFlowComponentBase", "CorbaNaming", "StaticFSM", "CSPInPort", "PeriodicECSharedComposite", "newNV", "get_state", "EventInPort"):
         assert name in names, name
+
+
+# A stub file is loaded when a name or a type of it is used. Each text runs in a new interpreter.
+@pytest.mark.parametrize("text", [
+    "RTC.RTC_OK; assert 'ExtendedDataTypes_idl' not in sys.modules; RTC._d_TimedVelocity2D, RTC._tc_TimedPose2D",
+    "from RTC import *; TimedLong, TimedPose2D, CameraImage, RTC_OK, ActArrayGeometry",
+    "assert 'TimedPose2D' in dir(RTC) and not hasattr(RTC, 'TimedPose4D')",
+    "assert omniORB.findType('IDL:RTC/CameraImage:1.0')[3] == 'CameraImage' and omniORB.findType('IDL:RTC/None:1.0') is None",
+    "assert omniORB.tcInternal.TypeCode('IDL:RTC/TimedPose2D:1.0').name() == 'TimedPose2D'",
+    "import RTC__POA; RTC__POA.DataFlowComponent._omni_op_d['initialize']",
+    "import threading; found = []; go = threading.Barrier(8)\n"
+    "def use(): go.wait(); found.append(RTC.TimedVelocity2D)\n"
+    "threads = [threading.Thread(target=use) for _ in range(8)]\n"
+    "for one in threads: one.start()\n"
+    "for one in threads: one.join(60)\n"
+    "assert len(found) == 8 and len(set(found)) == 1"])
+def test_types_are_there_when_they_are_used(text):
+    done = subprocess.run([sys.executable, "-c", "import sys, omniORB, OpenRTM_aist, RTC\n"
+                           "assert not [one for one in sys.modules if one.endswith('_idl')]\n" + text],
+                          capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
 
 
 def test_an_attribute_of_an_author_hides_none_of_the_base():

@@ -22,7 +22,7 @@ usage_string = """\
   -Wbstubs=NAME   Put the stub files into this package
   -Wbextern=NAME  Do not import the stubs of this included file, or of NAME:PACKAGE from that package
   -Wbno_package   Write no packages for modules
-  -Wblater        Packages that have other stubs load these when a name is missing
+  -Wblater        Packages load a stub file when one of its names is used
   -Wbclosed       Type checkers refuse names that no stub file has"""
 
 

@@ -354,13 +354,11 @@ std::optional<CORBA::Object_var> reference_in(PyObject* stub) {
 }
 
 PyObject* reference_out(CORBA::Object_ptr object, const char* id) {
-  static PyObject* const mapping = of_module("omniORB", "objrefMapping");
-  if (!mapping) return nullptr;
   if (CORBA::is_nil(object)) return Py_NewRef(Py_None);
-  PyObject* cls = PyDict_GetItemString(mapping, object->_PR_getobj()->_mostDerivedRepoId());
-  PyObject* const asked_for = id && *id ? PyDict_GetItemString(mapping, id) : nullptr;
+  PyObject* cls = registered("objrefMapping", object->_PR_getobj()->_mostDerivedRepoId());
+  PyObject* const asked_for = id && *id ? registered("objrefMapping", id) : nullptr;
   if (cls && asked_for && PyObject_IsSubclass(cls, asked_for) != 1) cls = asked_for;
-  if (!cls) cls = asked_for ? asked_for : PyDict_GetItemString(mapping, "");
+  if (!cls) cls = asked_for ? asked_for : registered("objrefMapping", "");
   try {
     const py::object made = py::cast(new ObjRef{CORBA::Object::_duplicate(object)}, py::return_value_policy::take_ownership);
     // Not by a call: the stubs of omniidl 3 take no argument.

@@ -9,8 +9,7 @@
 namespace python {
 
 inline const Type& type_by_id(const char* id) {
-  static PyObject* const mapping = of_module("omniORB", "typeMapping");
-  PyObject* const descriptor = mapping ? PyDict_GetItemString(mapping, id) : nullptr;
+  PyObject* const descriptor = registered("typeMapping", id);
   const Type* type = descriptor ? type_of(descriptor) : nullptr;
   if (!type) throw pybind11::error_already_set();
   return *type;

@@ -113,9 +113,7 @@ class Codes {
 };
 
 PyObject* by_stubs(const char* id) {
-  static PyObject* const mapping = of_module("omniORB", "typeMapping");
-  if (!mapping || !id || !*id) return nullptr;
-  PyObject* const found = PyDict_GetItemString(mapping, id);
+  PyObject* const found = id && *id ? registered("typeMapping", id) : nullptr;
   Py_XINCREF(found);
   return found;
 }

@@ -149,6 +149,24 @@ PyObject* of_module(const char* module, const char* name) {
   return object;  // of modules that stay: the reference is kept for ever
 }
 
+PyObject* registered(const char* registry, PyObject* id) {
+  const Ref entries(of_module("omniORB", registry));
+  PyObject* found = entries ? PyDict_GetItem(entries.get(), id) : nullptr;
+  if (entries && !found) {
+    const Ref loaded(PyObject_GetItem(entries.get(), id));
+    found = loaded.get();  // the registry keeps it
+  }
+  if (!found) PyErr_Clear();
+  return found;
+}
+
+PyObject* registered(const char* registry, const char* id) {
+  const Ref text(PyUnicode_FromString(id));
+  if (text) return registered(registry, text.get());
+  PyErr_Clear();
+  return nullptr;
+}
+
 const Type* type_of(PyObject* descriptor) {
   if (PyLong_Check(descriptor)) return basic(PyLong_AsLong(descriptor), descriptor);
   if (!PyTuple_Check(descriptor) || PyTuple_GET_SIZE(descriptor) == 0 || !PyLong_Check(PyTuple_GET_ITEM(descriptor, 0)))
@@ -157,10 +175,9 @@ const Type* type_of(PyObject* descriptor) {
   if (known != compiled().end()) return known->second;
   const unsigned long kind = PyLong_AsUnsignedLong(PyTuple_GET_ITEM(descriptor, 0));
   if (kind == 0xffffffffUL) {  // a type inside itself, by its id
-    static PyObject* const mapping = of_module("omniORB", "typeMapping");
     PyObject* const ids = PyTuple_GET_SIZE(descriptor) > 1 ? PyTuple_GET_ITEM(descriptor, 1) : nullptr;
     PyObject* const id = ids && PyList_Check(ids) && PyList_GET_SIZE(ids) > 0 ? PyList_GET_ITEM(ids, 0) : nullptr;
-    PyObject* const target = id && mapping ? PyDict_GetItem(mapping, id) : nullptr;
+    PyObject* const target = id ? registered("typeMapping", id) : nullptr;
     return target && target != descriptor ? type_of(target) : wrong(descriptor);
   }
   auto* type = new Type;
@@ -178,14 +195,12 @@ const Type* type_of(PyObject* descriptor) {
 }
 
 const Type* type_of_value(PyObject* value) {
-  static PyObject* const mapping = of_module("omniORB", "typeMapping");
-  if (!mapping) return nullptr;
   const Ref id(PyObject_GetAttrString(value, "_NP_RepositoryId"));
   if (!id) {
     PyErr_Format(PyExc_TypeError, "the value of a data port must be a structure of an IDL file, got %s", Py_TYPE(value)->tp_name);
     return nullptr;
   }
-  PyObject* const descriptor = PyDict_GetItem(mapping, id.get());
+  PyObject* const descriptor = registered("typeMapping", id.get());
   if (descriptor) return type_of(descriptor);
   PyErr_Format(PyExc_TypeError, "the stubs of %R are not loaded", id.get());
   return nullptr;

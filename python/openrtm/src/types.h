@@ -52,4 +52,9 @@ std::string name_of(const Type& type);
 // omniORB.<name>, borrowed for ever; nullptr with a Python exception.
 PyObject* of_module(const char* module, const char* name);
 
+// What a registry of the module omniORB (typeMapping, objrefMapping) has for a repository id, borrowed. Loads the stub file that has it.
+// Null without an exception if there is none.
+PyObject* registered(const char* registry, PyObject* id);
+PyObject* registered(const char* registry, const char* id);
+
 }  // namespace python

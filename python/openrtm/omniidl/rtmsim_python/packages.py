@@ -1,5 +1,6 @@
 """The packages of IDL modules: they import the stub files that add to a module, and hold the types of these."""
 import os
+import re
 
 
 def make_folder(folder):
@@ -41,7 +42,10 @@ def write_package(options, name, stub, is_poa):
                 elif section == 2 and line.startswith("from . import "):
                     subs.append(line)
     name_of_stub = options.stubs + stub.module
-    line = 'omniORB.importLater(__name__, "%s")' % name_of_stub if options.later and any(one.startswith("import ") for one in stubs) else "import " + name_of_stub
+    line = "import " + name_of_stub
+    if options.later:
+        names = re.findall(r"(?m)^_0_%s\.([A-Za-z]\w*) = " % re.escape(full), "\n".join(stub.lines))
+        line = 'omniORB.importLater(__name__, "%s", "%s")' % (name_of_stub, " ".join(names))
     if line not in stubs:
         stubs.append(line)
     for other in stub.modules_seen:

@@ -1,5 +1,6 @@
 """The stub file of an IDL file: descriptors, classes, references and skeletons."""
 import os
+import sys
 
 from omniidl import idlast, idltype
 

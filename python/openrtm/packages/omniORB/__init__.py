@@ -11,10 +11,34 @@ _Module = type(sys)
 __version__ = "4.2.5"
 coreVersion = lambda: "4.2.5"
 
-typeMapping = {}
-typeCodeMapping = {}
-objrefMapping = {}
-skeletonMapping = {}
+
+
+class _Registry(dict):
+    """Entries by repository id. A stub file that is loaded later registers its types when one of them is looked up."""
+
+    def __missing__(self, repo_id):
+        scope = str(repo_id).partition(":")[2].partition(":")[0].split("/")
+        for module in scope[:-1]:
+            if module in _later:
+                getattr(sys.modules.get(module), scope[-1], None)
+        if dict.__contains__(self, repo_id):
+            return dict.__getitem__(self, repo_id)
+        raise KeyError(repo_id)
+
+    def get(self, repo_id, default=None):
+        try:
+            return self[repo_id]
+        except KeyError:
+            return default
+
+    def __contains__(self, repo_id):
+        return self.get(repo_id) is not None
+
+
+typeMapping = _Registry()
+typeCodeMapping = _Registry()
+objrefMapping = _Registry()
+skeletonMapping = _Registry()
 valueFactoryMapping = {}
 _partial = {}
 _anonymous = "Anonymous IDL"
@@ -196,23 +220,32 @@ def updateModule(name):
     _add_ours(name, module)
 
 
-_later = {}
+_later = {}  # by the name of the module: {stub file: the names that it adds}
 
 
-def importLater(name, stub):
-    """Load a stub file of the module when a name is missing in it: most programs use few of the interfaces."""
-    module = sys.modules[name]
-    _later.setdefault(name, []).append(stub)
+def importLater(name, stub, names=""):
+    """Load a stub file of the module when one of its names is used: most programs use few types and interfaces."""
+    _later.setdefault(name, {})[stub] = names.split()
+    vars(sys.modules[name]).setdefault("__getattr__", lambda attribute: _load_later(name, attribute))
+    vars(sys.modules[name]).setdefault("__dir__", lambda: [*_load_later(name, "__all__"), *vars(sys.modules[name])])
 
-    def missing(attribute):
-        if not attribute.startswith("__"):
-            for one in _later.pop(name, ()):
-                _import(one)
-            if attribute in vars(module):
-                return vars(module)[attribute]
+
+# A stub file leaves the list when it is loaded, so a second thread waits for the first one.
+def _load_later(name, attribute):
+    found, waiting = vars(sys.modules[name]), _later[name]
+    if attribute.startswith("__") and attribute != "__all__":
         raise AttributeError("module %r has no attribute %r" % (name, attribute))
-
-    module.__getattr__ = missing
+    plain = attribute.split("_", 2)[-1] if attribute.startswith("_") else attribute  # _d_X and _tc_X are from the file of X
+    for stub in sorted(list(waiting), key=lambda one: plain not in waiting.get(one, ())):
+        if attribute in found:
+            break
+        _import(stub)
+        waiting.pop(stub, None)
+    if attribute == "__all__":
+        return [one for one in found if not one.startswith("_")]
+    if attribute in found:
+        return found[attribute]
+    raise AttributeError("module %r has no attribute %r" % (name, attribute))
 
 
 # A user's stubs of an IDL module that we have as well (RTC, OpenRTM) come first in sys.path and hold a part of it only.
@@ -226,7 +259,7 @@ def _add_ours(name, module):
             if line.startswith("import ") and line.strip().endswith("_idl"):
                 _import(line.split()[1])
             elif line.startswith("omniORB.importLater("):
-                importLater(name, line.split('"')[1])
+                importLater(name, *line.split('"')[1::2])
 
 
 def promotePartialModule(name):
@@ -293,7 +326,14 @@ def _load(code, file):
 from . import tcInternal  # noqa: E402
 from . import CORBA  # noqa: E402
 from . import PortableServer  # noqa: E402
-import _openrtm_core as _core  # noqa: E402
+
+# The functions of its libraries are looked up when they are called first.
+_flags = sys.getdlopenflags()
+sys.setdlopenflags(_flags & ~_os.RTLD_NOW | _os.RTLD_LAZY)
+try:
+    import _openrtm_core as _core  # noqa: E402
+finally:
+    sys.setdlopenflags(_flags)
 
 sys.modules.setdefault("CORBA", CORBA)
 sys.modules.setdefault("PortableServer", PortableServer)
