@@ -59,18 +59,16 @@ std::string ManagerImpl::where_if(const std::string& text, const std::string& ke
 }
 
 void Manager::connectPorts(const std::string& preconnect) {
-  auto& rtclog = impl_->rtclog;
   const auto where = impl_->where_if(preconnect, "manager.components.preconnect");
   for (const auto& request : base::split_list(preconnect)) {
-    if (auto connected = impl_->connect(request); !connected) RTC_ERROR(("%s%s", where.c_str(), connected.error().message.c_str()));
+    if (auto connected = impl_->connect(request); !connected) impl_->report(where + connected.error().message);
   }
 }
 
 void Manager::activateComponents(const std::string& preactivation) {
-  auto& rtclog = impl_->rtclog;
   const auto where = impl_->where_if(preactivation, "manager.components.preactivation");
   for (const auto& name : base::split_list(preactivation)) {
-    if (auto activated = impl_->activate_component(name); !activated) RTC_ERROR(("%s%s", where.c_str(), activated.error().message.c_str()));
+    if (auto activated = impl_->activate_component(name); !activated) impl_->report(where + activated.error().message);
   }
 }
 

@@ -414,8 +414,7 @@ void ManagerImpl::withdraw(const Record& record) {
 RTObject_impl* Manager::createComponent(const std::string& comp_args) {
   auto made = impl_->create(comp_args);
   if (made) return *made;
-  auto& rtclog = impl_->rtclog;
-  RTC_ERROR(("%s", made.error().message.c_str()));
+  impl_->report(made.error().message);
   return nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 
 #include "base/log.h"
 #include "base/text.h"
@@ -317,6 +318,13 @@ bool ManagerImpl::activate_all() {
   facade.activateComponents(value("manager.components.preactivation"));
   on_exit(&end_at_exit, nullptr);  // again: before what has been made meanwhile is destroyed
   return ok;
+}
+
+void ManagerImpl::report(const std::string& error) {
+  RTC_ERROR(("%s", error.c_str()));
+  const auto outputs = list("logger.file_name");
+  const bool is_logged_there = flag("logger.enable", true) && std::find(outputs.begin(), outputs.end(), "stderr") != outputs.end();
+  if (state.lock()->activating && !is_logged_there) std::cerr << program << ": " << error << std::endl;
 }
 
 // A manager that nobody ever gave a component ends after a while, so that forgotten processes go away.

@@ -137,6 +137,8 @@ class ManagerImpl {
   void publish_ports(const Managed& component);
   void subscribe_ports(const Managed& component);
   bool load_and_create(const std::string& module);
+  // Logs why something could not be loaded or created. While the program starts, stderr gets the line too, unless the log goes there.
+  void report(const std::string& error);
   // Where the manager of this process would find a module; empty if nowhere, or if there is no manager.
   static std::string module_file(const std::string& module);
 
@@ -149,6 +151,7 @@ class ManagerImpl {
   rt::KeysOfCallers keys_of_callers;           // with the turn
   std::map<std::string, std::string> origins;  // of ManagerConfig
   ManagerOptions options;
+  std::string program;  // its name in messages
   ModuleInitProc init_proc = nullptr;
   RTM::ManagerActionListeners listeners;
   base::Guarded<State, base::Rank::manager> state;

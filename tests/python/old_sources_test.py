@@ -1,7 +1,9 @@
 # Sources that were written for Python 2, loaded by rtcd.
+import subprocess
+
 import pytest
 
-from component_test import system  # noqa: F401: a fixture
+from component_test import bin_dir, system  # noqa: F401: system is a fixture
 
 
 @pytest.mark.parametrize("source, line", [
@@ -25,3 +27,27 @@ def test_sources_of_python_2_are_one_line_each_with_what_to_write(system, tmp_pa
     assert host.wait(60) == 1
     assert line in system.log(host), system.log(host)
     assert "Traceback" not in system.log(host)
+
+
+# What stops the host is on stderr also when the log goes to a file, and once when it does not.
+@pytest.mark.parametrize("log", ["rtc.log", "stderr"])
+@pytest.mark.parametrize("module, why", [
+    ("Missing.so", 'module "Missing.so": not found; looked in '),
+    ("Old.py", 'module "Old.py": Old.py:1: is Python 2: write print(...)'),
+    ("Fails.py", ': its initialisation failed'),
+])
+def test_what_stops_the_host_is_on_stderr(tmp_path, log, module, why):
+    (tmp_path / "Old.py").write_text("print 1\n")
+    (tmp_path / "Fails.py").write_text("""import OpenRTM_aist
+class Fails(OpenRTM_aist.DataFlowComponentBase):
+    def onInitialize(self):
+        raise ValueError("no reason")
+def FailsInit(manager):
+    manager.registerFactory(OpenRTM_aist.Properties(defaults_str=["implementation_id", "Fails", "language", "Python", ""]), Fails, OpenRTM_aist.Delete)
+""")
+    host = subprocess.run([f"{bin_dir}/rtcd", "-o", "naming.enable:NO", "-o", f"logger.file_name:{log}",
+                           "-o", "manager.modules.load_path:.", module], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert host.returncode == 1
+    lines = [line for line in host.stderr.splitlines() if why in line]
+    assert len(lines) == 1 and lines[0].startswith("rtcd: ") == (log != "stderr"), host.stderr
+    assert host.stderr.splitlines()[-1] == "rtcd: not everything on the command line could be created"

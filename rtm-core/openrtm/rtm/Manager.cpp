@@ -127,6 +127,7 @@ Manager* Manager::init(int argc, char** argv, const ManagerOptions& options) {
   } else {
     manager->impl_ = std::make_unique<ManagerImpl>(*manager);
   }
+  manager->impl_->program = base_name(argc > 0 ? argv[0] : nullptr);
   if (auto started = manager->impl_->start(config, options); !started) give_up(argc, argv, 1, started.error().message);
   the_place.lock()->starter.reset();
   has_started.notify_all();
@@ -187,7 +188,7 @@ ReturnCode_t Manager::load(const std::string& fname, const std::string& initfunc
   const auto code = impl_->modules->load(file, function, error);
   auto& rtclog = impl_->rtclog;
   if (code != RTC_OK) {
-    RTC_ERROR(("%s", error.c_str()));
+    impl_->report(error);
   } else {
     RTC_DEBUG(("module %s loaded", file.c_str()));
   }
