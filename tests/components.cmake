@@ -11,7 +11,7 @@ rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIE
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)
 rtmsim_component(ManipulatorCaller scenario/manipulator_caller.cpp)
 rtmsim_component(ManipulatorCallerWithoutModule scenario/manipulator_caller_without_module.cpp IDL scenario/without_module/ManipulatorWithoutModule.idl)
-scenario_cases(manipulator. manipulator moves without_module settings bad_values queue alarms emergency low_level dead_client reset)
+scenario_cases(manipulator. manipulator moves without_module settings bad_values queue alarms passed_limits emergency low_level dead_client reset)
 scenario_cases(arms. arms simctl gains act_array dead_commander gripper limb ptz robot_hardware robot_sensors attach)
 
 # Every interface component against a living simulator, in real processes.

@@ -250,6 +250,33 @@ def alarms():
     assert state() == servo
 
 
+# Alarms of what is measured: a joint that is faster than its motor, beyond a soft limit, or the hand beyond the Cartesian ones. Each stops
+# the arm, and is raised once.
+def passed_limits():
+    up()
+
+    def expect(code, text, amount):
+        ok("servoON")
+        ok("movePTPJointAbs", *start)
+        stands()
+        rig.simctl("fault", "arm::joints::waist", "bias", str(amount))
+        await_("an alarm", lambda: state() & ~moving == servo | alarm)  # the place that it holds is not where it is measured
+        answer, active = call("getActiveAlarm")
+        assert answer == OK and re.fullmatch(f"{code} {text}", active), active
+        assert call("movePTPJointAbs", *start)[0] == STATUS
+        ok("servoOFF")  # or the end of the fault is the next alarm
+        rig.simctl("fault", "arm::joints::waist", "--end")
+        ok("clearAlarms")
+        assert call("getActiveAlarm") == (OK, "") and log().count(f"alarm {code}: ") == 1, log()
+
+    expect(3, r"joint 1 moves at [\d.]+ \[rad/s or m/s\], its highest speed is 2", 0.5)
+    ok("setSoftLimitJoint", -0.01, 0.01, -1.9, 1.9, -0.3, 2.6, -3, 3, -2, 2, -4, 4)
+    expect(4, r"joint 1 is at 0.0[\d]+, beyond its soft limits -0.01 and 0.01", 0.06)
+    ok("setSoftLimitJoint", -2.9, 2.9, -1.9, 1.9, -0.3, 2.6, -3, 3, -2, 2, -4, 4)
+    ok("setSoftLimitCartesian", -1, 1, -0.001, 0.001, 0, 2)
+    expect(5, r"the control point is at \([-\d.]+, 0.0[\d]+, [\d.]+\), beyond the Cartesian soft limits", 0.1)
+
+
 def low_level():
     up("conf.default.cycle=10")
 
@@ -320,7 +347,7 @@ def emergency():
     near(ok("getFeedbackPosJoint"), goal)
 
 
-cases = {f.__name__: f for f in (moves, without_module, settings, bad_values, queue, alarms, emergency, low_level, dead_client, reset)}
+cases = {f.__name__: f for f in (moves, without_module, settings, bad_values, queue, alarms, passed_limits, emergency, low_level, dead_client, reset)}
 with rig:
     cases[case]()
 print("ok")
