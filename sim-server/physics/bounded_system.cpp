@@ -1,6 +1,5 @@
 #include "physics/bounded_system.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace sim {
@@ -25,6 +24,42 @@ Bound better_bound(Bound bound, double x, double left_over, double low, double h
   return (bound == Bound::low ? left_over < -tolerance : left_over > tolerance) ? Bound::free : bound;
 }
 
+// Of the rows that are free, with what those at bounds do to them: the lower half of the matrix, and the right side.
+void BoundedSystem::gather_free() {
+  rest_ = b;
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) rest_.noalias() -= x[k] * a.col(k);
+  }
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = free_[static_cast<std::size_t>(i)];
+    found_[i] = rest_[row];
+    const double* from = a.col(row).data();
+    double* to = part_.col(i).data();
+    for (Eigen::Index k = i; k < count; ++k) to[k] = from[free_[static_cast<std::size_t>(k)]];
+  }
+}
+
+// Cholesky's factor in place, and with it the solution. The systems are small: what Eigen does to be fast with large ones takes longer.
+void BoundedSystem::solve_part() {
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::Index below = count - j - 1;
+    auto column = part_.col(j).segment(j + 1, below);
+    const double inverse = 1 / std::sqrt(part_(j, j));
+    part_(j, j) = inverse;
+    column *= inverse;
+    found_[j] *= inverse;
+    found_.segment(j + 1, below).noalias() -= found_[j] * column;
+    for (Eigen::Index k = j + 1; k < count; ++k)
+      part_.col(k).segment(k, count - k).noalias() -= part_(k, j) * part_.col(j).segment(k, count - k);
+  }
+  for (Eigen::Index j = count - 1; j >= 0; --j) {
+    const Eigen::Index below = count - j - 1;
+    found_[j] = (found_[j] - part_.col(j).segment(j + 1, below).dot(found_.segment(j + 1, below))) * part_(j, j);
+  }
+}
+
 void BoundedSystem::solve_free() {
   bool has_moved = solved_ != bounds;  // a bound, or its value
   free_.clear();
@@ -40,20 +75,9 @@ void BoundedSystem::solve_free() {
   }
   if (!has_moved) return;
   solved_ = bounds;
-  const auto count = static_cast<Eigen::Index>(free_.size());
-  auto part = part_.topLeftCorner(count, count);
-  auto found = found_.head(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index row = free_[static_cast<std::size_t>(i)];
-    found[i] = b[row];
-    for (Eigen::Index k = 0; k < x.size(); ++k) {
-      if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) found[i] -= a(row, k) * x[k];
-    }
-    for (Eigen::Index k = i; k < count; ++k) part(k, i) = a(free_[static_cast<std::size_t>(k)], row);
-  }
-  // Looks at the lower half alone.
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(part).solveInPlace(found);
-  for (Eigen::Index i = 0; i < count; ++i) x[free_[static_cast<std::size_t>(i)]] = found[i];
+  gather_free();
+  solve_part();
+  for (std::size_t i = 0; i < free_.size(); ++i) x[free_[i]] = found_[static_cast<Eigen::Index>(i)];
 }
 
 // Returns how many are wrong.

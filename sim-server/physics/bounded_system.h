@@ -23,6 +23,8 @@ struct BoundedSystem {
   bool solve();
 
  private:
+  void gather_free();
+  void solve_part();
   void solve_free();
   std::size_t turn_wrong(bool one_at_a_time);
 
@@ -30,7 +32,7 @@ struct BoundedSystem {
   // Of the free rows; storage is kept.
   std::vector<Eigen::Index> free_;
   Eigen::MatrixXd part_;
-  Eigen::VectorXd found_;
+  Eigen::VectorXd found_, rest_;
 };
 
 // Where a row that is at `bound` ought to be, with its force and the velocity that it leaves over.
