@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sim {
 namespace {
@@ -23,33 +24,20 @@ Eigen::Vector3d gyroscopic_torque(const Eigen::Matrix3d& inertia, const Eigen::V
 template <int size>
 using Square = Eigen::Matrix<double, size, size>;
 
-// Of a symmetric, positive definite matrix; by Cholesky's factors. No numbers when it is none.
+// Of a symmetric, positive definite matrix: Gauss-Jordan elimination without pivoting, whose pivots are positive then. No numbers when it is
+// none.
 template <int size>
 Square<size> inverse_of(const Square<size>& a) {
-  Square<size> l = a, w;  // the factor, with the inverses of its diagonal; its inverse
-  for (int j = 0; j < size; ++j) {
-    l(j, j) = 1 / std::sqrt(l(j, j));
-    for (int i = j + 1; i < size; ++i) l(i, j) *= l(j, j);
-    for (int k = j + 1; k < size; ++k)
-      for (int i = k; i < size; ++i) l(i, k) -= l(i, j) * l(k, j);
+  Square<size> left = -a;  // what is left of the matrix, and what is found of the inverse, with the other sign
+  for (int k = 0; k < size; ++k) {
+    const double pivot = left(k, k) < 0 ? -1 / left(k, k) : std::numeric_limits<double>::quiet_NaN();
+    const Eigen::Matrix<double, size, 1> column = left.col(k), shares = pivot * column;
+    for (int j = 0; j < size; ++j) left.col(j) += shares[j] * column;
+    left.col(k) = shares;
+    left.row(k) = shares.transpose();
+    left(k, k) = pivot;
   }
-  for (int j = 0; j < size; ++j) {
-    w(j, j) = l(j, j);
-    for (int i = j + 1; i < size; ++i) {
-      double sum = 0;
-      for (int k = j; k < i; ++k) sum += l(i, k) * w(k, j);
-      w(i, j) = -sum * l(i, i);
-    }
-  }
-  Square<size> inverse;
-  for (int j = 0; j < size; ++j) {
-    for (int i = j; i < size; ++i) {
-      double sum = 0;
-      for (int k = i; k < size; ++k) sum += w(k, i) * w(k, j);
-      inverse(i, j) = inverse(j, i) = sum;
-    }
-  }
-  return inverse;
+  return left;
 }
 
 // Most joints have at most six free rows; fixed sizes are computed with several times as fast.
