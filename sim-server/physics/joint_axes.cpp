@@ -1,4 +1,5 @@
 // The axes of a joint in ODE: position, rate, effort, inertia and load, and ODE's parameters of an axis.
+#include <algorithm>
 #include <cmath>
 
 #include "physics/joint_frames.h"
@@ -17,6 +18,19 @@ double inertia_about(dBodyID body, const Eigen::Vector3d& axis) {
   return local.dot(inertia.leftCols<3>() * local);
 }
 
+// All that ODE computes the state of a hinge from.
+std::array<double, 14> turning_of(dJointID hinge) {
+  std::array<double, 14> all{};
+  auto to = all.begin();
+  for (const int side : {0, 1}) {
+    const dBodyID body = dJointGetBody(hinge, side);
+    if (body == nullptr) continue;
+    to = std::copy_n(dBodyGetQuaternion(body), 4, to);
+    to = std::copy_n(dBodyGetAngularVel(body), 3, to);
+  }
+  return all;
+}
+
 }  // namespace
 
 bool JointInstance::turns(int) const { return dJointGetType(joint_.id()) != dJointTypeSlider; }
@@ -31,15 +45,13 @@ JointState JointInstance::state(int axis) const {
   return now;
 }
 
-// As ODE has it: an angle within half a turn.
 JointState JointInstance::within_turn(int axis) const {
   const dJointID joint = joint_.id();
   if (joint == nullptr || axis >= axis_count()) return {};
   double position = 0, rate = 0;
   switch (dJointGetType(joint)) {
     case dJointTypeHinge:
-      position = dJointGetHingeAngle(joint), rate = dJointGetHingeAngleRate(joint);
-      break;
+      return seen_ && seen_->bodies == turning_of(joint) ? seen_->state : hinge_state();
     case dJointTypeSlider:
       position = dJointGetSliderPosition(joint), rate = dJointGetSliderPositionRate(joint);
       break;
@@ -60,6 +72,18 @@ JointState JointInstance::within_turn(int axis) const {
       break;
   }
   return {sign_ * position, sign_ * rate};
+}
+
+JointState JointInstance::hinge_state() const {
+  return {sign_ * dJointGetHingeAngle(joint_.id()), sign_ * dJointGetHingeAngleRate(joint_.id())};
+}
+
+// Readers of several threads compare with it: only the stepping thread writes it.
+void JointInstance::remember_hinge() {
+  const dJointID joint = joint_.id();
+  if (joint == nullptr || dJointGetType(joint) != dJointTypeHinge) return;
+  if (!seen_) seen_ = std::make_unique<Seen>();
+  *seen_ = {turning_of(joint), hinge_state()};
 }
 
 std::uint32_t JointInstance::rows() const {

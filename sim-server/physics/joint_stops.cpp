@@ -106,6 +106,7 @@ void JointInstance::begin(double dt, bool is_saved) {
 }
 
 void JointInstance::follow(double dt) {
+  remember_hinge();
   for (int i = 0; i < axis_count(); ++i) {
     const Stops& stops = stops_[static_cast<std::size_t>(i)];
     if (!stops.exists() && !stops.counts_turns) continue;

@@ -52,6 +52,7 @@ class JointInstance {
   const JointDef& def() const { return *def_; }
   int axis_count() const { return axis_count_; }
   JointState state(int axis) const;
+  JointState within_turn(int axis) const;  // as ODE has it: an angle within half a turn
 
   // Where an axis is, and what limits it now. Part of the state of a run.
   struct Place {
@@ -118,7 +119,8 @@ class JointInstance {
   void put_stops(int axis, double low, double high, double erp);
   void move_stops(int axis, double before, double dt);
   void set_stop_parameter(int axis, int parameter, double value);
-  JointState within_turn(int axis) const;
+  JointState hinge_state() const;
+  void remember_hinge();
   void set_parameter(int axis, int base_parameter, double value);
   bool turns(int axis) const;
   bool is_screw() const;
@@ -150,6 +152,12 @@ class JointInstance {
   std::array<Stops, 2> stops_;
   Places places_;
   bool is_followed_ = false;
+  // A hinge as it was after the last step, and what of its bodies that follows from: it is asked for several times until the next one.
+  struct Seen {
+    std::array<double, 14> bodies{};  // orientations and rates of turning
+    JointState state;
+  };
+  std::unique_ptr<Seen> seen_;  // of those that are followed
   std::array<Drive, 2> drives_;
   std::array<double, 2> damping_{0, 0};  // that is not ODE's
   bool has_row_ = false;

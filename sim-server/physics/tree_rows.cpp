@@ -111,9 +111,7 @@ void JointRows::add_axis(JointInstance& joint, const Vector6& of_child, const Ve
 void JointRows::add_rotor(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent) {
   const double inertia = joint.def().axes[0].rotor_inertia;
   if (!(inertia > 0)) return;
-  const dJointID id = joint.id();
-  const double rate = dJointGetType(id) == dJointTypeSlider ? dJointGetSliderPositionRate(id) : dJointGetHingeAngleRate(id);
-  add(on_child, on_parent, rate, dt_ / inertia, -infinite, infinite);
+  add(on_child, on_parent, joint.sign() * joint.within_turn(0).velocity, dt_ / inertia, -infinite, infinite);
 }
 
 void JointRows::add_stop(const JointInstance& joint, const Vector6& on_child, const Vector6& on_parent, bool& is_locked) {
@@ -122,7 +120,7 @@ void JointRows::add_stop(const JointInstance& joint, const Vector6& on_child, co
   const double low = axis_parameter(id, dParamLoStop), high = axis_parameter(id, dParamHiStop);
   const bool has_stops = slides ? std::isfinite(low) || std::isfinite(high) : low >= -M_PI || high <= M_PI;
   if (!has_stops || !(low <= high)) return;
-  const double position = slides ? dJointGetSliderPosition(id) : dJointGetHingeAngle(id);
+  const double position = joint.sign() * joint.within_turn(0).position;
   const bool is_low = position <= low;
   if (!is_low && !(position >= high)) return;
   is_locked = low == high;
