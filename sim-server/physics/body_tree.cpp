@@ -24,8 +24,7 @@ Eigen::Vector3d gyroscopic_torque(const Eigen::Matrix3d& inertia, const Eigen::V
 template <int size>
 using Square = Eigen::Matrix<double, size, size>;
 
-// Of a symmetric, positive definite matrix: Gauss-Jordan elimination without pivoting, whose pivots are positive then. No numbers when it is
-// none.
+// Of a symmetric, positive definite matrix, by Gauss-Jordan elimination, whose pivots are positive then. No numbers when it is none.
 template <int size>
 Square<size> inverse_of(const Square<size>& a) {
   Square<size> left = -a;  // what is left of the matrix, and what is found of the inverse, with the other sign
