@@ -118,11 +118,11 @@ class Barrier {
 
 struct ParticipantOptions {
   std::string name;
-  std::uint32_t phase = 1;  // 0 sensors, 1 clients, 2 actuators; at most 15
-  std::chrono::nanoseconds period = std::chrono::milliseconds(10);
-  std::uint32_t turn = 0;  // within the phase: higher ones begin when lower ones have finished
-  bool looks_on = false;   // a tool, no part of what is simulated: who it is and when it comes is no part of what a run did
-  bool observes = false;   // only looks at what the simulator shows: time need not wait for it at once; the phase does not matter
+  std::uint32_t phase = 1;                                          // 0 sensors, 1 clients, 2 actuators; at most 15
+  std::chrono::nanoseconds period = std::chrono::milliseconds(10);  // 0: every step
+  std::uint32_t turn = 0;                                           // within the phase: higher ones begin when lower ones have finished
+  bool looks_on = false;  // a tool, no part of what is simulated: who it is and when it comes is no part of what a run did
+  bool observes = false;  // only looks at what the simulator shows: time need not wait for it at once; the phase does not matter
 };
 
 struct Tick {

@@ -159,15 +159,17 @@ base::Result<Participant> Participant::join(std::uint32_t server_id, const Parti
   const auto fail = [&](const std::string& what) { return base::Error{"participant " + base::in_quotes(options.name) + ": " + what}; };
   if (options.name.empty()) return fail("needs a name");
   if (options.phase > max_phase) return fail("phase must be 0 to 15, got " + std::to_string(options.phase));
-  if (options.period.count() <= 0 || options.period.count() >= longest_period) {
-    return fail("period must be more than 0 and less than " + std::to_string(longest_period / 1'000'000'000) + " s, got " +
+  if (options.period.count() < 0 || options.period.count() >= longest_period) {
+    return fail("period must be at least 0 and less than " + std::to_string(longest_period / 1'000'000'000) + " s, got " +
                 std::to_string(options.period.count()) + " ns");
   }
   auto simulation = Iface::open(server_id, IfaceType::simulation, "world");
   if (!simulation) return simulation.error();
   if (slot_count(simulation->segment()) == 0) return fail("the server takes no participants");
+  ParticipantOptions wanted = options;
+  if (wanted.period.count() == 0) wanted.period = nanoseconds(simulation->info<SimulationInfo>().step_ns);
   auto impl = std::make_unique<Impl>(std::move(*simulation));
-  if (auto good = impl->take_slot(options); !good) {
+  if (auto good = impl->take_slot(wanted); !good) {
     impl->owner = 0;
     return good.error();
   }

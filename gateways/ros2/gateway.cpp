@@ -23,7 +23,7 @@ constexpr std::chrono::seconds report_period{5}, paused_clock_period{1};
 constexpr std::chrono::milliseconds idle_wait{20};
 
 std::chrono::nanoseconds tick_period(double clock_rate) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / (clock_rate > 0 ? clock_rate : 1000)));
+  return std::chrono::nanoseconds(clock_rate > 0 ? static_cast<std::int64_t>(1e9 / clock_rate) : 0);
 }
 
 std::set<std::string> robots_in(const Listed& listed) {

@@ -14,6 +14,7 @@ namespace ros2 {
 
 class Turns {
  public:
+  // `period`: of the ticks; 0: every step.
   Turns(std::uint32_t server_id, std::chrono::nanoseconds period) : server_id_(server_id), period_(period) {}
 
   // False while there is no simulator; looks for one some times a second.

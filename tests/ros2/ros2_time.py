@@ -64,6 +64,27 @@ def lockstep():
                     scans = peer.samples["/follower/scan"]
                     if len(scans) == seen:
                         time.sleep(0.001)
+# In lock step, a clock without a rate has one message for each step, whatever its length.
+def every_step():
+    for step in ("0.0005", "0.0002", "0.003", "0.000333333333"):
+        with Rig() as rig:
+            rig.sim(f'<sdf version="1.9"><world name="w"><physics name="p" type="ode"><max_step_size>{step}</max_step_size></physics></world></sdf>', "--lockstep", "--paused")
+            rig.gateway("--lockstep", "--clock-rate", "0", robots=0)
+            peer = rig.peer()
+            peer.subscribe("/clock", "rosgraph_msgs/Clock")
+            await_("the gateway joins", lambda: any(one["name"] == "ros2-gateway" for one in rig.participants()))
+            peer.message("/clock", "rosgraph_msgs/Clock")
+            rig.simctl("step", "40")
+            nanoseconds = round(float(step) * 1e9)
+
+            def shown():
+                times = [one["clock"] for one in peer.messages("/clock", "rosgraph_msgs/Clock")]
+                return sorted({one["sec"] * 10**9 + one["nanosec"] for one in times})
+
+            await_("the last step", lambda: shown()[-1] == 40 * nanoseconds)
+            assert shown() == [i * nanoseconds for i in range(41)], (step, shown())
+
+
                         continue
                     scan = wire.decode("sensor_msgs/LaserScan", scans[seen])
                     seen += 1

@@ -45,6 +45,17 @@ TEST(Barrier, a_period_that_is_no_multiple_of_the_step_does_not_drift) {
   thread.join();
 }
 
+TEST(Barrier, a_participant_without_a_period_is_ticked_at_each_step) {
+  BarrierFixture f;
+  std::vector<std::int64_t> ticks;
+  const std::chrono::nanoseconds step(simulation_info().step_ns);
+  auto thread = run(f.join("a", 1, 0ms), [&](const Tick& tick) { ticks.push_back(tick.now / step); });
+  for (int i = 0; i <= 5; ++i) f.barrier->tick(i * step, 0);
+  EXPECT_EQ(ticks, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
+  f.barrier.reset();
+  thread.join();
+}
+
 TEST(Barrier, phases_run_in_order_and_the_members_of_one_phase_together) {
   BarrierFixture f;
   std::mutex mutex;
