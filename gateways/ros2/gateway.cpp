@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <set>
+#include <tuple>
 
 #include "base/descriptors.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "names.h"
 #include "parameters.h"
 #include "robot_topics.h"
 #include "unknown_names.h"
@@ -21,6 +23,11 @@ namespace {
 constexpr std::chrono::milliseconds look_period{200}, resend_period{50}, tend_period{10};
 constexpr std::chrono::seconds report_period{5}, paused_clock_period{1};
 constexpr std::chrono::milliseconds idle_wait{20};
+
+constexpr const char* started_key = "started";
+
+// In so many digits that texts compare as numbers do.
+std::string now_as_text() { return fmt::format("{:020}", std::chrono::system_clock::now().time_since_epoch().count()); }
 
 std::chrono::nanoseconds tick_period(double clock_rate) {
   return std::chrono::nanoseconds(clock_rate > 0 ? static_cast<std::int64_t>(1e9 / clock_rate) : 0);
@@ -40,6 +47,7 @@ std::set<std::string> robots_in(const Listed& listed) {
 
 Gateway::Gateway(Options options)
     : options_(std::move(options)),
+      started_(now_as_text()),
       errands_(options_.server_id),
       steps_(options_.server_id),
       turns_(options_.is_lockstep ? std::make_unique<Turns>(options_.server_id, tick_period(options_.clock_rate)) : nullptr),
@@ -75,7 +83,7 @@ base::Result<void> Gateway::open() {
   if (!graph) return graph.error();
   graph_ = std::move(*graph);
   node_ = std::make_unique<Node>(*participant_, *graph_, gateway_node);
-  if (options_.has_clock) clock_ = node_->advertise<ros::Clock>("/clock");
+  if (options_.has_clock) clock_ = node_->advertise<ros::Clock>("/clock", {.note = started_key + ("=" + started_ + ";")});
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
   if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
   if (options_.has_parameters) serve_parameters(*node_, gateway_node);
@@ -178,11 +186,15 @@ bool Gateway::is_paused() const {
   return world_.clock() && world_.clock()->iface().read() && world_.clock()->iface().sample<shm::SimulationSample>().paused != 0;
 }
 
-// Time would jump back and forth between two of them.
+// Time would jump back and forth between two of them. Of two gateways the older one goes on.
 void Gateway::watch_other_clocks() {
   const auto peers = graph_->peers_of("rt/clock");
-  const auto other = std::ranges::find_if(peers, [](const Peer* peer) { return peer->is_writer; });
-  const bool is_foreign = other != peers.end() && clock_ != nullptr;
+  const auto other = std::ranges::find_if(peers, [this](const Peer* peer) {
+    if (!peer->is_writer || clock_ == nullptr) return false;
+    const auto started = value_in(peer->user_data, started_key);
+    return !started || std::tie(*started, peer->guid) < std::tie(started_, clock_->guid());
+  });
+  const bool is_foreign = other != peers.end();
   if (is_foreign && !is_clock_foreign_)
     base::log(base::Level::error, "ros2-gateway",
               "another node publishes /clock: {}. This gateway does not publish it until that one has ended",
@@ -245,7 +257,10 @@ void Gateway::name_unknown(const Listed& listed) {
   KnownNames known{{models.begin(), models.end()}, {}, command_topics(), {}};
   for (const auto& iface : listed.ifaces) known.ifaces.push_back(iface.name);
   for (const auto& robot : robots_) known.types.insert(robot->types().begin(), robot->types().end());
-  for (const auto& line : lines_of_unknown_names(options_.naming, options_.waits, known)) {
+  auto lines = lines_of_unknown_names(options_.naming, options_.waits, known);
+  if (turns_ && world_.clock() && world_.clock()->iface().info<shm::SimulationInfo>().lockstep == 0)
+    lines.push_back("--lockstep: time does not wait, because the simulator was started without --lockstep");
+  for (const auto& line : lines) {
     if (named_.insert(line).second) base::log(base::Level::warn, "ros2-gateway", "{}", line);
   }
 }

@@ -76,6 +76,8 @@ class Gateway {
 
   Options options_;
   int signals_ = -1;
+  const std::string started_;  // when
+  LogTopic logs_;
   Errands errands_, steps_;       // steps: takes long
   std::unique_ptr<Turns> turns_;  // before the bell, which interrupts it
   Bell bell_;

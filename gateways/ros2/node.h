@@ -23,6 +23,7 @@ namespace ros2 {
 struct Qos {
   bool is_transient = false;
   std::size_t depth = 10;
+  std::string note{};  // "key=value;" beside what ROS 2 has in the user data
 };
 
 template <ros::Message T>
@@ -43,7 +44,7 @@ class Node {
   // `topic` is a full name. Nothing when DDS has no room. The node owns the writer.
   template <ros::Message T>
   Writer* advertise(const std::string& topic, Qos qos = {}, bool is_large = false, std::function<void()> on_match = {}) {
-    return add_writer({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>(), qos.is_transient, qos.depth, is_large},
+    return add_writer({topic_on_wire(topic), type_on_wire(T::name), user_data_of<T>() + qos.note, qos.is_transient, qos.depth, is_large},
                       std::move(on_match));
   }
   // From reliable and from best effort writers. Messages that cannot be read are counted and left out.

@@ -25,6 +25,27 @@ def paused():
         await_("the clock of the reset", lambda: wire.seconds(peer.messages("/clock", "rosgraph_msgs/Clock")[-1]["clock"]) == 0)
 
 
+# Of two gateways in a domain the older one has the clock; the other one takes it over.
+def two_clocks():
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway(robots=2)
+        first = rig.process
+        peer = rig.peer()
+        peer.subscribe("/clock", "rosgraph_msgs/Clock", "best_effort")
+        peer.message("/clock", "rosgraph_msgs/Clock")
+        rig.gateway(robots=2)
+        line = "another node publishes /clock: "
+        await_("the report", lambda: line in rig.log(rig.process))
+        count = len(peer.samples["/clock"])
+        await_("the clock of the first one", lambda: len(peer.samples["/clock"]) > count + 100)
+        assert line not in rig.log(first), rig.log(first)
+        first.terminate()
+        assert first.wait(20) == 0
+        count = len(peer.samples["/clock"])
+        await_("the clock of the second one", lambda: len(peer.samples["/clock"]) > count + 100)
+
+
 # A simulator without readers makes several steps at once. A reader gets the clock of each step.
 def steps():
     def is_watched():
