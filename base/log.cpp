@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/guarded.h"
+#include "base/log_stderr.h"
 #include "base/terminal.h"
 
 namespace base {
@@ -72,7 +73,12 @@ void log_text(Level level, std::string_view name, std::string_view message) {
   auto& log = the_log();
   expect_no_data_held();
   if (const auto sink = log.sink.snapshot()) return (*sink)({level, name, message});
-  log.standard_error->log(spdlog::level::info, "{}: {}: {}", level_name(level), for_terminal(name), for_terminal(message));
+  log_to_stderr({level, name, message});
+}
+
+void log_to_stderr(const LogRecord& record) {
+  the_log().standard_error->log(spdlog::level::info, "{}: {}: {}", level_name(record.level), for_terminal(record.name),
+                                for_terminal(record.message));
 }
 
 }  // namespace base

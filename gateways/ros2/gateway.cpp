@@ -86,7 +86,7 @@ base::Result<void> Gateway::open() {
   if (options_.has_clock) clock_ = node_->advertise<ros::Clock>("/clock", {.note = started_key + ("=" + started_ + ";")});
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
   if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
-  if (options_.has_parameters) serve_parameters(*node_, gateway_node);
+  rosout_ = complete_node(*node_, {.are_served = options_.has_parameters});
   services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, steps_, options_.service_prefix, namespaces());
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
                                             [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
@@ -101,6 +101,7 @@ base::Result<void> Gateway::run() {
   if (!world_.is_there()) base::log(base::Level::info, "ros2-gateway", "waiting for simulator {}", options_.server_id);
   while (!is_over_ && !failed_) turn_loop();
   report_losses();
+  if (rosout_ != nullptr) logs_.send(*rosout_);
   if (failed_) return *failed_;
   return {};
 }
@@ -133,6 +134,8 @@ void Gateway::sleep(std::uint32_t rings) {
 void Gateway::tend(Time now) {
   next_tend_ = now + tend_period;
   node_->tend(now);
+  services_->tend(now);
+  if (rosout_ != nullptr) logs_.send(*rosout_);
   for (const auto& robot : robots_) robot->node().tend(now);
   graph_->tend(now);
   if (now >= next_look_) {
@@ -243,6 +246,7 @@ void Gateway::arrange(const Listed& listed) {
     if (options_.has_parameters && !options_.naming.is_one_node) serve_parameters(robots_.back()->node(), robots_.back()->node().name());
     std::string line = "node " + robots_.back()->node().name().full() + ":";
     for (const auto& topic : robots_.back()->topics()) line += " " + topic.substr(0, topic.find(' '));
+    if (!options_.naming.is_one_node) complete_node(robots_.back()->node(), {.are_served = options_.has_parameters});
     std::printf("%s\n", base::printable(line).c_str());
   }
   std::printf("domain %u: %zu robots\n", options_.dds.domain, robots_.size());
@@ -373,6 +377,7 @@ void Gateway::report_losses() {
     base::log(base::Level::warn, "ros2-gateway", "{} received samples were thrown away: too many came at once", more);
 }
 
+  if (writer.lost() == 0) return;  // several nodes have /rosout
 void Gateway::report_lost(const Writer& writer) {
   const auto more = growth(writer.settings().topic, writer.lost());
   if (more == 0) return;

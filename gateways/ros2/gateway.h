@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "bell.h"
 #include "graph.h"
+#include "log_topic.h"
 #include "naming.h"
 #include "robot.h"
 #include "simulation.h"
@@ -87,6 +88,7 @@ class Gateway {
   std::unique_ptr<Graph> graph_;
   std::unique_ptr<Node> node_;
   std::unique_ptr<SimulationServices> services_;
+  Writer* rosout_ = nullptr;
   Writer* clock_ = nullptr;
   Writer* tf_static_ = nullptr;
   std::unique_ptr<Shared> shared_;

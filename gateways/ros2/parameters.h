@@ -1,11 +1,17 @@
-// The parameter services of a node. It has one parameter: use_sim_time, which is true and cannot be set. One thread at a time.
+// What every node of ROS 2 has: its log, the events of its parameters, and the services of its parameters. There is one parameter:
+// use_sim_time, which cannot be changed. One thread at a time.
 #pragma once
 
 #include "node.h"
 
 namespace ros2 {
 
-// `node` is the name under which the services stand, for a node that shows several.
-void serve_parameters(Node& node, const NodeName& name);
+struct NodeParameters {
+  bool are_served = true;
+  bool is_sim_time = true;  // the value of use_sim_time
+};
+
+// The writer of /rosout, which the node owns; nothing when DDS has no room.
+Writer* complete_node(Node& node, const NodeParameters& parameters);
 
 }  // namespace ros2

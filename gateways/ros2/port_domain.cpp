@@ -16,6 +16,8 @@
 
 #include "base/guarded.h"
 #include "base/log.h"
+#include "node.h"
+#include "parameters.h"
 
 namespace ros2 {
 namespace {
@@ -119,7 +121,8 @@ class PortDomain {
     auto graph = Graph::open(*participant_, settings.family);
     if (!graph) return graph.error();
     graph_ = std::move(*graph);
-    graph_->add_node(node_);
+    own_node_ = std::make_unique<Node>(*participant_, *graph_, node_);
+    complete_node(*own_node_, {.is_sim_time = false});
     stop_ = ::eventfd(0, EFD_CLOEXEC);
     if (stop_ < 0) return base::Error{"cannot create an eventfd for the node of ROS 2: " + std::string(std::strerror(errno))};
     thread_ = std::thread([this] { loop(); });
@@ -138,7 +141,9 @@ class PortDomain {
   Arrived take() {
     const auto mine = turn_.take();
     participant_->deliver();
-    graph_->tend(std::chrono::steady_clock::now());
+    const auto now = std::chrono::steady_clock::now();
+    graph_->tend(now);
+    own_node_->tend(now);
     return std::exchange(arrived_, {});
   }
 
@@ -146,6 +151,7 @@ class PortDomain {
   NodeName node_;
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Graph> graph_;
+  std::unique_ptr<Node> own_node_;
   Arrived arrived_;
   int stop_ = -1;
   std::thread thread_;

@@ -52,9 +52,29 @@ def graph():
             return {one[3] for one in listed if one[1] != "ros_discovery_info"} <= named
 
         info = peer.message("info", "rmw_dds_common/ParticipantEntitiesInfo", is_complete)
+        # What rcl makes for each node.
+        for topic in ("rt/rosout", "rt/parameter_events"):
+            assert len([one for one in listed if one[1] == topic]) == 3, topic
         nodes = {(node["node_namespace"], node["node_name"]) for node in info["node_entities_info_seq"]}
         assert nodes == {("/", "ros2_gateway"), ("/leader", "robot"), ("/follower", "robot")}, nodes
         assert info["gid"]["data"][12:] == b"\0\0\1\xc1", info["gid"]
+
+
+# What the gateway logs is on /rosout, for those who come later, too.
+def log():
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway(robots=2)
+        peer = rig.peer()
+        peer.subscribe("/leader/scan", "nav_msgs/Odometry")  # another type than the gateway's
+        peer.subscribe("/rosout", "rcl_interfaces/Log")
+        line = "/leader/scan has type nav_msgs/msg/Odometry, expected sensor_msgs/msg/LaserScan"
+        message = peer.message("/rosout", "rcl_interfaces/Log", lambda m: line in m["msg"])
+        assert (message["level"], message["name"]) == (30, "ros2_gateway") and message["stamp"]["sec"] > 10**9, message
+        assert line in rig.log(rig.process)
+        late = rig.peer()
+        late.subscribe("/rosout", "rcl_interfaces/Log", durability="transient")
+        late.message("/rosout", "rcl_interfaces/Log", lambda m: line in m["msg"])
 
 
 # Nothing of the graph is sent before the family is known; to Humble, gids of 24 bytes; a second family is reported.
