@@ -42,6 +42,7 @@ struct Bounds {
 };
 struct EntityCategory {
   static constexpr std::string_view name = "simulation_interfaces/msg/EntityCategory";
+  static constexpr std::uint8_t robot = 1, dynamic_object = 4, static_object = 5;
   std::uint8_t category = 0;
   static void fields(auto& m, auto& visit) { visit("category", m.category); }
 };
@@ -65,6 +66,17 @@ struct EntityFilters {
     visit("categories", m.categories);
     visit("tags", m.tags);
     visit("bounds", m.bounds);
+  }
+};
+struct EntityInfo {
+  static constexpr std::string_view name = "simulation_interfaces/msg/EntityInfo";
+  EntityCategory category{};
+  std::string description{};
+  std::vector<std::string> tags{};
+  static void fields(auto& m, auto& visit) {
+    visit("category", m.category);
+    visit("description", m.description);
+    visit("tags", m.tags);
   }
 };
 struct EntityState {
@@ -229,6 +241,39 @@ struct SpawnEntityResponse {
     visit("entity_name", m.entity_name);
   }
 };
+// One of SpawnEntitiesRequest.
+struct SpawnEntity {
+  static constexpr std::string_view name = "simulation_interfaces/msg/SpawnEntity";
+  std::string label{};
+  bool allow_renaming = false;
+  Resource entity_resource{};
+  std::string entity_namespace{};
+  PoseStamped initial_pose{};
+  static void fields(auto& m, auto& visit) { SpawnEntityRequest2::fields(m, visit); }
+};
+struct SpawnResult {
+  static constexpr std::string_view name = "simulation_interfaces/msg/SpawnResult";
+  SimulationResult result{};
+  std::string entity_name{};
+  static void fields(auto& m, auto& visit) {
+    visit("result", m.result);
+    visit("entity_name", m.entity_name);
+  }
+};
+struct SpawnEntitiesRequest {
+  static constexpr std::string_view name = "simulation_interfaces/srv/SpawnEntities_Request";
+  std::vector<SpawnEntity> spawn_requests{};
+  static void fields(auto& m, auto& visit) { visit("spawn_requests", m.spawn_requests); }
+};
+struct SpawnEntitiesResponse {
+  static constexpr std::string_view name = "simulation_interfaces/srv/SpawnEntities_Response";
+  SimulationResult result{};
+  std::vector<SpawnResult> results{};
+  static void fields(auto& m, auto& visit) {
+    visit("result", m.result);
+    visit("results", m.results);
+  }
+};
 struct DeleteEntityRequest {
   static constexpr std::string_view name = "simulation_interfaces/srv/DeleteEntity_Request";
   std::string entity{};
@@ -251,6 +296,20 @@ struct GetEntitiesResponse {
   static void fields(auto& m, auto& visit) {
     visit("result", m.result);
     visit("entities", m.entities);
+  }
+};
+struct GetEntityInfoRequest {
+  static constexpr std::string_view name = "simulation_interfaces/srv/GetEntityInfo_Request";
+  std::string entity{};
+  static void fields(auto& m, auto& visit) { visit("entity", m.entity); }
+};
+struct GetEntityInfoResponse {
+  static constexpr std::string_view name = "simulation_interfaces/srv/GetEntityInfo_Response";
+  SimulationResult result{};
+  EntityInfo info{};
+  static void fields(auto& m, auto& visit) {
+    visit("result", m.result);
+    visit("info", m.info);
   }
 };
 struct GetEntityStateRequest {

@@ -1,12 +1,8 @@
 #include "simulation.h"
 
-#include <regex.h>
-
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -18,18 +14,17 @@ namespace ros2 {
 namespace {
 
 using ros::SimulationResult;
-constexpr std::size_t max_pattern = 200;
-constexpr std::uint64_t max_steps = 1'000'000'000;
-constexpr std::chrono::minutes step_timeout{10};
 
 // What simulation_interfaces calls the abilities of this simulator.
 enum Feature : std::uint16_t {
   spawning = 0,
   deleting = 1,
+  entity_categories = 8,
   spawning_resource_string = 9,
-  spawnables = 14,
   entity_state_getting = 10,
   entity_state_setting = 11,
+  entity_info_getting = 12,
+  spawnables = 14,
   simulation_reset = 20,
   simulation_reset_state = 22,
   simulation_state_getting = 24,
@@ -37,12 +32,14 @@ enum Feature : std::uint16_t {
   simulation_state_pause = 26,
   step_single = 31,
   step_multiple = 32,
+  step_action = 33,
   world_info_getting = 44,
+  spawning_entities = 50,
 };
 // Results that a service has for itself.
 constexpr std::uint8_t already_in_state = 101, transition_error = 102, incorrect_transition = 103, name_not_unique = 101,
                        name_invalid = 102, unsupported_format = 103, no_resource = 104, namespace_invalid = 105, resource_parse_error = 106,
-                       invalid_pose = 109, state_invalid_pose = 101, no_world = 101;
+                       invalid_pose = 109, state_invalid_pose = 101, no_world = 101, spawn_failed = 150;
 
 SimulationResult good() { return {SimulationResult::ok, ""}; }
 // Without the end of a text that repeats a huge value of the client.
@@ -56,44 +53,6 @@ SimulationResult bad(std::uint8_t code, std::string why) {
   }
   return {code, std::move(why)};
 }
-
-// The C library unrolls repetitions, one in another too: three characters of a client would fill the memory. It also looks for back
-// references, which ERE has not, in a time that grows with each one.
-bool is_cheap(const std::string& pattern) {
-  constexpr double most = 1000;
-  double copies = 1;
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    if (pattern[i] == '\\' && i + 1 < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i + 1])) != 0) return false;
-    if (pattern[i] != '{') continue;
-    const char* at = pattern.c_str() + i + 1;
-    char* end = nullptr;
-    double count = std::strtod(at, &end);
-    if (*end == ',') count = std::max(count, std::strtod(end + 1, &end));
-    copies *= std::max(count, 1.0);
-  }
-  return copies <= most;
-}
-
-// A POSIX extended regular expression; one of clients, so its length and its repetitions are limited.
-class Pattern {
- public:
-  explicit Pattern(const std::string& text) : is_everything_(text.empty()) {
-    is_good_ = is_everything_ ||
-               (text.size() <= max_pattern && is_cheap(text) && ::regcomp(&compiled_, text.c_str(), REG_EXTENDED | REG_NOSUB) == 0);
-  }
-  ~Pattern() {
-    if (is_good_ && !is_everything_) ::regfree(&compiled_);
-  }
-  Pattern(const Pattern&) = delete;
-  Pattern& operator=(const Pattern&) = delete;
-  bool is_good() const { return is_good_; }
-  bool fits(const std::string& name) const { return is_everything_ || ::regexec(&compiled_, name.c_str(), 0, nullptr, 0) == 0; }
-
- private:
-  const bool is_everything_;
-  bool is_good_ = false;
-  regex_t compiled_{};
-};
 
 std::vector<std::string> models_in(const std::string& tree) {
   std::vector<std::string> names;
@@ -124,6 +83,14 @@ std::optional<std::string> problem_of_model_name(const std::string& name, bool m
   return std::nullopt;
 }
 
+SimulationResult no_model(const std::string& name) { return bad(SimulationResult::not_found, "the world has no model \"" + name + "\""); }
+
+// The simulator has one status for all: its words tell a uri of nothing from a file that cannot be read.
+std::uint8_t code_of_failed_spawn(const std::string& uri, const std::string& message) {
+  const auto words = base::in_quotes(std::string(base::trim(uri))) + " is not found";
+  return !uri.empty() && message.find(words) != std::string::npos ? SimulationResult::not_found : resource_parse_error;
+}
+
 // "<mujoco ...>" and other formats. A text that is no XML at all is one that cannot be parsed.
 bool is_other_format(const std::string& text) {
   const auto root = base::trim(text);
@@ -140,9 +107,16 @@ bool is_world(const std::string& frame) { return frame.empty() || frame == "worl
 
 SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix,
                                        Namespaces namespaces)
-    : node_(node), world_(world), errands_(errands), steps_(steps), prefix_(std::move(prefix)), namespaces_(std::move(namespaces)) {
+    : node_(node),
+      world_(world),
+      errands_(errands),
+      steps_(steps),
+      prefix_(std::move(prefix)),
+      namespaces_(std::move(namespaces)),
+      steps_action_(node, world, errands, steps, name("simulate_steps")) {
   serve_time();
   serve_entities();
+  serve_spawning();
   serve_spawnables();
   serve_entity_states();
 }
@@ -167,9 +141,9 @@ void SimulationServices::serve_time() {
   node_.serve<ros::GetSimulatorFeaturesRequest, ros::GetSimulatorFeaturesResponse>(
       name("get_simulator_features"), [](const auto&, const auto& reply) {
         reply(ros::GetSimulatorFeaturesResponse{
-            {{spawning, deleting, spawning_resource_string, spawnables, entity_state_getting, entity_state_setting, simulation_reset,
-              simulation_reset_state, simulation_state_getting, simulation_state_setting, simulation_state_pause, step_single,
-              step_multiple, world_info_getting},
+            {{spawning, deleting, entity_categories, spawning_resource_string, entity_state_getting, entity_state_setting,
+              entity_info_getting, spawnables, simulation_reset, simulation_reset_state, simulation_state_getting, simulation_state_setting,
+              simulation_state_pause, step_single, step_multiple, step_action, world_info_getting, spawning_entities},
              {"sdf", "urdf"},
              "rtm-sim"}});
       });
@@ -210,10 +184,7 @@ void SimulationServices::serve_time() {
   node_.serve<ros::StepSimulationRequest, ros::StepSimulationResponse>(
       name("step_simulation"), [this](const auto& request, const auto& reply) {
         const auto answer = [reply](const Result& result) { reply(ros::StepSimulationResponse{result}); };
-        if (state().state == ros::SimulationState::playing)
-          return answer(bad(SimulationResult::failed, "the simulation runs; pause it first"));
-        if (request.steps < 1 || request.steps > max_steps)
-          return answer(bad(SimulationResult::failed, "steps must be from 1 to 1000000000, got " + std::to_string(request.steps)));
+        if (const auto problem = problem_of_steps(world_, request.steps)) return answer(bad(SimulationResult::failed, *problem));
         steps_.post(
             shm::StepRequest{.steps = static_cast<std::int64_t>(request.steps)},
             [answer](const base::Result<shm::Reply>& done) { answer(done ? good() : bad(SimulationResult::failed, done.error().message)); },
@@ -228,44 +199,81 @@ void SimulationServices::serve_time() {
 
 // ---- entities ----
 
-void SimulationServices::ask_models(const ros::EntityFilters& filters, OnModels done) {
-  if (!filters.categories.empty() || !filters.tags.tags.empty() || filters.bounds.type != 0)
-    return done({}, bad(SimulationResult::unsupported, "only the filter by name is supported: categories, tags and bounds must be empty"));
-  const auto pattern = std::make_shared<Pattern>(filters.filter);
-  if (!pattern->is_good())
-    return done({}, bad(SimulationResult::failed,
-                        "filter must be a POSIX extended regular expression of at most 200 characters, with {N} of at "
-                        "most 1000 copies in all; got \"" +
-                            filters.filter + "\""));
-  errands_.post(shm::TreeRequest{}, [pattern, done = std::move(done)](const base::Result<shm::Reply>& reply) {
+void SimulationServices::ask_entities(const ros::EntityFilters& filters, OnEntities done) {
+  if (const auto problem = problem_of(filters)) return done({}, bad(problem->result, problem->error_message));
+  errands_.post(shm::ListRequest{}, [filters, done = std::move(done)](const base::Result<shm::Reply>& reply) {
     if (!reply) return done({}, bad(SimulationResult::failed, reply.error().message));
-    auto models = models_in(reply->text);
-    std::erase_if(models, [&](const std::string& model) { return !pattern->fits(model); });
-    done(models, good());
+    done(filtered(entities_in(reply->text), filters), good());
   });
 }
 
 void SimulationServices::serve_entities() {
   node_.serve<ros::GetEntitiesRequest, ros::GetEntitiesResponse>(name("get_entities"), [this](const auto& request, const auto& reply) {
-    ask_models(request.filters, [reply](const std::vector<std::string>& models, const Result& result) {
-      reply(ros::GetEntitiesResponse{result, models});
+    ask_entities(request.filters, [reply](const std::vector<Entity>& entities, const Result& result) {
+      ros::GetEntitiesResponse response{result, {}};
+      for (const auto& entity : entities) response.entities.push_back(entity.name);
+      reply(response);
     });
   });
+  node_.serve<ros::GetEntityInfoRequest, ros::GetEntityInfoResponse>(
+      name("get_entity_info"), [this](const auto& request, const auto& reply) {
+        ask_entities({}, [reply, wanted = request.entity](const std::vector<Entity>& entities, const Result& result) {
+          if (result.result != SimulationResult::ok) return reply(ros::GetEntityInfoResponse{result, {}});
+          const auto found = std::ranges::find(entities, wanted, &Entity::name);
+          if (found == entities.end()) return reply(ros::GetEntityInfoResponse{no_model(wanted), {}});
+          reply(ros::GetEntityInfoResponse{good(), {{found->category}, "", {}}});
+        });
+      });
   node_.serve<ros::DeleteEntityRequest, ros::DeleteEntityResponse>(name("delete_entity"), [this](const auto& request, const auto& reply) {
-    ask_models({}, [this, reply, entity = request.entity](const std::vector<std::string>& models, const Result& result) {
+    ask_entities({}, [this, reply, wanted = request.entity](const std::vector<Entity>& entities, const Result& result) {
       const auto answer = [reply](const Result& done) { reply(ros::DeleteEntityResponse{done}); };
       if (result.result != SimulationResult::ok) return answer(result);
-      if (std::ranges::find(models, entity) == models.end())
-        return answer(bad(SimulationResult::not_found, "the world has no model \"" + entity + "\""));
-      ask(shm::DeleteRequest{entity}, answer);
+      if (std::ranges::find(entities, wanted, &Entity::name) == entities.end()) return answer(no_model(wanted));
+      ask(shm::DeleteRequest{wanted}, answer);
     });
   });
+}
+
+// ---- new entities ----
+
+// Entities that are spawned one after the other.
+struct SimulationServices::Batch {
+  std::vector<ros::SpawnEntity> requests;
+  std::function<void(const ros::SpawnEntitiesResponse&)> reply;
+  ros::SpawnEntitiesResponse response{good(), {}};
+};
+
+void SimulationServices::serve_spawning() {
   node_.serve_both<ros::SpawnEntityRequest, ros::SpawnEntityRequest2, ros::SpawnEntityResponse>(
       name("spawn_entity"), [this](const auto& request, const auto& reply) { spawn(request, reply); },
       [this](const auto& newer, const auto& reply) {
         const auto& [uri, text] = newer.entity_resource;
         spawn({newer.label, newer.allow_renaming, uri, text, newer.entity_namespace, newer.initial_pose}, reply);
       });
+  node_.serve<ros::SpawnEntitiesRequest, ros::SpawnEntitiesResponse>(
+      name("spawn_entities"), [this](const auto& request, const auto& reply) {
+        constexpr std::size_t most = 500;
+        if (request.spawn_requests.size() > most)
+          return reply(ros::SpawnEntitiesResponse{bad(SimulationResult::failed, "spawn_requests must be at most 500"), {}});
+        spawn_next(std::make_shared<Batch>(Batch{request.spawn_requests, reply}));
+      });
+}
+
+void SimulationServices::spawn_next(const std::shared_ptr<Batch>& batch) {
+  auto& response = batch->response;
+  const std::size_t done = response.results.size();
+  if (done == batch->requests.size()) return batch->reply(response);
+  const auto& one = batch->requests[done];
+  const auto& [uri, text] = one.entity_resource;
+  spawn({one.label, one.allow_renaming, uri, text, one.entity_namespace, one.initial_pose},
+        [this, batch](const ros::SpawnEntityResponse& spawned) {
+          auto& all = batch->response;
+          all.results.push_back({spawned.result, spawned.entity_name});
+          if (spawned.result.result != SimulationResult::ok && all.result.result == SimulationResult::ok)
+            all.result =
+                bad(spawn_failed, "spawn_requests[" + std::to_string(all.results.size() - 1) + "]: " + spawned.result.error_message);
+          spawn_next(batch);
+        });
 }
 
 // What a client may spawn by its uri: the models of the model path that the simulator opens for clients.
@@ -291,7 +299,7 @@ void SimulationServices::serve_spawnables() {
       });
 }
 
-void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply) {
+void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const OnSpawned& reply) {
   const auto refuse = [&](std::uint8_t code, const std::string& why) { reply(ros::SpawnEntityResponse{bad(code, why), ""}); };
   if (request.uri.empty() && request.resource_string.empty()) return refuse(no_resource, "uri and resource_string are empty");
   if (const auto problem = problem_of_model_name(request.label, request.allow_renaming)) return refuse(name_invalid, *problem);
@@ -310,12 +318,11 @@ void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const std
   });
 }
 
-void SimulationServices::spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose,
-                                  const std::function<void(const ros::SpawnEntityResponse&)>& reply) {
-  ask_models({}, [this, request, reply, pose](const std::vector<std::string>& models, const Result& result) {
+void SimulationServices::spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose, const OnSpawned& reply) {
+  ask_entities({}, [this, request, reply, pose](const std::vector<Entity>& entities, const Result& result) {
     if (result.result != SimulationResult::ok) return reply(ros::SpawnEntityResponse{result, ""});
     std::string wanted = request.label;
-    for (int i = 1; !wanted.empty() && std::ranges::find(models, wanted) != models.end(); ++i) {
+    for (int i = 1; !wanted.empty() && std::ranges::find(entities, wanted, &Entity::name) != entities.end(); ++i) {
       if (!request.allow_renaming)
         return reply(ros::SpawnEntityResponse{bad(name_not_unique, "the world has a model \"" + wanted + "\" already"), ""});
       wanted = request.label + "_" + std::to_string(i);
@@ -323,8 +330,9 @@ void SimulationServices::spawn_at(const ros::SpawnEntityRequest& request, const 
     const bool is_path = !request.uri.empty();  // the text is ignored then
     // For clients that may not read all that the simulator may.
     shm::SpawnRequest spawn{is_path ? request.uri : request.resource_string, is_path, wanted, true, pose, true};
-    errands_.post(std::move(spawn), [this, reply, space = full_namespace(request.entity_namespace)](const base::Result<shm::Reply>& done) {
-      if (!done) return reply(ros::SpawnEntityResponse{bad(resource_parse_error, done.error().message), ""});
+    errands_.post(std::move(spawn), [this, reply, uri = request.uri,
+                                     space = full_namespace(request.entity_namespace)](const base::Result<shm::Reply>& done) {
+      if (!done) return reply(ros::SpawnEntityResponse{bad(code_of_failed_spawn(uri, done.error().message), done.error().message), ""});
       namespaces_.on_spawned(done->message, space);
       reply(ros::SpawnEntityResponse{good(), done->message});
     });
@@ -367,13 +375,13 @@ void SimulationServices::serve_entity_states() {
       });
   node_.serve<ros::GetEntitiesStatesRequest, ros::GetEntitiesStatesResponse>(
       name("get_entities_states"), [this](const auto& request, const auto& reply) {
-        ask_models(request.filters, [this, reply](const std::vector<std::string>& models, const Result& result) {
+        ask_entities(request.filters, [this, reply](const std::vector<Entity>& entities, const Result& result) {
           const auto response = std::make_shared<ros::GetEntitiesStatesResponse>(ros::GetEntitiesStatesResponse{result, {}, {}});
-          if (models.empty()) return reply(*response);
-          const auto left = std::make_shared<std::size_t>(models.size());
-          for (const auto& model : models) {
+          if (entities.empty()) return reply(*response);
+          const auto left = std::make_shared<std::size_t>(entities.size());
+          for (const auto& entity : entities) {
             // One that was deleted meanwhile is left out.
-            ask_state(model, [reply, response, left, model](const ros::EntityState& state, const Result& one) {
+            ask_state(entity.name, [reply, response, left, model = entity.name](const ros::EntityState& state, const Result& one) {
               if (one.result == SimulationResult::ok) {
                 response->entities.push_back(model);
                 response->states.push_back(state);

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "entities.h"
 #include "node.h"
 #include "ros/simulation_services.h"
+#include "steps_action.h"
 #include "world.h"
 
 namespace ros2 {
@@ -26,23 +28,29 @@ class SimulationServices {
   // "/sim/get_simulation_state" and so on. All must outlive this object.
   SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix, Namespaces namespaces);
 
+  // To be called some times a second.
+  void tend(std::chrono::steady_clock::time_point now) { steps_action_.tend(now); }
+
  private:
   using Result = ros::SimulationResult;
-  using OnModels = std::function<void(const std::vector<std::string>& models, const Result& result)>;
+  using OnEntities = std::function<void(const std::vector<Entity>& entities, const Result& result)>;
+  using OnSpawned = std::function<void(const ros::SpawnEntityResponse&)>;
   using OnState = std::function<void(const ros::EntityState& state, const Result& result)>;
 
   void serve_time();
   void serve_entities();
   void serve_spawnables();
   void serve_entity_states();
-  void spawn(const ros::SpawnEntityRequest& request, const std::function<void(const ros::SpawnEntityResponse&)>& reply);
-  void spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose,
-                const std::function<void(const ros::SpawnEntityResponse&)>& reply);
+  void serve_spawning();
+  void spawn(const ros::SpawnEntityRequest& request, const OnSpawned& reply);
+  void spawn_at(const ros::SpawnEntityRequest& request, const shm::Pose& pose, const OnSpawned& reply);
+  struct Batch;
+  void spawn_next(const std::shared_ptr<Batch>& batch);
   std::optional<std::string> problem_of_namespace(const std::string& typed) const;
   // 2.x says what is set; 1.x sets pose and twist.
   void set_state(const ros::SetEntityStateRequest2& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);
-  // Asks the simulator for its models; those that the filter names.
-  void ask_models(const ros::EntityFilters& filters, OnModels done);
+  // Asks the simulator for its models; those that the filters name.
+  void ask_entities(const ros::EntityFilters& filters, OnEntities done);
   void ask_state(const std::string& entity, OnState done);
   // The simulator's answer as a result.
   void ask(shm::Request request, std::function<void(const Result&)> done);
@@ -55,6 +63,7 @@ class SimulationServices {
   Errands& steps_;
   const std::string prefix_;
   const Namespaces namespaces_;
+  StepsAction steps_action_;
 };
 
 }  // namespace ros2

@@ -12,6 +12,7 @@
 #include "mappings/geometry.h"
 #include "mappings/numbers.h"
 #include "mappings/sensors.h"
+#include "ros/action_messages.h"
 #include "ros/command_messages.h"
 #include "ros/graph_messages.h"
 #include "ros/parameter_services.h"
@@ -119,6 +120,9 @@ std::vector<Entrance> entrances() {
       message(ros::GetParametersRequest{{"a", "b"}}),
       message(ros::SetParametersRequest{{{"a", {}}}}),
       message(ros::SpawnEntityRequest{"n", true, "u", "r", "s", {header, pose}}),
+      message(ros::SpawnEntitiesRequest{{{"n", true, {"u", "r"}, "s", {header, pose}}, {}}}),
+      message(ros::SimulateStepsSendGoalRequest{{{1, 2, 3}}, {10}}),
+      message(ros::CancelGoalRequest{{{{1, 2, 3}}, {1, 2}}}),
       message(ros::SpawnEntityRequest2{"n", true, {"u", "r"}, "s", {header, pose}}),
       message(ros::SetEntityStateRequest{"n", {header, pose, {}, {}}}),
       message(ros::GetEntitiesRequest{{"a.*", {}, {{"t"}, 0}, {1, {{1, 2, 3}}}}}),

@@ -1,5 +1,6 @@
 # Services in the forms of both kinds of client: ros2_services.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import math
+import re
 
 from ros2_rig import *
 
@@ -124,17 +125,96 @@ def entities():
         delete = caller(peer, "DeleteEntity")
         assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 1
         assert ask(delete, "EntityRequest", {"entity": "crate"})["result"] == 2
-        # A text beside a uri is ignored.
-        assert spawned(name="x", uri="model://there_is_none")[0] == 106
+        # A text beside a uri is ignored. A uri of nothing is no file that cannot be read.
+        assert spawned(name="x", uri="model://there_is_none")[0] == 2
+        info = caller(peer, "GetEntityInfo")
+        assert [ask(info, "EntityRequest", {"entity": name}, "GetEntityInfoResponse")["category"] for name in ("leader", "crate_1", "wall_north")] == [1, 4, 5]
+        assert ask(info, "EntityRequest", {"entity": "nobody"}, "GetEntityInfoResponse")["result"]["result"] == 2
+        robots = listing.call("simulation_interfaces/GetEntitiesRequest", {"filter": "", **unfiltered, "categories": b"\1"}, "simulation_interfaces/GetEntitiesResponse")
+        assert sorted(robots["entities"]) == ["follower", "leader"], robots
+        several = caller(peer, "SpawnEntities")
+        ones = [{"name": name, "allow_renaming": False, "entity_resource": {"uri": "", "resource_string": sdf}, "entity_namespace": "", "initial_pose": place}
+                for name in ("one", "one", "two")]
+        made = ask(several, "SpawnEntitiesRequest", {"spawn_requests": ones}, "SpawnEntitiesResponse")
+        assert [(one["result"]["result"], one["entity_name"]) for one in made["results"]] == [(1, "one"), (101, ""), (1, "two")], made
+        assert made["result"]["result"] == 150 and made["result"]["error_message"].startswith("spawn_requests[1]: "), made
+        assert ask(several, "SpawnEntitiesRequest", {"spawn_requests": []}, "SpawnEntitiesResponse")["result"]["result"] == 1
         states = caller(peer, "GetEntitiesStates")
         both = ask(states, "GetEntitiesRequest", {"filter": "^(leader|follower)$", **unfiltered}, "GetEntitiesStatesResponse")
         assert sorted(both["entities"]) == ["follower", "leader"] and both["result"]["result"] == 1, both
         assert abs(both["states"][both["entities"].index("leader")]["pose"]["position"]["x"] + 3.2) < 1e-3, both
         nobody = ask(states, "GetEntitiesRequest", {"filter": "^nobody$", **unfiltered}, "GetEntitiesStatesResponse")
         assert nobody["result"]["result"] == 1 and not nobody["entities"] and not nobody["states"], nobody
-        for part in ({"categories": b"\1"}, {"tags": ["a"]}, {"bounds": {"type": 3, "points": [ZERO, ZERO]}}):
+        for part in ({"tags": ["a"]}, {"bounds": {"type": 3, "points": [ZERO, ZERO]}}):
             refused = ask(states, "GetEntitiesRequest", {"filter": "", **unfiltered, **part}, "GetEntitiesStatesResponse")["result"]
             assert refused["result"] == 0, (part, refused)
+
+
+# The action: feedback, results, and what cannot be executed.
+def action():
+    front = "simulation_interfaces::action::dds_::SimulateSteps_"
+    with Rig() as rig:
+        rig.sim(two, "--paused")
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        of_features = {one: caller(peer, one) for one in ("GetSimulatorFeatures", "SetSimulationState", "ResetSimulation")}
+        features = of_features["GetSimulatorFeatures"].call("std_srvs/Empty", {"structure_needs_at_least_one_member": 0}, "simulation_interfaces/GetSimulatorFeaturesResponse")
+        assert 33 in features["features"], features
+        place = "/simulate_steps/_action/"
+        send, result = (CycloneClient(peer, place + name, f"{front}{kind}_Request_", f"{front}{kind}_Response_") for name, kind in (("send_goal", "SendGoal"), ("get_result", "GetResult")))
+        stop = CycloneClient(peer, place + "cancel_goal", "action_msgs::srv::dds_::CancelGoal_Request_", "action_msgs::srv::dds_::CancelGoal_Response_")
+        peer.subscribe(place + "feedback", "simulation_interfaces/action/SimulateSteps_FeedbackMessage")
+        peer.subscribe(place + "status", "action_msgs/GoalStatusArray", durability="transient")
+        peer.await_matched(place + "feedback")
+        peer.await_matched(place + "status")
+        now = {"sec": 0, "nanosec": 0}
+
+        def start(number, steps):
+            reply = send.call("simulation_interfaces/SendGoalRequest", {"goal_id": bytes([number]) * 16, "steps": steps}, "simulation_interfaces/SendGoalResponse")
+            return reply["accepted"]
+
+        def outcome(number):
+            reply = ask(result, "GetResultRequest", {"goal_id": bytes([number]) * 16}, "GetResultResponse")
+            return reply["status"], reply["result"]["result"], reply["result"]["error_message"]
+
+        def cancel(number, stamp=now):
+            goal = {"goal_id": bytes([number]) * 16, "stamp": stamp}
+            reply = stop.call("action_msgs/CancelGoalRequest", {"goal_info": goal}, "action_msgs/CancelGoalResponse")
+            return reply["return_code"], [one["goal_id"][0] for one in reply["goals_canceling"]]
+
+        def told(number):
+            messages = peer.messages(place + "feedback", "simulation_interfaces/action/SimulateSteps_FeedbackMessage")
+            return [(one["completed_steps"], one["remaining_steps"]) for one in messages if one["goal_id"][0] == number]
+
+        def status(number, wanted):
+            peer.message(place + "status", "action_msgs/GoalStatusArray", lambda m: any((one["goal_info"]["goal_id"][0], one["status"]) == (number, wanted) for one in m["status_list"]))
+
+        assert start(1, 100) and outcome(1) == (4, 1, "") and rig.stats()["steps"] == 100
+        await_("feedback", lambda: told(1)[-1:] == [(100, 0)])
+        status(1, 4)
+        assert not start(1, 1), "an id is used once"
+        assert cancel(1) == (3, []) and cancel(9) == (2, []) and cancel(0) == (0, [])
+        assert outcome(9) == (0, 0, "")
+        assert start(2, 0) and outcome(2)[:2] == (6, 4) and "from 1 to 1000000000" in outcome(2)[2]
+        # A long one: feedback on its way; another one beside it is aborted; by its name, or all, it is canceled.
+        for number, name in ((3, 3), (4, 0)):
+            assert start(number, 10**9)
+            status(number, 2)
+            await_("feedback on the way", lambda: len(told(number)) > 1)
+            assert start(number + 10, 1) and outcome(number + 10) == (6, 4, "another goal is executed")
+            waiting = result.start("simulation_interfaces/GetResultRequest", {"goal_id": bytes([number]) * 16})
+            assert cancel(name) == (0, [number])
+            reply = result.reply(waiting, "simulation_interfaces/GetResultResponse")
+            assert reply["status"] == 5 and re.match(r"canceled: \d+ of 1000000000 steps were made", reply["result"]["error_message"]), reply
+            assert rig.stats()["paused"]
+            before = told(number)
+            assert all(done + left == 10**9 for done, left in before) and before == sorted(before), before
+        assert start(5, 10**9)
+        await_("feedback on the way", lambda: told(5))
+        assert ask(of_features["ResetSimulation"], "ResetSimulationRequest", {"scope": 0})["result"] == 1
+        assert outcome(5)[:2] == (6, 4), outcome(5)
+        assert ask(of_features["SetSimulationState"], "SetSimulationStateRequest", {"state": 1})["result"] == 1
+        assert start(6, 1) and outcome(6) == (6, 4, "the simulation runs; pause it first")
 
 
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}

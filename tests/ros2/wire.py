@@ -126,6 +126,22 @@ simulation_interfaces/GetSpawnablesResponse: simulation_interfaces/Result result
 simulation_interfaces/Resource: str uri, str resource_string
 simulation_interfaces/Spawnable2: simulation_interfaces/Resource entity_resource, str description, simulation_interfaces/Bounds spawn_bounds
 simulation_interfaces/GetSpawnablesResponse2: simulation_interfaces/Result result, simulation_interfaces/Spawnable2[] spawnables
+simulation_interfaces/GetEntityInfoResponse: simulation_interfaces/Result result, u8 category, str description, str[] tags
+simulation_interfaces/SpawnEntity: str name, bool allow_renaming, simulation_interfaces/Resource entity_resource, str entity_namespace, geometry_msgs/PoseStamped initial_pose
+simulation_interfaces/SpawnResult: simulation_interfaces/Result result, str entity_name
+simulation_interfaces/SpawnEntitiesRequest: simulation_interfaces/SpawnEntity[] spawn_requests
+simulation_interfaces/SpawnEntitiesResponse: simulation_interfaces/Result result, simulation_interfaces/SpawnResult[] results
+action_msgs/GoalInfo: u8[16] goal_id, builtin_interfaces/Time stamp
+action_msgs/GoalStatus: action_msgs/GoalInfo goal_info, i8 status
+action_msgs/GoalStatusArray: action_msgs/GoalStatus[] status_list
+action_msgs/CancelGoalRequest: action_msgs/GoalInfo goal_info
+action_msgs/CancelGoalResponse: i8 return_code, action_msgs/GoalInfo[] goals_canceling
+simulation_interfaces/SendGoalRequest: u8[16] goal_id, u64 steps
+simulation_interfaces/SendGoalResponse: bool accepted, builtin_interfaces/Time stamp
+simulation_interfaces/GetResultRequest: u8[16] goal_id
+simulation_interfaces/GetResultResponse: i8 status, simulation_interfaces/Result result
+simulation_interfaces/action/SimulateSteps_FeedbackMessage: u8[16] goal_id, u64 completed_steps, u64 remaining_steps
+rcl_interfaces/Log: builtin_interfaces/Time stamp, u8 level, str name, str msg, str file, str function, u32 line
 simulation_interfaces/SpawnEntityResponse: simulation_interfaces/Result result, str entity_name
 """.strip().splitlines():
     name, fields = line.split(": ", 1)
