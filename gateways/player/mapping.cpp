@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/plain_file.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/yaml_keys.h"
@@ -284,6 +285,8 @@ base::Result<std::vector<ListedIface>> parse_list(std::string_view json) {
 }
 
 base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
+  if (const auto problem = base::file_problem(path); !problem.empty())
+    return base::Error{"mapping " + base::in_quotes(path) + ": " + problem};
   try {
     if (is_of_player(path)) {
       std::vector<std::string> notes;
@@ -297,7 +300,7 @@ base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
   } catch (const Wrong& wrong) {
     return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.what};
   } catch (const YAML::BadFile&) {
-    return base::Error{"mapping " + path + " can't be read"};
+    return base::Error{"mapping " + base::in_quotes(path) + " cannot be read"};
   } catch (const YAML::Exception& wrong) {
     return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.msg};
   }

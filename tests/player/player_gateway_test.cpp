@@ -345,7 +345,9 @@ TEST_F(MappingFile, errors_say_where) {
   EXPECT_NE(error("ports: [\n").find(":"), std::string::npos);
   EXPECT_NE(error("").find("expected a list"), std::string::npos);
   EXPECT_NE(error("# of a robot\ndriver\n(\n  name \"stage\"\n)\n").find("no driver provides a device of a simulator"), std::string::npos);
-  EXPECT_EQ(read_config("/nowhere/at/all.yaml").error().message, "mapping /nowhere/at/all.yaml can't be read");
+  EXPECT_EQ(read_config("/nowhere/at/all.yaml").error().message,
+            "mapping \"/nowhere/at/all.yaml\": no such file; there is no folder \"/nowhere/at\"");
+  EXPECT_EQ(read_config("/").error().message, "mapping \"/\": is a folder; a file is expected");
 }
 
 TEST(List, that_cannot_be_read_is_an_error) {

@@ -123,17 +123,22 @@ TEST_F(Ros2Mapping, names_frames_rates_and_domains_are_read) {
 }
 
 TEST_F(Ros2Mapping, errors_name_the_line_and_what_was_expected) {
-  EXPECT_EQ(error("domain: 300\n"), ":1: expected a domain from 0 to 232");
+  EXPECT_EQ(error("domain: 300\n"), ":1: domain: expected a domain from 0 to 232, got \"300\"");
+  EXPECT_EQ(error("clock_rate: [1]\n"), ":1: clock_rate: expected a rate from 0 to 10000 Hz, got a list");
+  EXPECT_EQ(error(""), ":1: expected domain, clock_rate, robots or topics, got nothing");
   EXPECT_EQ(error("clock_rate: 1\nshelf: x\n"), ":2: unknown key \"shelf\"; expected domain, clock_rate, robots or topics");
   EXPECT_EQ(error("clock_rte: 1\n"), ":1: unknown key \"clock_rte\"; did you mean clock_rate?");
   EXPECT_EQ(error("robots: {a: {frame_prefx: b}}\n"), ":1: unknown key \"frame_prefx\"; did you mean frame_prefix?");
   EXPECT_EQ(error("topics: [{iface: a, durabilty: volatile}]\n"), ":1: unknown key \"durabilty\"; did you mean durability?");
-  EXPECT_EQ(error("domain: 5.5\n"), ":1: expected a domain from 0 to 232");
+  EXPECT_EQ(error("domain: 5.5\n"), ":1: domain: expected a domain from 0 to 232, got \"5.5\"");
   EXPECT_EQ(error("topics:\n  - {ros_topic_name: scan}\n"), ":2: iface is missing");
   EXPECT_EQ(error("topics:\n  - {iface: a, ros_topic_name: scan}\n"),
             ":2: ros_topic_name needs ros_type_name: an iface can have several topics");
-  EXPECT_EQ(error("topics:\n  - {iface: a, rate: fast}\n"), ":2: expected a rate in Hz");
-  EXPECT_EQ(error("robots:\n  a: {namespace: \"1x\"}\n"), ":2: name \"1x\" has an empty part, or one that begins with a digit");
+  EXPECT_EQ(error("topics:\n  - {iface: a, rate: fast}\n"), ":2: rate: expected a rate in Hz, got \"fast\"");
+  EXPECT_EQ(error("robots:\n  a: {namespace: \"1x\"}\n"), ":2: namespace: \"1x\" has an empty part, or one that begins with a digit");
+  EXPECT_EQ(read_naming("/").error().message, "mapping \"/\": is a folder; a file is expected");
+  EXPECT_EQ(read_naming("/nowhere/at/all.yaml").error().message,
+            "mapping \"/nowhere/at/all.yaml\": no such file; there is no folder \"/nowhere/at\"");
 }
 
 TEST(Ros2UnknownNames, names_that_the_world_does_not_have_are_listed) {
