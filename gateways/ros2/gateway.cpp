@@ -243,11 +243,10 @@ void Gateway::arrange(const Listed& listed) {
       continue;
     }
     robots_.push_back(std::make_unique<Robot>(*shared_, model, listed));
-    if (options_.has_parameters && !options_.naming.is_one_node) serve_parameters(robots_.back()->node(), robots_.back()->node().name());
     std::string line = "node " + robots_.back()->node().name().full() + ":";
     for (const auto& topic : robots_.back()->topics()) line += " " + topic.substr(0, topic.find(' '));
-    if (!options_.naming.is_one_node) complete_node(robots_.back()->node(), {.are_served = options_.has_parameters});
     std::printf("%s\n", base::printable(line).c_str());
+    if (!options_.naming.is_one_node) complete_node(robots_.back()->node(), {.are_served = options_.has_parameters});
   }
   std::printf("domain %u: %zu robots\n", options_.dds.domain, robots_.size());
   std::fflush(stdout);
@@ -377,8 +376,8 @@ void Gateway::report_losses() {
     base::log(base::Level::warn, "ros2-gateway", "{} received samples were thrown away: too many came at once", more);
 }
 
-  if (writer.lost() == 0) return;  // several nodes have /rosout
 void Gateway::report_lost(const Writer& writer) {
+  if (writer.lost() == 0) return;  // several nodes have /rosout
   const auto more = growth(writer.settings().topic, writer.lost());
   if (more == 0) return;
   std::set<std::string> readers;

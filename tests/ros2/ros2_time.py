@@ -64,27 +64,6 @@ def steps():
         await_("the simulator rests", lambda: not is_watched())
 
 
-# A follower that answers each scan, in lock step: two runs end alike.
-def lockstep():
-    hashes = []
-    for _ in range(2):
-        with Rig() as rig:
-            rig.sim(two, "--lockstep", "--paused", "--rtf", "0")
-            rig.gateway("--lockstep", "--clock-rate", "50", "--wait-for", "/follower/cmd_vel=10Hz", "--wait-timeout", "50", robots=2)
-            peer = rig.peer()
-            peer.subscribe("/follower/scan", "sensor_msgs/LaserScan")
-            peer.advertise("/follower/cmd_vel", "geometry_msgs/TwistStamped")
-            peer.await_matched("/follower/cmd_vel")
-            peer.await_matched("/follower/scan")
-            await_("the gateway joins", lambda: any(one["name"] == "ros2-gateway" for one in rig.participants()))
-            stop = threading.Event()
-
-            def follow():
-                seen = 0
-                while not stop.is_set():
-                    scans = peer.samples["/follower/scan"]
-                    if len(scans) == seen:
-                        time.sleep(0.001)
 # In lock step, a clock without a rate has one message for each step, whatever its length.
 def every_step():
     for step in ("0.0005", "0.0002", "0.003", "0.000333333333"):
@@ -106,6 +85,27 @@ def every_step():
             assert shown() == [i * nanoseconds for i in range(41)], (step, shown())
 
 
+# A follower that answers each scan, in lock step: two runs end alike.
+def lockstep():
+    hashes = []
+    for _ in range(2):
+        with Rig() as rig:
+            rig.sim(two, "--lockstep", "--paused", "--rtf", "0")
+            rig.gateway("--lockstep", "--clock-rate", "50", "--wait-for", "/follower/cmd_vel=10Hz", "--wait-timeout", "50", robots=2)
+            peer = rig.peer()
+            peer.subscribe("/follower/scan", "sensor_msgs/LaserScan")
+            peer.advertise("/follower/cmd_vel", "geometry_msgs/TwistStamped")
+            peer.await_matched("/follower/cmd_vel")
+            peer.await_matched("/follower/scan")
+            await_("the gateway joins", lambda: any(one["name"] == "ros2-gateway" for one in rig.participants()))
+            stop = threading.Event()
+
+            def follow():
+                seen = 0
+                while not stop.is_set():
+                    scans = peer.samples["/follower/scan"]
+                    if len(scans) == seen:
+                        time.sleep(0.001)
                         continue
                     scan = wire.decode("sensor_msgs/LaserScan", scans[seen])
                     seen += 1
@@ -127,6 +127,11 @@ def every_step():
             hashes.append((stats["steps"], stats["state_hash"] if "state_hash" in stats else stats["hash"], rig.simctl("pose", "follower")))
             assert rig.process.poll() is None, rig.log(rig.process)
     assert hashes[0] == hashes[1], hashes
+    # A simulator that does not wait is named.
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--lockstep", robots=2)
+        await_("the line", lambda: "--lockstep: time does not wait, because the simulator was started without --lockstep" in rig.log(rig.process))
     # Without an answer the gateway ends, and says what it waited for.
     with Rig() as rig:
         rig.sim(two, "--lockstep", "--paused")
