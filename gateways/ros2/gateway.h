@@ -76,9 +76,9 @@ class Gateway {
   std::vector<std::string> command_topics() const;
 
   Options options_;
-  int signals_ = -1;
   const std::string started_;  // when
   LogTopic logs_;
+  int signals_ = -1;
   Errands errands_, steps_;       // steps: takes long
   std::unique_ptr<Turns> turns_;  // before the bell, which interrupts it
   Bell bell_;

@@ -74,6 +74,14 @@ def clock():
             row(f"gateway without subscribers, {kind}: processor time / one core", idle, "")
             row(f"--clock-rate 1000, {kind}, one subscriber, {messages:.0f} messages a second: the same", share, "", "" if words else "0.03")
             row("the same for 1000 messages a second", share * 1000 / messages, "")
+            # The same with nothing but a futex and a packet; for the same simulator, so the gateway gives way.
+            peer.end()
+            rig.peers.remove(peer)
+            rig.kill(rig.process)
+            bare = rig.call(f"{build}/bin/bare_clock", str(rig.server_id), str(round(options.seconds)), *(["lockstep"] if words else []))
+            each = float(re.search(r"([0-9.]+) us each", bare).group(1))
+            row(f"bare loop, {kind}: processor time / one core for 1000 packets a second", each / 1000, "")
+            row("gateway / bare loop, for a message", share * 1e6 / messages / each, "")
 
 
 def images():

@@ -126,7 +126,11 @@ class Peer:
 
     def end(self):
         self.process.stdin.close()
-        self.process.wait(20)
+        try:
+            self.process.wait(20)
+        except subprocess.TimeoutExpired:  # on a busy machine it may still write samples
+            self.process.kill()
+            self.process.wait(20)
 
 
 class Rig(System):

@@ -1,0 +1,5 @@
+if(RTMSIM_ROS2)
+  add_executable(bare_clock bare_clock.cpp)
+  target_include_directories(bare_clock PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(bare_clock PRIVATE gateway_common rtmsim_settings)
+endif()
