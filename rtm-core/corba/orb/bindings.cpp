@@ -81,6 +81,7 @@ class Bindings::Server {
       entry.settled = false;
     }
     state->remove_contexts = true;
+    state->look_now = true;  // a service that did not answer at the last look is tried once more
     changed_.notify_all();
   }
 
@@ -89,10 +90,13 @@ class Bindings::Server {
     changed_.notify_all();
   }
 
-  // Until there is nothing to do, the service turns out not to answer, or the time is over.
-  void wait_until_settled(steady_clock::time_point deadline) {
+  // Until there is nothing to do, the service turns out not to answer, or the time is over. The end waits for its last try, too.
+  void wait_until_settled(steady_clock::time_point deadline, bool is_end) {
     auto state = state_.lock();
-    state.wait_until(changed_, deadline, [&] { return !state->reachable || (!has_work(*state) && !state->working); });
+    state.wait_until(changed_, deadline, [&] {
+      const bool tries = state->look_now || state->working;
+      return (!state->reachable && !(is_end && tries)) || (!has_work(*state) && !state->working);
+    });
   }
 
  private:
@@ -151,6 +155,7 @@ class Bindings::Server {
     auto found = root_context(orb_, address_, settings_.call_timeout);
     if (found) {
       root_ = *found;
+      state_.lock()->reachable = true;  // from here on names are bound: who takes them back waits for that
       if (complained_) base::log(base::Level::info, log_name, "name server {} responds again", address_);
       complained_ = false;
       return true;
@@ -290,9 +295,9 @@ struct Bindings::Impl {
   };
   base::Guarded<std::map<std::string, Bound>, base::Rank::component> entries;
 
-  void wait_until_settled() const {
+  void wait_until_settled(bool is_end = false) const {
     const auto deadline = steady_clock::now() + 2 * settings.call_timeout;
-    for (const auto& server : servers.snapshot()) server->wait_until_settled(deadline);
+    for (const auto& server : servers.snapshot()) server->wait_until_settled(deadline, is_end);
   }
 };
 
@@ -335,7 +340,7 @@ void Bindings::unbind(const std::string& name) {
 void Bindings::unbind_all() {
   impl_->entries.lock()->clear();
   for (const auto& server : impl_->servers.snapshot()) server->unbind_all();
-  impl_->wait_until_settled();
+  impl_->wait_until_settled(true);
 }
 
 void Bindings::refresh() {
