@@ -11,6 +11,9 @@ namespace shm {
 namespace {
 
 constexpr double time_to_full_speed = 0.25;  // [s] while no acceleration is set
+// [s] that the simulator continues a motion without a new command. After a longer wait than twice the one before, the motion is where the
+// joint was told to stop, not where it would be: the joint would hurry after it, faster than its speed.
+constexpr double most_continued = 0.05;
 
 std::string name_of(const Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
 
@@ -67,13 +70,14 @@ void JointPart::read(const Iface& iface) {
   const auto* states = reinterpret_cast<const JointState*>(iface.sample_followers(0));
   const bool is_first = time_ns_ < 0 || std::exchange(starts_anew_, false),
              is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
+  const double longest = std::max(most_continued, 2 * dt_);
   const double dt = dt_ = is_first || is_reset ? 0 : static_cast<double>(stamp.sim_time_ns - time_ns_) * 1e-9;
   time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets, was_reset_ = is_reset;
   for (Member& member : members_) {
     if (member.joint.id < iface.count()) member.state = states[member.joint.id];
     if (is_reset) member.mode = RTMSIM_JOINT_NONE, member.has_changed = false;
     if (member.mode != RTMSIM_JOINT_POSITION || member.is_path || member.motion.has_arrived() || dt <= 0) continue;
-    member.motion.advance(dt);
+    member.motion.advance(std::min(dt, longest));
     member.has_changed = true;
   }
 }

@@ -1,5 +1,6 @@
 # Arms, grippers and heads as devices of Player, one case per run: player_arms.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import math
+import signal
 import struct
 
 from player_rig import *
@@ -61,7 +62,15 @@ def actarray():
         client.command(ACTARRAY, 0, 1, struct.pack(">if", 0, 1.0))
         client.read_until(ACTARRAY, good=lambda p: Actuators(p).all[0][4] == MOVING)
         fastest = max(abs(Actuators(client.read_until(ACTARRAY)).all[0][1]) for _ in range(20))
-        assert 0.05 < fastest < 0.12, fastest
+        assert 0.05 < fastest < 0.2, fastest
+        # A gateway that was held up for a while does not hurry after what it missed.
+        at = lambda: rig.json_echo("arm::joints")["stamp"]["sim_time"]
+        rig.process.send_signal(signal.SIGSTOP)
+        before = at()
+        await_("half a second", lambda: at() > before + 0.5)
+        rig.process.send_signal(signal.SIGCONT)
+        fastest = max(abs(Actuators(client.read_until(ACTARRAY)).all[0][1]) for _ in range(20))
+        assert fastest < 0.2, fastest
         client.demand(ACTARRAY, 0, 4, struct.pack(">if", -1, 1.0))
         client.command(ACTARRAY, 0, 3, struct.pack(">if", 5, 0.5))
         client.read_until(ACTARRAY, good=lambda p: abs(Actuators(p).all[5][1] - 0.5) < 0.02)
