@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "asset-reader/mesh_io.h"
+#include "asset-reader/ply_check.h"
 #include "asset-reader/scene_check.h"
 #include "base/text.h"
 
@@ -20,11 +21,16 @@ namespace {
 
 constexpr std::array<std::string_view, 8> extensions{"dae", "stl", "obj", "ply", "gltf", "glb", "fbx", "bvh"};
 
+// In small letters, without the dot.
+std::string extension_of(const std::string& path) {
+  std::string extension = base::to_lower(std::filesystem::path(path).extension().string());
+  return extension.empty() ? extension : extension.substr(1);
+}
+
 }  // namespace
 
-Import::Import(std::string path, FileLog& files) : path_(std::move(path)) {
-  std::string extension = base::to_lower(std::filesystem::path(path_).extension().string());
-  if (!extension.empty()) extension.erase(0, 1);
+Import::Import(std::string path, FileLog& files) : path_(std::move(path)), files_(files) {
+  const std::string extension = extension_of(path_);
   is_known_ = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   std::vector<Assimp::BaseImporter*> others;
   for (std::size_t i = 0; i < importer_.GetImporterCount(); ++i) {
@@ -53,6 +59,11 @@ base::Result<const aiScene*> Import::read(unsigned flags) {
     std::vector<std::string> known;
     for (const auto extension : extensions) known.push_back("." + std::string(extension));
     return base::Error{"is of no format that is read; expected " + base::join(known, ", ")};
+  }
+  if (extension_of(path_) == "ply") {
+    if (const auto content = files_.read(path_, most_mesh_file); content) {
+      if (const auto whole = check_ply(*content); !whole) return whole.error();
+    }
   }
   const auto checked = [this](const aiScene* scene) -> base::Result<const aiScene*> {
     if (scene == nullptr || scene->mRootNode == nullptr) return base::Error{import_fault(importer_.GetErrorString())};

@@ -27,6 +27,7 @@ class Import {
 
  private:
   std::string path_;
+  FileLog& files_;
   bool is_known_ = false;
   Assimp::Importer importer_;
   // An importer that leaves out a face with a wrong index says so in its log alone.

@@ -290,6 +290,35 @@ TEST(AssetReader, a_face_without_corners_is_left_out) {
   EXPECT_EQ(mesh.value().mesh.indices.size(), 3U);
 }
 
+// Assimp searches for the end of a header for ever, and reserves what the header counts.
+TEST(AssetReader, a_ply_whose_header_does_not_fit_the_file_is_refused_before_it_is_read) {
+  const std::string head = "ply\nformat ascii 1.0\n";
+  const std::string corner = "property float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "property list uchar int vertex_indices\n";
+  const std::string end = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const WorldFiles files;
+  int number = 0;
+  const auto said = [&](const std::string& content) {
+    const auto met =
+        TriangleCache().triangles(MeshShape{files.write("a" + std::to_string(number++) + ".ply", content), "", false, {1, 1, 1}});
+    return met ? std::string("read") : met.error().message;
+  };
+  EXPECT_EQ(said(head + "element vertex 3\n" + corner + "element face 1\n" + faces + end), "read");
+  EXPECT_EQ(said(head + "element vertex 3\n" + corner + "comment element vertex 9999999\nelement face 1\n" + faces + end), "read");
+  EXPECT_THAT(said(head + "element vertex 3\n" + corner), testing::HasSubstr("is damaged: its header has no line \"end_header\""));
+  EXPECT_THAT(said(head + "element vertex 3\n" + corner + "an end_header\n0 0 0\n"), testing::HasSubstr("no line \"end_header\""));
+  EXPECT_THAT(said(head + "element vertex 3\n" + corner + "end_headers\n0 0 0\n"), testing::HasSubstr("no line \"end_header\""));
+  EXPECT_THAT(said(head + "element vertex 99999999\n" + corner + "element face 1\n" + faces + end),
+              testing::HasSubstr("is damaged: its header counts 99999999 of \"vertex\", the file has room for 4"));
+  EXPECT_THAT(said(head + "element vertex 3\n" + corner + "element face 18446744073709551615\n" + faces + end),
+              testing::HasSubstr("18446744073709551615 of \"face\""));
+  EXPECT_THAT(said(head + "element vertex -3\n" + corner + end),
+              testing::HasSubstr("its header counts \"-3\" of \"vertex\", expected a number"));
+  EXPECT_THAT(said("ply\nformat binary_little_endian 1.0\nelement vertex 4\n" + corner + "end_header\n" + std::string(36, '\0')),
+              testing::HasSubstr("4 of \"vertex\", the file has room for 3"));
+  EXPECT_THAT(said(head + "element nothing 400\n" + end), testing::HasSubstr("400 of \"nothing\", which have no property"));
+}
+
 TEST(AssetReader, formats_that_no_world_uses_are_refused_by_their_names) {
   const WorldFiles files;
   const auto met = TriangleCache().triangles(MeshShape{files.write("a.blend", "BLENDER"), "", false, {1, 1, 1}});

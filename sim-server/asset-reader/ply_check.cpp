@@ -1,0 +1,80 @@
+#include "asset-reader/ply_check.h"
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+
+#include "base/text.h"
+
+namespace sim {
+namespace {
+
+constexpr std::string_view header_end = "end_header";
+
+// Of a scalar in a binary file; 0: no type of PLY.
+std::uint64_t bytes_of(std::string_view type) {
+  for (const auto* name : {"char", "uchar", "int8", "uint8"})
+    if (type == name) return 1;
+  for (const auto* name : {"short", "ushort", "int16", "uint16"})
+    if (type == name) return 2;
+  for (const auto* name : {"int", "uint", "float", "int32", "uint32", "float32"})
+    if (type == name) return 4;
+  return type == "double" || type == "float64" || type == "int64" || type == "uint64" ? 8 : 0;
+}
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::uint64_t least_bytes = 0;  // of one
+};
+
+base::Error damaged(const std::string& why) { return base::Error{"is damaged: " + why}; }
+
+// The element has room in what is left, of which its share is taken.
+base::Result<void> take(const Element& element, std::uint64_t& left) {
+  if (element.least_bytes == 0 && element.count > left)
+    return damaged("its header counts " + std::to_string(element.count) + " of " + base::in_quotes(element.name) +
+                   ", which have no property");
+  if (element.least_bytes != 0 && element.count > left / element.least_bytes)
+    return damaged("its header counts " + std::to_string(element.count) + " of " + base::in_quotes(element.name) +
+                   ", the file has room for " + std::to_string(left / element.least_bytes));
+  left -= element.count * element.least_bytes;
+  return {};
+}
+
+}  // namespace
+
+base::Result<void> check_ply(std::string_view content) {
+  const auto is_line = [content](std::size_t at) {
+    const std::size_t after = at + header_end.size();
+    return (at == 0 || content[at - 1] == '\n' || content[at - 1] == '\r') && after < content.size() &&
+           std::string_view(" \t\r\n").find(content[after]) != std::string_view::npos;
+  };
+  std::size_t end = content.find(header_end);
+  while (end != std::string_view::npos && !is_line(end)) end = content.find(header_end, end + 1);
+  if (end == std::string_view::npos) return damaged("its header has no line " + base::in_quotes(header_end));
+  std::uint64_t left = content.size() - end - header_end.size();
+  bool is_text = true;
+  Element element;
+  for (std::size_t at = 0; at < end;) {
+    const std::size_t stop = content.find_first_of("\r\n", at);
+    const auto words = base::split_list(std::string(content.substr(at, stop - at)), ' ');
+    at = stop + 1;
+    if (words.size() > 1 && words[0] == "format") is_text = words[1] == "ascii";
+    if (words.size() > 2 && words[0] == "element") {
+      if (const auto fits = take(element, left); !fits) return fits;
+      element = {words[1], 0, 0};
+      const auto [rest, fault] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
+      if (fault != std::errc() || rest != words[2].data() + words[2].size())
+        return damaged("its header counts " + base::in_quotes(words[2]) + " of " + base::in_quotes(element.name) + ", expected a number");
+    }
+    if (words.size() > 2 && words[0] == "property") {
+      const std::uint64_t bytes = bytes_of(words[words[1] == "list" ? 2 : 1]);
+      element.least_bytes += is_text ? 2 : bytes;  // in text a digit and what ends it
+    }
+  }
+  ++left;  // the last number of a text needs no end
+  return take(element, left);
+}
+
+}  // namespace sim

@@ -1,0 +1,15 @@
+// Checks the header of a PLY file before Assimp reads it, which searches for a missing end for ever and reserves what the header counts.
+// Source: "The PLY Polygon File Format", G. Turk, 1994. Any thread.
+#pragma once
+
+#include <string_view>
+
+#include "base/result.h"
+
+namespace sim {
+
+// The header has an end, and the file is long enough for the elements that it counts, each as short as its properties allow. The error is
+// one line without the file.
+base::Result<void> check_ply(std::string_view content);
+
+}  // namespace sim
