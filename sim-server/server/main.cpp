@@ -144,6 +144,7 @@ base::Result<void> add_named_gains(const std::vector<std::string>& files, sim::W
     std::size_t count = 0;
     for (auto& model : world.models) count += sim::add_gains(*gains, model);
     if (count == 0) return base::Error{"gains " + base::in_quotes(file) + ": " + sim::why_no_gains(*gains, left_out, "the world")};
+    for (const auto& line : sim::gains_of_no_joint(*gains, world.models, "the world")) print_line(line);
   }
   return {};
 }

@@ -122,6 +122,10 @@ fs::path folder_of(const std::string& source) {
   return fs::absolute(source.substr(0, source.rfind(':')), ignored).parent_path();
 }
 
+bool is_for(const GainsDef& gains, const JointDef& joint) {
+  return !joint.axes.empty() && (joint.name == gains.joint || joint.name.ends_with("::" + gains.joint));
+}
+
 }  // namespace
 
 base::Result<std::vector<GainsDef>> read_gains_text(const std::string& text, const std::string& name, std::vector<std::string>& left_out) {
@@ -146,7 +150,10 @@ base::Result<void> add_named_gains(const std::string& text, ModelDef& model, std
   auto gains = read_gains_text(text, "--gains", left_out);
   if (!gains) return gains.error();
   for (auto& one : *gains) one.is_named = true;
-  if (add_gains(*gains, model) > 0) return {};
+  if (add_gains(*gains, model) > 0) {
+    for (const auto& line : gains_of_no_joint(*gains, {&model, 1}, "model " + model.name)) left_out.push_back(line);
+    return {};
+  }
   const std::string first = left_out.empty() ? "" : "; " + left_out.front();
   return base::Error{"gains: " + why_no_gains(*gains, left_out, "model " + model.name) + first};
 }
@@ -181,12 +188,23 @@ base::Result<void> set_initial_positions(const std::string& lines, ModelDef& mod
   return {};
 }
 
+std::vector<std::string> gains_of_no_joint(const std::vector<GainsDef>& gains, std::span<const ModelDef> models, const std::string& where) {
+  std::vector<std::string> lines;
+  for (const GainsDef& one : gains) {
+    const auto has_it = [&](const ModelDef& model) {
+      return std::ranges::any_of(model.joints, [&](const JointDef& joint) { return is_for(one, joint); });
+    };
+    if (std::ranges::none_of(models, has_it))
+      lines.push_back(one.source + ": gains of joint " + base::in_quotes(one.joint) + ": " + where + " has no such joint that moves");
+  }
+  return lines;
+}
+
 std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model) {
   std::size_t count = 0;
   for (const GainsDef& one : gains) {
     for (const JointDef& joint : model.joints) {
-      const bool is_meant = joint.name == one.joint || joint.name.ends_with("::" + one.joint);
-      if (!is_meant || joint.axes.empty()) continue;
+      if (!is_for(one, joint)) continue;
       ++count;
       const auto is_same = [&](const GainsDef& other) { return other.joint == joint.name && other.is_named == one.is_named; };
       if (std::ranges::any_of(model.gains, is_same)) continue;

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ base::Result<std::vector<GainsDef>> read_gains_text(const std::string& text, con
 // Those of the model's joints; how many there are. Gains that a joint has already from the same kind of source stay.
 std::size_t add_gains(const std::vector<GainsDef>& gains, ModelDef& model);
 
+// A line for each that is of no joint of these models.
+std::vector<std::string> gains_of_no_joint(const std::vector<GainsDef>& gains, std::span<const ModelDef> models, const std::string& where);
+
 // Why a file whose gains add_gains() has put nowhere has none for `where`, "the world".
 std::string why_no_gains(const std::vector<GainsDef>& gains, const std::vector<std::string>& left_out, const std::string& where);
 
@@ -35,7 +39,7 @@ std::string why_no_gains(const std::vector<GainsDef>& gains, const std::vector<s
 void add_plugin_gains(const ModelPath& model_path, ModelDef& model, Complaints& complaints);
 
 // Of a model that is spawned: the text of a file that the user names, and where joints start, as JOINT=POSITION a line. Fails when neither
-// is of a joint of the model, or a position is no number.
+// is of a joint of the model, or a position is no number. Gains of other joints are left out.
 base::Result<void> add_named_gains(const std::string& text, ModelDef& model, std::vector<std::string>& left_out);
 base::Result<void> set_initial_positions(const std::string& lines, ModelDef& model);
 

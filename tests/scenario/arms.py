@@ -85,6 +85,9 @@ def gains():
     now = joints()
     assert (now["elbow"]["gains"]["p"], now["elbow"]["gains"]["d"]) == (900, 30) and now["elbow"]["gains"]["from"].endswith("named.yaml:4"), now["elbow"]
     assert "derived" in now["waist"]["gains"]["from"] and "named.yaml:4" in rig.simctl("joints", "arm")
+    mixed = file("mixed.yaml", "gazebo_ros_control/pid_gains:\n  elbow: {p: 900}\n  nose: {p: 1}\n")
+    done = subprocess.run([f"{rig.bin_dir}/sim-server", f"{rig.source}/worlds/arm.sdf", "--check", "-v", "0", "--gains", mixed], capture_output=True, text=True, timeout=60)
+    assert done.stderr.count(f'{mixed}:3: gains of joint "nose": the world has no such joint that moves') == 1 and done.stderr.count("mixed.yaml") == 1, done.stderr
     for path, line in ((file("other.yaml", "gazebo_ros_control/pid_gains: {nose: {p: 1}}\n"), "they are of no joint of the world"),
                        (file("wrong.yaml", "pid_gains: {elbow: {p: fast}}\n"), "none of them can be used"), (file("bad.yaml", "a: [\n"), "is no YAML: line"),
                        (f"{rig.work}/none.yaml", "no such file")):
