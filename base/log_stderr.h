@@ -1,4 +1,4 @@
-// What log() does without a sink, for sinks that do more than that. Any thread.
+// Writes a line as log() does without a sink; for sinks that do more than that. Any thread.
 #pragma once
 
 #include "base/log.h"

@@ -1,4 +1,4 @@
-// What simulation_interfaces calls entities: the models of a world, and the filters of clients. Values; any thread.
+// Entities, as simulation_interfaces calls the models of a world, and the filters of clients. Values; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What every node of ROS 2 has: its log, the events of its parameters, and the services of its parameters. There is one parameter:
+// The log of a node of ROS 2, the events of its parameters and the services of its parameters. There is one parameter:
 // use_sim_time, which cannot be changed. One thread at a time.
 #pragma once
 

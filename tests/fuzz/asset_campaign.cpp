@@ -100,11 +100,12 @@ bool run_seed(const std::vector<fuzz::Seed>& seeds, std::size_t which, const Opt
   const auto ended = [&](long i, const fuzz::Ending& ending) {
     ++(ending.is_late ? late : deaths);
     ++ends[ending.how];
+    std::error_code is_gone;  // a child can also end between two files
     if (!options.keep.empty())
       fs::copy_file(
           last,
           options.keep / (seed.stem().string() + "_" + std::to_string(options.seed) + "_" + std::to_string(i) + seed.extension().string()),
-          fs::copy_options::overwrite_existing);
+          fs::copy_options::overwrite_existing, is_gone);
     if (!ending.is_own_code) return;
     ++own;
     std::fprintf(stderr, "%s, mutation %ld: %s\n%s\n", name.c_str(), i, ending.how.c_str(), ending.report.c_str());

@@ -346,7 +346,7 @@ def check():
             "<uri>torn.dae</uri></mesh></geometry></visual></link></model></world></sdf>"
         )
     assert server("--check", world=broken).wait(watchdog) == 1
-    assert server("--check", world="/no/such/world.sdf").wait(watchdog) == 1
+    assert server("--check", world="/no/such/world.sdf").wait(watchdog) == 2
     assert server("--rtf", "-1").wait(watchdog) == 2
     assert not segments(), segments()
     drive = f"{work.name}/drive.sdf"

@@ -131,7 +131,7 @@ def no_room():
         ends(f"mount -t tmpfs -o size={size} tmpfs /dev/shm && {run} --duration 1", 1, ["no room for", "/dev/shm", "No space left"])
     ends(f"mount -t tmpfs -o ro tmpfs /dev/shm && {run} --duration 1", 1, ["/dev/shm", "Read-only"])
     ends(f"mount -t tmpfs tmpfs /dev/shm && {run} --duration 1000 --record {small}/record", 1, [f"record {small}/record", "No space left"])
-    ends(f"mount -t tmpfs tmpfs /dev/shm && {run} --duration 1 --record /no/such/folder/record", 1, ["record /no/such/folder/record", "No such file"])
+    ends(f"mount -t tmpfs tmpfs /dev/shm && {run} --duration 1 --record /no/such/folder/record", 2, ['"/no/such/folder/record"', "there is no folder"])
     # A model whose ifaces do not fit is refused, and the world goes on without it.
     model = f"{source}/worlds/models/pioneer2dx_hokuyo"
     script = f"""
