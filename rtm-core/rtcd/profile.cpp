@@ -1,7 +1,7 @@
 // rtcprof FILE [INITFUNC]: prints the profiles of the components in a module, `key: value` lines with --- after each.
 // rtcprof --each FILE...: those of many modules, for managers.
 // A process of its own, because loading a module runs its code; with --each a child for each module, so that what one does or does not
-// finish costs its own profiles only. To fork costs a tenth of a start with all the libraries.
+// finish costs its own profiles only. A fork costs a third of a start with all the libraries.
 #include <dlfcn.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
