@@ -66,7 +66,7 @@ add_test(NAME package.demo COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/demo ${PR
 set_tests_properties(package.demo PROPERTIES LABELS package TIMEOUT 300)
 
 add_test(NAME package.debian COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/debian ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/test_packages)
-set_tests_properties(package.debian PROPERTIES LABELS package TIMEOUT 600 SKIP_RETURN_CODE 77 FIXTURES_SETUP packages)
+set_tests_properties(package.debian PROPERTIES LABELS package TIMEOUT 1200 SKIP_RETURN_CODE 77 FIXTURES_SETUP packages)
 add_test(NAME package.installed COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/package/autopkgtest ${PROJECT_BINARY_DIR}/test_packages ${PROJECT_SOURCE_DIR})
 set_tests_properties(package.installed PROPERTIES LABELS package TIMEOUT 900 SKIP_RETURN_CODE 77 FIXTURES_REQUIRED packages)
 if(RTMSIM_SANITIZE)
