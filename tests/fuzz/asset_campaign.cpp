@@ -146,6 +146,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: asset_campaign [--seed N] [--runs N] [--keep FOLDER] FILE...\n");
     return 2;
   }
+  if (!options.keep.empty()) fs::create_directories(options.keep);
   bool is_good = true;
   for (std::size_t which = 0; which < seeds.size(); ++which) is_good = run_seed(seeds, which, options) && is_good;
   return is_good ? 0 : 1;
