@@ -28,8 +28,10 @@ void SimulatorLink::look() {
   }
   const auto used = sources();
   const bool is_one_closed = std::ranges::any_of(used, [](const auto& one) { return one->is_closed(); });
-  if (is_listing_ || (has_list_ && present == listed_ && !is_one_closed)) return;
+  if (is_listing_ || (has_list_ && !lists_again_ && present == listed_ && !is_one_closed)) return;
   listed_ = present;  // what comes after the list was asked for is seen at the next look
+  // An iface closes before the sample counts one less: another model in its place would leave the counts as they were.
+  lists_again_ = is_one_closed;
   is_listing_ = has_list_ = true;
   list();
 }

@@ -54,7 +54,7 @@ class SimulatorLink {
   std::shared_ptr<Source> clock_;
   std::uint64_t met_ = 0;
   std::pair<std::uint32_t, std::uint32_t> listed_{};  // ifaces and models when it was listed last
-  bool is_listing_ = false, has_list_ = false;
+  bool is_listing_ = false, has_list_ = false, lists_again_ = false;
   std::map<std::pair<shm::IfaceType, std::string>, std::weak_ptr<Source>> found_;
 };
 
