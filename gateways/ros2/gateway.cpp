@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds idle_wait{20};
 
 constexpr const char* started_key = "started";
 
-// In so many digits that texts compare as numbers do.
+// With leading zeros: texts compare as the numbers do.
 std::string now_as_text() { return fmt::format("{:020}", std::chrono::system_clock::now().time_since_epoch().count()); }
 
 std::chrono::nanoseconds tick_period(double clock_rate) {

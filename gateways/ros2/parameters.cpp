@@ -30,56 +30,50 @@ bool is_asked(const ros::ListParametersRequest& request) {
   return request.prefixes.empty() || std::ranges::find(request.prefixes, sim_time) != request.prefixes.end();
 }
 
+ros::ParameterDescriptor descriptor_of(const std::string& name, bool is_sim_time) {
+  ros::ParameterDescriptor descriptor{.key = name, .type = value_of(name, is_sim_time).type};
+  if (name == sim_time) {
+    descriptor.description = "Whether the time of the node is that of /clock.";
+    descriptor.read_only = true;
+  }
+  return descriptor;
+}
+
+// Serves a request with many entries by one answer for each.
+template <class Request, class Response>
+void serve_each(Node& node, const std::string& name, auto Request::*asked, auto Response::*answers, auto answer) {
+  node.serve<Request, Response>(name, [=](const auto& request, const auto& reply) {
+    Response response;
+    for (const auto& one : request.*asked) (response.*answers).push_back(answer(one));
+    reply(response);
+  });
+}
+
 void serve_parameters(Node& node, bool is_sim_time) {
+  using namespace ros;
   const std::string front = node.name().full() + "/";
-  node.serve<ros::ListParametersRequest, ros::ListParametersResponse>(front + "list_parameters",
-                                                                      [](const auto& request, const auto& reply) {
-                                                                        ros::ListParametersResponse response;
-                                                                        if (is_asked(request)) response.result.names = {sim_time};
-                                                                        reply(response);
-                                                                      });
-  node.serve<ros::GetParametersRequest, ros::GetParametersResponse>(front + "get_parameters",
-                                                                    [is_sim_time](const auto& request, const auto& reply) {
-                                                                      ros::GetParametersResponse response;
-                                                                      for (const auto& one : request.names)
-                                                                        response.values.push_back(value_of(one, is_sim_time));
-                                                                      reply(response);
-                                                                    });
-  node.serve<ros::GetParameterTypesRequest, ros::GetParameterTypesResponse>(front + "get_parameter_types",
-                                                                            [is_sim_time](const auto& request, const auto& reply) {
-                                                                              ros::GetParameterTypesResponse response;
-                                                                              for (const auto& one : request.names)
-                                                                                response.types.push_back(value_of(one, is_sim_time).type);
-                                                                              reply(response);
-                                                                            });
-  node.serve<ros::DescribeParametersRequest, ros::DescribeParametersResponse>(
-      front + "describe_parameters", [is_sim_time](const auto& request, const auto& reply) {
-        ros::DescribeParametersResponse response;
-        for (const auto& one : request.names) {
-          ros::ParameterDescriptor descriptor{.key = one, .type = value_of(one, is_sim_time).type};
-          if (one == sim_time) {
-            descriptor.description = "Whether the time of the node is that of /clock.";
-            descriptor.read_only = true;
-          }
-          response.descriptors.push_back(std::move(descriptor));
-        }
-        reply(response);
-      });
-  node.serve<ros::SetParametersRequest, ros::SetParametersResponse>(front + "set_parameters",
-                                                                    [is_sim_time](const auto& request, const auto& reply) {
-                                                                      ros::SetParametersResponse response;
-                                                                      for (const auto& one : request.parameters)
-                                                                        response.results.push_back(answer_to(one, is_sim_time));
-                                                                      reply(response);
-                                                                    });
-  node.serve<ros::SetParametersAtomicallyRequest, ros::SetParametersAtomicallyResponse>(
-      front + "set_parameters_atomically", [is_sim_time](const auto& request, const auto& reply) {
-        ros::SetParametersAtomicallyResponse response{{true, ""}};
-        for (const auto& one : request.parameters) {
-          if (response.result.successful) response.result = answer_to(one, is_sim_time);
-        }
-        reply(response);
-      });
+  node.serve<ListParametersRequest, ListParametersResponse>(front + "list_parameters", [](const auto& request, const auto& reply) {
+    ListParametersResponse response;
+    if (is_asked(request)) response.result.names = {sim_time};
+    reply(response);
+  });
+  serve_each(node, front + "get_parameters", &GetParametersRequest::names, &GetParametersResponse::values,
+             [=](const std::string& one) { return value_of(one, is_sim_time); });
+  serve_each(node, front + "get_parameter_types", &GetParameterTypesRequest::names, &GetParameterTypesResponse::types,
+             [=](const std::string& one) { return value_of(one, is_sim_time).type; });
+  serve_each(node, front + "describe_parameters", &DescribeParametersRequest::names, &DescribeParametersResponse::descriptors,
+             [=](const std::string& one) { return descriptor_of(one, is_sim_time); });
+  serve_each(node, front + "set_parameters", &SetParametersRequest::parameters, &SetParametersResponse::results,
+             [=](const Parameter& one) { return answer_to(one, is_sim_time); });
+  node.serve<SetParametersAtomicallyRequest, SetParametersAtomicallyResponse>(front + "set_parameters_atomically",
+                                                                              [is_sim_time](const auto& request, const auto& reply) {
+                                                                                SetParametersAtomicallyResponse response{{true, ""}};
+                                                                                for (const auto& one : request.parameters) {
+                                                                                  if (response.result.successful)
+                                                                                    response.result = answer_to(one, is_sim_time);
+                                                                                }
+                                                                                reply(response);
+                                                                              });
 }
 
 }  // namespace

@@ -251,10 +251,10 @@ hunt:
     text = pathlib.Path(find["plan"]).read_text()
     assert text.startswith("# command") and "duration: 99" in text.splitlines()[0], text
     assert "exit code 3" in rtse("sweep", find["plan"], "--row", 1, "--state", find["state"], code=1).stderr
-    # A system that nobody can start is no find.
+    # A system that cannot be started is no find.
     system = pathlib.Path(f"{source}/tests/campaign/hunt/hunt_subject.xml").read_text()
-    (folder / "nobody.xml").write_text(system.replace(":HuntSubject:", ":NoSubject:"))
-    p.write_text(p.read_text().replace(f"{source}/tests/campaign/hunt/hunt_subject.xml", "nobody.xml"))
+    (folder / "missing_component.xml").write_text(system.replace(":HuntSubject:", ":NoSubject:"))
+    p.write_text(p.read_text().replace(f"{source}/tests/campaign/hunt/hunt_subject.xml", "missing_component.xml"))
     done = rtse("hunt", p, "--cases", 8, code=1)
     assert "does not start: component HuntSubject0" in done.stderr or "does not start: host of" in done.stderr, done
     assert len(done.stderr.splitlines()) == 1 and " failures found" not in done.stdout, done
