@@ -13,7 +13,7 @@ from server_rig import *
 folder = pathlib.Path(work.name)
 damaged = sorted(pathlib.Path(f"{source}/tests/worlds/damaged_meshes").iterdir())
 crate = f"{source}/tests/worlds/models/crate/meshes/crate.dae"
-reasons = ("is damaged: its reader ended with", "is damaged: mesh", "is damaged: a face", "is damaged: a triangle", "processor time to read", "is too large for the memory", "was not read")
+reasons = ("is damaged: its reader ended with", "is damaged: its header", "is damaged: mesh", "is damaged: a face", "is damaged: a triangle", "processor time to read", "is too large for the memory", "was not read")
 
 
 def model(mesh, name="m", texture=None):
@@ -92,7 +92,7 @@ def time_goes_on_while_a_model_is_read():
     before = steps()
     begun = time.monotonic()
     results = []
-    thread = threading.Thread(target=lambda: results.append(spawned(next(m for m in damaged if m.name == "no_end_header.ply"), "slow")))
+    thread = threading.Thread(target=lambda: results.append(spawned(next(m for m in damaged if m.name == "endless.dae"), "slow")))
     thread.start()
     served = 0
     while not results:
@@ -166,7 +166,7 @@ def reader_ends_with_its_server():
         process = started()
         assert spawned(crate, "first").returncode == 0
         reader, = readers(process)
-        thread = threading.Thread(target=lambda: spawned(next(m for m in damaged if m.name == "no_end_header.ply"), "slow"))
+        thread = threading.Thread(target=lambda: spawned(next(m for m in damaged if m.name == "endless.dae"), "slow"))
         thread.start()
         time.sleep(0.5)
         process.send_signal(with_signal)
@@ -324,7 +324,7 @@ def lock_step_waits_for_the_first_picture():
 
 # However long the first picture takes, the simulator ends at once.
 def simulator_ends_while_its_first_picture_is_read():
-    slow = next(m for m in damaged if m.name == "no_end_header.ply")
+    slow = next(m for m in damaged if m.name == "endless.dae")
     path = world(model(crate, "solid"), f"<model name='seen'><link name='l'><visual name='v'><geometry><mesh><uri>{slow}</uri></mesh></geometry></visual></link></model>")
     for options in ((), ("--lockstep",)):
         process = started(*options, world=path)
