@@ -96,6 +96,14 @@ struct Barrier::State {
   bool all_done(std::span<Member*> group) const {
     return std::all_of(group.begin(), group.end(), [this](const Member* m) { return m->owner == 0 || is_done(*m); });
   }
+  // Of those who have no tick: they look for their next one.
+  std::size_t count_awake() const {
+    return static_cast<std::size_t>(std::ranges::count_if(members, [this](const Member& m) { return load(slot(m).sleeping) == awake; }));
+  }
+  // Between ticks.
+  void look_for_processors() {
+    if (const auto now = steady_clock::now(); free.is_due(now)) free.look(now, count_awake());
+  }
   void wake_ahead(std::int64_t step);
   void learn_ahead(std::span<Member* const> group);
   void look_for_hangs(std::span<Member*> group, nanoseconds waited);
@@ -320,7 +328,7 @@ void Barrier::State::wake_ahead(std::int64_t step) {
     if (!due.empty() && member.order() != due[0]->order()) break;
     if (member.next_due < earliest_turn + step && !member.observes) due.push_back(&member);
   }
-  free.look(steady_clock::now());
+  look_for_processors();
   if (due.empty() || !free.are_there_for(due.size())) return;
   for (const Member* member : due) {
     std::uint32_t expected = asleep;
@@ -414,6 +422,7 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
     state.wake_ahead(step);
   if (now.count() < state.earliest_due) return true;
   if (!settle()) return false;
+  state.look_for_processors();
   for (State::Member& member : state.members) {
     member.observes = state.observes(member.index);
     member.looks_on = state.looks_on(member.index);

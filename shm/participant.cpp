@@ -85,6 +85,7 @@ struct Participant::Impl {
   std::uint64_t ticks = 0;
   std::int64_t total = 0, max = 0;
   std::atomic<bool> is_interrupted{false};
+  TurnWait turn;
 
   ParticipantSlot& slot() const { return slot_at(simulation.segment(), index); }
   std::uint32_t part(bool observes) const { return observes ? observer : is_tool ? waited_tool : takes_part; }
@@ -92,6 +93,7 @@ struct Participant::Impl {
   base::Result<void> take_slot(const ParticipantOptions& options);
   bool finish(steady_clock::time_point now);
   bool has_tick() const { return load(slot().go) != last_go; }
+  bool ticks_in_each_step() const { return load(slot().period_ns) <= simulation.info<SimulationInfo>().step_ns; }
   void linger() const;
   void look_for_tick(nanoseconds limit) const;
   void leave();
@@ -254,8 +256,11 @@ Participant::State Participant::await(nanoseconds timeout) {
   const std::uint32_t& shared = tick_word(control_of(segment), impl.index);
   auto now = steady_clock::now();  // read once per sleep
   const auto deadline = now + timeout;
-  if (impl.is_in_tick && impl.finish(now)) {
-    impl.linger();
+  if (impl.is_in_tick) {
+    if (impl.finish(now)) impl.linger();
+    // Others would take the processors from those that they wait for.
+    if (impl.ticks_in_each_step())
+      static_cast<void>(impl.turn.look([&] { return impl.has_tick() || impl.is_interrupted.load(std::memory_order_relaxed); }, deadline));
     now = steady_clock::now();
   }
   while (true) {
@@ -270,6 +275,7 @@ Participant::State Participant::await(nanoseconds timeout) {
     const bool is_called_now = look() == State::tick;
     if (is_called_now || now >= deadline) {
       store(mine.sleeping, awake, std::memory_order_relaxed);
+      impl.turn.slept();
       return is_called_now ? State::tick : State::timed_out;
     }
     if (now >= impl.check_at) {

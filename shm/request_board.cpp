@@ -10,6 +10,7 @@
 #include "shm/attention.h"
 #include "shm/futex.h"
 #include "shm/process.h"
+#include "shm/spinning.h"
 #include "shm/words.h"
 
 namespace shm {
@@ -50,6 +51,7 @@ struct RequestBoard::State {
   std::vector<ClientRecord> clients;
   std::uint32_t seen_attention = 0;
   std::uint64_t seen_deaths = ~std::uint64_t{0};
+  TurnWait turn;
 
   Control& control() const { return segment.as<Control>(AreaIndex::control); }
   void reap();
@@ -219,6 +221,13 @@ void RequestBoard::wait(std::chrono::steady_clock::time_point deadline) {
   futex_wait(control.attention, state_->seen_attention, deadline - std::chrono::steady_clock::now());
 }
 
+void RequestBoard::wait_for_clients(std::chrono::steady_clock::time_point deadline) {
+  State& state = *state_;
+  if (state.turn.look([&state] { return load(state.control().attention) != state.seen_attention; }, deadline)) return;
+  wait(deadline);
+  state.turn.slept();
+}
+
 void RequestBoard::wake() { call_attention(state_->segment); }
 
 struct Requester::State {
@@ -229,6 +238,7 @@ struct Requester::State {
   std::uint64_t owner = 0;
   std::optional<std::size_t> index;
   std::uint64_t next_id = 1;
+  TurnWait turn;
 
   const Segment& segment() const { return simulation.segment(); }
   RequestSlot& slot() const { return slot_at(segment(), *index); }
@@ -282,8 +292,14 @@ void Requester::State::hand_over() {
 // Waits until the slot comes back. False: not until the deadline; the server may still answer.
 base::Result<bool> Requester::State::await(std::uint64_t id, std::chrono::steady_clock::time_point deadline) {
   RequestSlot& mine = slot();
+  const auto is_back = [&mine] {
+    const std::uint32_t state = load(mine.state);
+    return state == RTMSIM_SLOT_REPLIED || state == RTMSIM_SLOT_IDLE;
+  };
+  const bool sleeps = !turn.look(is_back, deadline);
   while (true) {
     const std::uint32_t seen = load(mine.state, std::memory_order_seq_cst);
+    if (sleeps && is_back()) turn.slept();
     if (seen == RTMSIM_SLOT_REPLIED && mine.reply_id == id) return true;
     if (seen == RTMSIM_SLOT_REPLIED || seen == RTMSIM_SLOT_IDLE) return fail("answered something that was not asked");
     if (simulation.status() != Status::live) return fail("has ended");

@@ -45,6 +45,8 @@ class RequestBoard {
 
   // Sleeps until a client asks for something, joins or leaves, or wake() was called, or the deadline passes.
   void wait(std::chrono::steady_clock::time_point deadline);
+  // The same for a server that has nothing else to do: a client that asks again at once finds it awake (see TurnWait).
+  void wait_for_clients(std::chrono::steady_clock::time_point deadline);
   // Any thread.
   void wake();
 

@@ -13,6 +13,16 @@ namespace shm {
 
 using std::chrono::nanoseconds;
 
+namespace {
+
+// One descriptor for a process, whose components can be many.
+int load_of_this_machine() {
+  static const int file = open("/proc/loadavg", O_RDONLY | O_CLOEXEC);
+  return file;
+}
+
+}  // namespace
+
 void give_way() { sched_yield(); }
 
 std::size_t processors() {
@@ -20,21 +30,25 @@ std::size_t processors() {
   return count;
 }
 
+FreeProcessors::FreeProcessors()
+    : file_(load_of_this_machine()), is_file_own_(false), all_(static_cast<double>(processors())), wanted_(all_) {}
+
 FreeProcessors::FreeProcessors(const char* file, std::size_t all)
-    : file_(open(file, O_RDONLY | O_CLOEXEC)), all_(static_cast<double>(all)), wanted_(all_) {}
+    : file_(open(file, O_RDONLY | O_CLOEXEC)), is_file_own_(true), all_(static_cast<double>(all)), wanted_(all_) {}
 
 FreeProcessors::~FreeProcessors() {
-  if (file_ >= 0) close(file_);
+  if (is_file_own_ && file_ >= 0) close(file_);
 }
 
-void FreeProcessors::look(std::chrono::steady_clock::time_point now) {
-  if (now < next_look_ || file_ < 0) return;
+void FreeProcessors::look(std::chrono::steady_clock::time_point now, std::size_t taking_part) {
+  if (!is_due(now)) return;
   next_look_ = now + pause;
   std::array<char, 128> text{};
   unsigned running = 0;  // after three averages: "0.15 0.22 0.30 2/345 6789"
   if (pread(file_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*s %*s %*s %u/", &running) != 1) return;
   constexpr double weight = 0.25;
-  wanted_ += weight * (std::max(running, 1U) - 1 - wanted_);
+  const auto known = static_cast<double>(taking_part) + 1;
+  wanted_ += weight * (std::max(running - known, 0.0) - wanted_);
 }
 
 bool FreeProcessors::are_there_for(std::size_t others) const {
@@ -45,12 +59,12 @@ bool FreeProcessors::are_there_for(std::size_t others) const {
 nanoseconds SpinLimit::next() const {
   constexpr nanoseconds margin = std::chrono::microseconds(20);
   const nanoseconds limit = 2 * usual_ + margin;
-  return usual_ + margin > longest ? nanoseconds(0) : std::min(limit, longest);
+  return usual_ + margin > most_ ? nanoseconds(0) : std::min(limit, most_);
 }
 
 void SpinLimit::took(nanoseconds wait) {
   constexpr int weight = 8;
-  usual_ += (std::min(wait, 4 * longest) - usual_) / weight;  // one that took for ever is forgotten as soon as others
+  usual_ += (std::min(wait, 4 * most_) - usual_) / weight;  // one that took for ever is forgotten as soon as others
 }
 
 void WakeAhead::began(nanoseconds since, bool is_awake) {

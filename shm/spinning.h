@@ -2,9 +2,11 @@
 // waits decide when. One thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace shm {
 
@@ -17,21 +19,25 @@ std::size_t processors();
 // sleeps there, so that being woken is quick.
 class FreeProcessors {
  public:
+  // Of this machine.
+  FreeProcessors();
   // `file`: as /proc/loadavg.
-  explicit FreeProcessors(const char* file = "/proc/loadavg", std::size_t all = processors());
+  FreeProcessors(const char* file, std::size_t all);
   ~FreeProcessors();
   FreeProcessors(const FreeProcessors&) = delete;
   FreeProcessors& operator=(const FreeProcessors&) = delete;
 
   static constexpr std::chrono::milliseconds pause{5};
 
-  // Counts who wants to run, at most once in a pause; at a time when of those who take part only the caller does.
-  void look(std::chrono::steady_clock::time_point now);
+  bool is_due(std::chrono::steady_clock::time_point now) const { return now >= next_look_ && file_ >= 0; }
+  // Counts who wants to run beside the caller and so many who take part, at most once in a pause.
+  void look(std::chrono::steady_clock::time_point now, std::size_t taking_part = 0);
   // For the caller and so many others.
   bool are_there_for(std::size_t others) const;
 
  private:
   const int file_;
+  const bool is_file_own_;
   const double all_;
   double wanted_;  // by others than the caller; a moving average
   std::chrono::steady_clock::time_point next_look_{};
@@ -44,12 +50,45 @@ class SpinLimit {
   // More is not worth a processor.
   static constexpr std::chrono::nanoseconds longest = std::chrono::microseconds(400);
 
+  explicit SpinLimit(std::chrono::nanoseconds most = longest) : most_(most) {}
+
   std::chrono::nanoseconds next() const;
   // From the beginning of the wait until the news, asleep or not.
   void took(std::chrono::nanoseconds wait);
 
  private:
-  std::chrono::nanoseconds usual_{0};
+  std::chrono::nanoseconds most_, usual_{0};
+};
+
+// The wait of one of two processes that ask and answer in turn. The other is among those who want to run, so it needs one processor more.
+class TurnWait {
+ public:
+  TurnWait() = default;
+  // See FreeProcessors.
+  TurnWait(std::chrono::nanoseconds most, const char* file, std::size_t all) : free_(file, all), limit_(most) {}
+
+  // Looks for the other's turn to end as long as SpinLimit says, at most until the deadline. False: sleep, then call slept().
+  template <typename IsOver>
+  bool look(const IsOver& is_over, std::chrono::steady_clock::time_point deadline) {
+    began_ = std::chrono::steady_clock::now();
+    free_.look(began_);
+    is_measured_ = free_.are_there_for(0);
+    if (!is_measured_) return false;
+    for (const auto end = std::min(began_ + limit_.next(), deadline); !is_over(); give_way()) {
+      if (std::chrono::steady_clock::now() >= end) return false;
+    }
+    slept();
+    return true;
+  }
+  void slept() {
+    if (std::exchange(is_measured_, false)) limit_.took(std::chrono::steady_clock::now() - began_);
+  }
+
+ private:
+  FreeProcessors free_;
+  SpinLimit limit_;
+  std::chrono::steady_clock::time_point began_{};
+  bool is_measured_ = false;
 };
 
 // How many steps before its tick a sleeper is woken, so that it is there when the tick begins. It learns from whether the sleeper was.

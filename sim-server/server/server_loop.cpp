@@ -115,7 +115,7 @@ bool ServerLoop::run() {
     }
     if (mode_.stands_still()) {
       barrier_->refresh();
-      board_.wait(Clock::now() + pause_period);
+      board_.wait_for_clients(Clock::now() + pause_period);
       start_pace();
       watch_rate();
       continue;

@@ -98,5 +98,51 @@ TEST(FreeProcessors, are_not_there_when_the_kernel_does_not_say) {
   EXPECT_FALSE(free.are_there_for(1));
 }
 
+// One look at each call, so that it does not matter how fast this machine is.
+bool finds_it_over(TurnWait& wait, int looks_before_the_end) {
+  return wait.look([&] { return looks_before_the_end-- == 0; }, std::chrono::steady_clock::now() + 1h);
+}
+
+TEST(TurnWait, looks_where_the_other_runs_too_and_does_not_where_a_third_wants_to) {
+  const LoadFile file;
+  file.write(2);
+  TurnWait wait(1h, file.path.c_str(), 2);
+  const auto settle = [&] {
+    for (int i = 0; i < 20; ++i) {
+      finds_it_over(wait, 0);
+      usleep(static_cast<useconds_t>(FreeProcessors::pause / 1us));
+    }
+  };
+  EXPECT_FALSE(finds_it_over(wait, 0)) << "nobody has looked yet";
+  settle();
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(wait.look([] { return false; }, std::chrono::steady_clock::now())) << "the deadline has passed";
+    usleep(50'000);
+    wait.slept();
+  }
+  EXPECT_TRUE(finds_it_over(wait, 3)) << "within 70 ms";
+  file.write(3);
+  settle();
+  EXPECT_FALSE(finds_it_over(wait, 0));
+}
+
+TEST(TurnWait, ends_at_its_deadline_and_sleeps_while_the_other_is_slow) {
+  const LoadFile file;
+  file.write(1);
+  TurnWait wait(10ms, file.path.c_str(), 2);
+  const auto never = [] { return false; };
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  while (!finds_it_over(wait, 0)) usleep(1000);
+  int looks = 0;
+  const auto counted = [&] { return ++looks < 0; };
+  for (int i = 0; i < 30; ++i) {
+    wait.look(never, now());
+    usleep(20'000);
+    wait.slept();
+  }
+  EXPECT_FALSE(wait.look(counted, now() + 1h));
+  EXPECT_EQ(looks, 1) << "it is not worth a look";
+}
+
 }  // namespace
 }  // namespace shm::test
