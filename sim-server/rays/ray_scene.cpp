@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -9,8 +10,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "rays/body_grid.h"
 #include "rays/embree.h"
 #include "rays/shape_scene.h"
 
@@ -21,8 +24,8 @@ using embree::FlushDenormals;
 using embree::without_dust;
 
 constexpr float none = std::numeric_limits<float>::infinity();
-// So many moving bodies are met one by one, each in its own frame: no tree has to be built for a scan, and most of them are out of the
-// way of most packets. With more, a tree over all of them is built once for all scans of a moment.
+// So many moving bodies in reach of a sensor are met one by one, each in its own frame: no tree has to be built for a scan, and most of
+// them are out of the way of most packets. With more, a tree over all bodies is built once for all scans of a moment.
 constexpr std::size_t few_bodies = 32;
 
 void on_error(void*, RTCError, const char* text) { base::log(base::Level::error, "rays", "embree: {}", text); }
@@ -87,47 +90,6 @@ Eigen::Vector3f normal_of(const RTCRayHit& ray) { return {ray.hit.Ng_x, ray.hit.
 
 }  // namespace
 
-// --- beams
-
-Beams::Beams(std::span<const Eigen::Vector3f> directions, float near, float far) : size_(directions.size()), far_(far) {
-  const std::size_t padded = (size_ + 15) / 16 * 16;
-  x_.assign(padded, 1);
-  y_.assign(padded, 0);
-  z_.assign(padded, 0);
-  near_.assign(padded, near);
-  for (std::size_t i = 0; i < size_; ++i) {
-    x_[i] = directions[i].x(), y_[i] = directions[i].y(), z_[i] = directions[i].z();
-    low_ = low_.cwiseMin(directions[i]);
-    high_ = high_.cwiseMax(directions[i]);
-  }
-  for (std::size_t first = 0; first < size_; first += 16) {
-    const auto packet = directions.subspan(first, std::min<std::size_t>(16, size_ - first));
-    Cone cone;
-    for (const auto& direction : packet) cone.axis += direction.normalized();
-    cone.axis = cone.axis.norm() > 1e-3F ? cone.axis.normalized().eval() : packet[0].normalized().eval();
-    float cosine = 1;
-    for (const auto& direction : packet) cosine = std::min(cosine, cone.axis.dot(direction.normalized()));
-    cone.angle = std::acos(std::clamp(cosine, -1.0F, 1.0F));
-    cones_.push_back(cone);
-  }
-}
-
-Beams Beams::fan(int beams, double from, double to, int layers, double lowest, double highest, float near, float far) {
-  std::vector<Eigen::Vector3f> directions;
-  directions.reserve(static_cast<std::size_t>(beams) * static_cast<std::size_t>(layers));
-  for (int layer = 0; layer < layers; ++layer) {
-    const double up = layers > 1 ? lowest + (highest - lowest) * layer / (layers - 1) : lowest;
-    for (int beam = 0; beam < beams; ++beam) {
-      const double angle = beams > 1 ? from + (to - from) * beam / (beams - 1) : (from + to) / 2;
-      directions.emplace_back(static_cast<float>(std::cos(up) * std::cos(angle)), static_cast<float>(std::cos(up) * std::sin(angle)),
-                              static_cast<float>(std::sin(up)));
-    }
-  }
-  return Beams(directions, near, far);
-}
-
-// --- the scene
-
 class RayScene::Impl {
   // Embree's versions for AVX2 and AVX-512 are more than twice as fast as those up to AVX, and give distances that differ in their last
   // bits. Who wants the same on every processor says RTMSIM_RAYS_ISA=avx.
@@ -164,11 +126,18 @@ class RayScene::Impl {
   // A moving body seen from a sensor.
   struct Nearby {
     const Body* body = nullptr;
-    Eigen::Matrix3f turn;    // from the sensor's frame to the body's
-    Eigen::Vector3f origin;  // the sensor in the body's frame
-    Eigen::Vector3f toward;  // unit, to its middle in the sensor's frame
-    float nearest = 0;       // of its sphere; negative: the sensor is inside
-    float angle = 0;         // half the angle that the sphere covers
+    Eigen::Matrix3f turn;        // from the sensor's frame to the body's
+    Eigen::Vector3f origin;      // the sensor in the body's frame
+    Eigen::Vector3f toward;      // unit, to its middle in the sensor's frame
+    float nearest = 0;           // of its sphere; negative: the sensor is inside
+    float cosine = 1, sine = 0;  // of half the angle that the sphere covers
+
+    // From a margin on: the sphere is beside the cone.
+    bool is_beside(const Beams::Cone& cone) const {
+      constexpr float margin = 1e-5F;
+      const float both = cosine * cone.cosine - sine * cone.sine;  // of the sum of the two angles, which may be more than half a turn
+      return cosine + cone.cosine > 0 && cone.axis.dot(toward) < both - margin;
+    }
   };
   struct NearbyPlane {
     Eigen::Vector3f normal;  // in the world
@@ -256,7 +225,22 @@ class RayScene::Impl {
       statics_changed_ = false;
     }
     if (!crowd_changed_ || !is_crowded()) return;
-    // Embree can't refit a scene of instances: it is built anew, as fast as it can be.
+    std::vector<BodyGrid::Entry> entries;
+    for (const auto id : moving_) {
+      const Body& body = bodies_[id];
+      const Eigen::Vector3d middle = body.pose * body.middle.cast<double>();
+      entries.push_back({id, middle.x(), middle.y(), body.half.norm()});
+    }
+    grid_.build(entries);
+    crowd_changed_ = false;
+    is_crowd_built_.store(false, std::memory_order_relaxed);
+  }
+
+  // By the first of the threads that trace who needs it. Embree can't refit a scene of instances: it is built anew, as fast as it can be.
+  void build_crowd() {
+    if (is_crowd_built_.load(std::memory_order_acquire)) return;  // pairs with the store below
+    const auto mine = building_.take();
+    if (is_crowd_built_.load(std::memory_order_relaxed)) return;
     body_of_instance_.clear();
     for (const auto id : moving_) {
       const Body& body = bodies_[id];
@@ -265,7 +249,7 @@ class RayScene::Impl {
       body_of_instance_[body.instance_id] = &body;
     }
     rtcCommitScene(crowd_.get());
-    crowd_changed_ = false;
+    is_crowd_built_.store(true, std::memory_order_release);
   }
 
   bool is_crowded() const { return moving_.size() > few_bodies; }
@@ -286,6 +270,9 @@ class RayScene::Impl {
   std::map<std::string, std::weak_ptr<ShapeScene>> shared_;
   std::vector<const Body*> body_of_instance_;
   std::vector<Plane> planes_;
+  BodyGrid grid_;  // of all moving bodies, when there are more than a few
+  base::Turn<> building_;
+  std::atomic<bool> is_crowd_built_{false};
   bool statics_changed_ = true, crowd_changed_ = true, has_retro_ = false;
 };
 
@@ -303,7 +290,10 @@ std::optional<RayScene::Impl::Nearby> RayScene::Impl::look_at(const Body& body, 
   seen.nearest = distance - radius;
   if (seen.nearest > beams.far_) return {};
   seen.toward = middle / std::max(distance, 1e-6F);
-  seen.angle = seen.nearest > 0 ? std::asin(radius / distance) : 0;
+  if (seen.nearest > 0) {
+    seen.sine = radius / distance;
+    seen.cosine = std::sqrt(1 - seen.sine * seen.sine);
+  }
   return seen;
 }
 
@@ -323,8 +313,15 @@ std::vector<RayScene::Impl::NearbyPlane> RayScene::Impl::planes_in_reach(const B
 
 std::vector<RayScene::Impl::Nearby> RayScene::Impl::nearby(const Beams& beams, const Eigen::Isometry3d& sensor) const {
   std::vector<Nearby> all;
-  for (const auto id : moving_) {
+  const auto look = [&](RayBodyId id) {
     if (auto seen = look_at(bodies_[id], beams, sensor)) all.push_back(*seen);
+  };
+  if (is_crowded()) {
+    std::vector<RayBodyId> ids;
+    grid_.find(sensor.translation().x(), sensor.translation().y(), 1.001 * static_cast<double>(beams.far_), ids);
+    std::ranges::for_each(ids, look);
+  } else {
+    std::ranges::for_each(moving_, look);
   }
   return all;
 }
@@ -367,7 +364,12 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
   const FlushDenormals flush;
   const Impl& scene = *impl_;
   const Eigen::Matrix3f r = sensor.linear().cast<float>();
-  const auto bodies = scene.is_crowded() ? std::vector<Impl::Nearby>() : scene.nearby(beams, sensor);
+  auto bodies = scene.nearby(beams, sensor);
+  const bool meets_crowd = bodies.size() > few_bodies;
+  if (meets_crowd) {
+    impl_->build_crowd();
+    bodies.clear();
+  }
   const auto planes = scene.planes_in_reach(beams, sensor);
   const bool wants_retros = !retros.empty() && scene.has_retro_;
   if (!wants_retros) std::fill(retros.begin(), retros.end(), 0.0F);
@@ -403,7 +405,7 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
     } else {
       for (std::size_t i = 0; i < 16; ++i) retro[i] = packet.is_hit(i) ? 0 : retro[i];
     }
-    if (scene.is_crowded()) {
+    if (meets_crowd) {
       packet.intersect(scene.crowd_.get(), valid.data(), context);
       for (std::size_t i = 0; i < count; ++i) {
         if (!packet.is_hit(i)) continue;
@@ -411,13 +413,10 @@ void RayScene::trace(const Beams& beams, const Eigen::Isometry3d& sensor, std::s
         retro[i] = wants_retros && body != nullptr ? body->shapes->look_of(packet.rays.hit.geomID[i]).retro : 0;
       }
     }
+    const Beams::Cone& cone = beams.cones_[first / 16];
+    const float farthest = *std::max_element(rays.tfar, rays.tfar + 16);
     for (const auto& seen : bodies) {
-      const Beams::Cone& cone = beams.cones_[first / 16];
-      if (seen.nearest > 0) {
-        const float apart = std::acos(std::clamp(cone.axis.dot(seen.toward), -1.0F, 1.0F));
-        if (apart > cone.angle + seen.angle + 1e-3F) continue;
-        if (seen.nearest > *std::max_element(rays.tfar, rays.tfar + count)) continue;
-      }
+      if (seen.nearest > 0 && (seen.nearest > farthest || seen.is_beside(cone))) continue;
       for (std::size_t i = 0; i < 16; ++i) {
         in_body.rays.ray.org_x[i] = seen.origin.x(), in_body.rays.ray.org_y[i] = seen.origin.y(),
         in_body.rays.ray.org_z[i] = seen.origin.z();
@@ -456,6 +455,7 @@ RayHit RayScene::trace_one(const Eigen::Vector3d& origin, const Eigen::Vector3d&
   RTCRayHit ray = single_ray(o, d, near, far);
   if (hits(scene.statics_.scene.get(), ray)) take(ray.ray.tfar, scene.statics_.look_of(ray.hit.geomID), normal_of(ray));
   if (scene.is_crowded()) {
+    impl_->build_crowd();
     ray = single_ray(o, d, near, far);
     const auto* body = hits(scene.crowd_.get(), ray) ? scene.body_of(ray.hit.instID[0]) : nullptr;
     if (body != nullptr) take(ray.ray.tfar, body->shapes->look_of(ray.hit.geomID), body->pose.linear().cast<float>() * normal_of(ray));

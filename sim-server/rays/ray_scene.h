@@ -5,10 +5,10 @@
 // Building and moving (add, remove, set_pose, commit) are for one thread at a time; after commit() any number of threads may trace until
 // the next change. Lengths in m. Ranges are exact to a few 1e-5 m within 30 m of the sensor.
 //
-// The static scene is of the best quality. Up to 32 moving bodies are met one by one, each in its own frame, and those out of the way of a
-// packet of beams are left out. More of them are instances in a scene that is built again, fast, for each time with scans, since Embree
-// refuses to refit such a scene. Faces of boxes overlap by some 10 um at their edges, so that plain tracing loses no beam between them;
-// scenes with meshes are traced with Embree's robust flag, which costs a third of the speed.
+// The static scene is of the best quality. Up to 32 moving bodies in reach of a sensor are met one by one, each in its own frame, and those
+// out of the way of a packet of beams are left out. Where more are, they are instances in a scene that is built again, fast, for the first
+// such sensor of a moment, since Embree refuses to refit such a scene. Faces of boxes overlap by some 10 um at their edges, so that plain
+// tracing loses no beam between them; scenes with meshes are traced with Embree's robust flag, which costs a third of the speed.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -53,7 +53,7 @@ class Beams {
   // Around the directions of a packet.
   struct Cone {
     Eigen::Vector3f axis{0, 0, 0};
-    float angle = 0;  // half the opening [rad]
+    float cosine = 1, sine = 0;  // of half the opening
   };
   std::size_t size_ = 0;
   float far_ = 0;
