@@ -70,7 +70,10 @@ struct Encoder {
     raw.body.flags = r.is_joint ? flag_1 : 0;
   }
   void operator()(const ListRequest&) {}
-  void operator()(const TreeRequest& r) { name(r.model); }
+  void operator()(const TreeRequest& r) {
+    name(r.model);
+    raw.body.flags = r.with_bounds ? flag_1 : 0;
+  }
   void operator()(const SpawnRequest& r) {
     const bool has_more = !r.gains.empty() || !r.joints.empty();
     raw.text = r.sdf;
@@ -358,7 +361,7 @@ base::Result<Request> Decoder::decode() {
     case RTMSIM_REQUEST_LIST:
       return Request(ListRequest{});
     case RTMSIM_REQUEST_TREE:
-      return Request(TreeRequest{name_});
+      return Request(TreeRequest{name_, (body().flags & flag_1) != 0});
     case RTMSIM_REQUEST_SPAWN:
       return spawn();
     case RTMSIM_REQUEST_DELETE:

@@ -50,7 +50,8 @@ struct WrenchRequest {
 };
 struct ListRequest {};
 struct TreeRequest {
-  std::string model;  // empty = all
+  std::string model;         // empty = all
+  bool with_bounds = false;  // of models, too: a look at each corner of their meshes
 };
 struct SpawnRequest {
   std::string sdf;       // text, or path when is_path

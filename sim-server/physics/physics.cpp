@@ -323,6 +323,16 @@ Eigen::Isometry3d Physics::model_pose(ModelId model) const {
   return link_pose(link) * instance.blueprint().model->links[link.link].pose.inverse();
 }
 
+Eigen::AlignedBox3d Physics::shape_box(ModelId model) const {
+  Eigen::AlignedBox3d box;
+  const Eigen::Isometry3d to_model = model_pose(model).inverse();
+  for (const auto& shape : impl_->at(model).shapes()) {
+    const CollisionDef& collision = def(model).links[shape.link.link].collisions[shape.collision];
+    box.extend(box_of(shape, collision.geometry, to_model * link_pose(shape.link) * collision.pose));
+  }
+  return box;
+}
+
 Eigen::Isometry3d Physics::link_pose(LinkId link) const {
   const ModelInstance& model = impl_->at(link.model);
   return model.assembly_pose(model.blueprint().assembly_of_link[link.link]) * model.blueprint().link_in_body[link.link];

@@ -63,6 +63,44 @@ Aabb box_of(dGeomID geom) {
   return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
 }
 
+Eigen::AlignedBox3d box_of(const ShapeInstance& shape, const GeometryDef& geometry, const Eigen::Isometry3d& place) {
+  const auto around = [](const Eigen::Vector3d& middle, const Eigen::Vector3d& reach) {
+    return Eigen::AlignedBox3d((middle - reach).eval(), (middle + reach).eval());
+  };
+  const Eigen::Matrix3d turn = place.linear().cwiseAbs();
+  const Eigen::Vector3d middle = place.translation(), axis = turn.col(2);
+  if (const auto* box = std::get_if<BoxShape>(&geometry)) return around(middle, turn * box->size / 2);
+  if (const auto* sphere = std::get_if<SphereShape>(&geometry)) return around(middle, Eigen::Vector3d::Constant(sphere->radius));
+  if (const auto* capsule = std::get_if<CapsuleShape>(&geometry))
+    return around(middle, axis * capsule->length / 2 + Eigen::Vector3d::Constant(capsule->radius));
+  if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+    const Eigen::Vector3d disc = (1 - axis.array().square()).max(0).sqrt() * cylinder->radius;
+    return around(middle, axis * cylinder->length / 2 + disc);
+  }
+  if (const auto* plane = std::get_if<PlaneShape>(&geometry)) {
+    constexpr double along_axis = 1 - 1e-9;
+    Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-infinite), Eigen::Vector3d::Constant(infinite));
+    const Eigen::Vector3d normal = place.linear() * plane->normal;
+    for (int i = 0; i < 3; ++i) {
+      if (normal[i] > along_axis) box.max()[i] = middle[i];
+      if (normal[i] < -along_axis) box.min()[i] = middle[i];
+    }
+    return box;
+  }
+  if (const auto* map = std::get_if<HeightmapShape>(&geometry)) {
+    const HeightGrid& grid = *static_cast<const ShapeStore::Field*>(shape.data.get())->grid;
+    const auto [lowest, highest] = std::minmax_element(grid.heights.begin(), grid.heights.end());
+    const double low = *lowest, high = *highest;
+    return around(place * (map->position + Eigen::Vector3d(0, 0, (low + high) / 2)),
+                  turn * Eigen::Vector3d(grid.width, grid.depth, high - low) / 2);
+  }
+  Eigen::AlignedBox3d box;
+  const auto& vertices = static_cast<const ShapeStore::Mesh*>(shape.data.get())->vertices;
+  for (std::size_t i = 0; i + 2 < vertices.size(); i += 3)
+    box.extend(place * Eigen::Vector3d(vertices[i], vertices[i + 1], vertices[i + 2]));
+  return box;
+}
+
 base::Result<std::shared_ptr<ShapeStore::Mesh>> ShapeStore::mesh(const GeometryDef& geometry) {
   const auto triangles = triangles_.triangles(geometry);
   if (!triangles) return triangles.error();

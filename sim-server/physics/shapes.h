@@ -80,6 +80,9 @@ struct ShapeInstance {
   std::unique_ptr<Belt> belt;
 };
 
+// Around the shape when it is at `place`, along the axes.
+Eigen::AlignedBox3d box_of(const ShapeInstance& shape, const GeometryDef& geometry, const Eigen::Isometry3d& place);
+
 // The shape without a place and an owner. Fails when a file cannot be read.
 base::Result<ShapeInstance> make_shape(const CollisionDef& collision, ShapeStore& store);
 // Pose of the ODE geom in the frame of the collision.

@@ -53,6 +53,14 @@ Json groups_of(const ModelDef& model) {
   return groups;
 }
 
+// Numbers that are not finite become null.
+Json bounds_of(const Physics& physics, ModelId id) {
+  const Eigen::AlignedBox3d box = physics.shape_box(id);
+  if (box.isEmpty()) return Json::array();
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return Json::array({low.x(), low.y(), low.z(), high.x(), high.y(), high.z()});
+}
+
 Json model_tree(const Physics& physics, ModelId id) {
   const ModelDef& model = physics.def(id);
   Json links = Json::array(), joints = Json::array(), plugins = Json::array();
@@ -127,11 +135,13 @@ std::string list_text(Simulation& simulation) {
 
 namespace {
 
-Json tree_of(const Simulation& simulation, const std::string& model) {
+Json tree_of(const Simulation& simulation, const std::string& model, bool with_bounds) {
   const Physics& physics = simulation.physics();
   Json models = Json::array();
   for (ModelId id = 0; id < physics.model_slots(); ++id) {
-    if (physics.exists(id) && (model.empty() || physics.def(id).name == model)) models.push_back(model_tree(physics, id));
+    if (!physics.exists(id) || (!model.empty() && physics.def(id).name != model)) continue;
+    models.push_back(model_tree(physics, id));
+    if (with_bounds) models.back()["bounds"] = bounds_of(physics, id);
   }
   Json actors = Json::array();
   for (const auto& actor : simulation.world().actors) {
@@ -142,11 +152,13 @@ Json tree_of(const Simulation& simulation, const std::string& model) {
 
 }  // namespace
 
-std::string tree_text(const Simulation& simulation, const std::string& model) { return text(tree_of(simulation, model)); }
+std::string tree_text(const Simulation& simulation, const std::string& model, bool with_bounds) {
+  return text(tree_of(simulation, model, with_bounds));
+}
 
 std::string check_text(const Simulation& simulation, const FoundFiles& found, const std::vector<std::string>& spawned,
                        const ModelPath& model_path) {
-  Json json = tree_of(simulation, "");
+  Json json = tree_of(simulation, "", false);
   json["found"] = Json::array();
   for (const auto& [named, file] : found) json["found"].push_back({{"folder", named.first}, {"uri", named.second}, {"file", file}});
   json["spawned"] = Json::array();

@@ -23,8 +23,9 @@ struct LoopState {
 std::string list_text(Simulation& simulation);
 // {"models": [{"name", "static", "pose", "links": [...], "joints": [...], "plugins": [...]}]}; links have "collisions":
 // [{"name", "shape", "pose": in the link, "size"}], size being the three of a box, the radius, or radius and length [m]. Of one model, or
-// of all when `model` is empty.
-std::string tree_text(const Simulation& simulation, const std::string& model);
+// of all when `model` is empty. With bounds, models have "bounds": the lowest x, y and z of the shapes that collide, and the highest ones,
+// in the model's frame [m]; null: no end; []: nothing collides.
+std::string tree_text(const Simulation& simulation, const std::string& model, bool with_bounds = false);
 // The same with {"found": [{"folder", "uri", "file"}], "spawned": [{"model", "files" or "error"}]}: what the URIs in the files of the world
 // mean, and all files of each model of `spawned`, as it would be spawned from
 // this path.

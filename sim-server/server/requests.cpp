@@ -186,7 +186,7 @@ struct ServerLoop::Handler {
   shm::Reply operator()(const shm::TreeRequest& request) {
     if (!request.model.empty() && !physics.find(request.model)) return no_model(physics, request.model);
     shm::Reply reply;
-    reply.text = tree_text(simulation, request.model);
+    reply.text = tree_text(simulation, request.model, request.with_bounds);
     return reply;
   }
   shm::Reply operator()(const shm::ModelsRequest&) {

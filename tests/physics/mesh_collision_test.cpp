@@ -151,6 +151,9 @@ TEST_F(Meshes, bodies_rest_on_a_height_map_at_its_height_wherever_it_stands) {
   put("ball", SphereShape{0.2}, -7, -3, 0.4);
   put("can", CylinderShape{0.2, 0.4}, 7, 3, 2);
   put("mesh", cube(0.4), 6, 0, 2);
+  EXPECT_LT((f.physics.shape_box(0).min() - Eigen::Vector3d(-9, -4.5, 0.65)).norm(), 1e-6) << f.physics.shape_box(0).min().transpose();
+  EXPECT_LT((f.physics.shape_box(0).max() - Eigen::Vector3d(11, 5.5, 2.25)).norm(), 1e-6);
+  EXPECT_LT((f.physics.shape_box(f.id("mesh")).max() - Eigen::Vector3d::Constant(0.2)).norm(), 1e-6);
   f.run(4);
   EXPECT_NEAR(f.position("low_box").z(), 1.25 + 0.4 + 0.2, 0.01);
   EXPECT_NEAR(f.position("high_box").z(), 1.25 + 2 + 0.2, 0.01);

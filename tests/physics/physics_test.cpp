@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <numbers>
 #include <thread>
 
 #include "support/worlds.h"
@@ -386,6 +387,61 @@ TEST(Physics, a_cone_stands_on_its_base_and_not_on_its_tip) {
   EXPECT_NEAR(f.position("standing").z(), 0.3, 0.01);
   EXPECT_GT(f.physics.model_pose(f.id("standing")).linear()(2, 2), 0.999);
   EXPECT_GT(f.physics.model_pose(f.id("tipped")).linear()(2, 2), -0.7) << "lies on its side";
+}
+
+// Against points on the surfaces of the shapes.
+TEST(Physics, the_box_of_a_model_is_around_its_shapes_in_its_own_frame) {
+  constexpr double turn = 2 * std::numbers::pi;
+  const Eigen::Isometry3d link = tilted(0.3, -0.2, 0.5, 0.4, -0.7, 1.1);
+  const auto boxed = [&](const GeometryDef& shape, const std::vector<Eigen::Vector3d>& surface, double precision = 1e-4) {
+    ModelDef model = body("m", shape, tilted(5, 6, 7, 1, 0.5, -2));
+    model.links[0].pose = link;
+    Fixture f(world_of({model}));
+    Eigen::AlignedBox3d wanted;
+    for (const auto& point : surface) wanted.extend(link * point);
+    const Eigen::AlignedBox3d box = f.physics.shape_box(0);
+    EXPECT_LT((box.min() - wanted.min()).norm() + (box.max() - wanted.max()).norm(), precision)
+        << kind_of(shape) << ": " << box.min().transpose() << " to " << box.max().transpose() << ", expected " << wanted.min().transpose()
+        << " to " << wanted.max().transpose();
+  };
+  std::vector<Eigen::Vector3d> ball, rims, pill;
+  for (int i = 0; i < 1000; ++i) {
+    const double a = turn * i / 1000;
+    for (const double z : {-0.6, 0.6}) rims.emplace_back(0.2 * std::cos(a), 0.2 * std::sin(a), z);
+    for (int k = 0; k <= 500; ++k) {
+      const double b = turn / 2 * k / 500;
+      ball.emplace_back(0.2 * std::sin(b) * std::cos(a), 0.2 * std::sin(b) * std::sin(a), 0.2 * std::cos(b));
+    }
+  }
+  for (const auto& point : ball) pill.push_back(point + Eigen::Vector3d(0, 0, point.z() < 0 ? -0.6 : 0.6));
+  boxed(SphereShape{0.2}, ball);
+  boxed(CylinderShape{0.2, 1.2}, rims);
+  boxed(CapsuleShape{0.2, 1.2}, pill);
+  std::vector<Eigen::Vector3d> corners;
+  for (const double x : {-0.1, 0.1})
+    for (const double y : {-0.2, 0.2})
+      for (const double z : {-0.3, 0.3}) corners.emplace_back(x, y, z);
+  boxed(BoxShape{{0.2, 0.4, 0.6}}, corners, 1e-9);
+  boxed(EllipsoidShape{{0.1, 0.2, 0.3}}, ellipsoid_triangles({0.1, 0.2, 0.3}).vertices, 1e-9);
+}
+
+TEST(Physics, the_box_of_a_model_follows_its_parts_and_has_no_end_along_a_plane) {
+  ModelDef thing = body("thing", SphereShape{0.5}, at(3, 4, 5));
+  thing.links.push_back(link("falls", SphereShape{0.1}, 1, at(0, 0, 0.3)));
+  ModelDef bare = body("bare", SphereShape{1}, at(0, 0, 9));
+  bare.links[0].collisions.clear();
+  ModelDef ramp = fixed("ramp", PlaneShape{Eigen::Vector3d(0.6, 0, 0.8)}, at(0, 0, -90));
+  Fixture f(world_of({thing, bare, ground(), ramp}));
+  EXPECT_EQ(f.physics.shape_box(0).max().z(), 0.5);
+  f.physics.set_gravity(0, false);
+  ASSERT_TRUE(f.physics.add_wrench({0, 1}, {0, 0, 1000}, {0, 0, 0}));
+  f.run(1);
+  EXPECT_NEAR(f.physics.shape_box(0).max().z(), 1.4, 0.01) << "1 m/s for a second";
+  EXPECT_NEAR(f.physics.shape_box(0).min().x(), -0.5, 1e-9);
+  EXPECT_TRUE(f.physics.shape_box(1).isEmpty());
+  EXPECT_EQ(f.physics.shape_box(2).max(), Eigen::Vector3d(infinite, infinite, 0));
+  EXPECT_EQ(f.physics.shape_box(2).min(), Eigen::Vector3d::Constant(-infinite));
+  EXPECT_EQ(f.physics.shape_box(3).max(), Eigen::Vector3d::Constant(infinite));
 }
 
 TEST(Physics, shapes_of_every_kind_rest_on_each_other) {

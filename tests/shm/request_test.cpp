@@ -65,6 +65,9 @@ TEST(Requests, all_kinds_survive_the_way_to_bytes_and_back) {
   EXPECT_FALSE(there_and_back(SetMotorsRequest{"base", false}).are_enabled);
   EXPECT_EQ(there_and_back(SetRtfRequest{2.5}).rtf, 2.5);
   EXPECT_TRUE(there_and_back(ExportRequest{true}).with_collisions);
+  EXPECT_EQ(there_and_back(TreeRequest{"robot"}).model, "robot");
+  EXPECT_FALSE(there_and_back(TreeRequest{"robot"}).with_bounds);
+  EXPECT_TRUE(there_and_back(TreeRequest{"", true}).with_bounds);
   there_and_back(PosesRequest{});
   there_and_back(ModelsRequest{});
   there_and_back(ShowRequest{});
@@ -127,7 +130,7 @@ TEST(Requests, random_bytes_are_decoded_or_refused_but_never_worse) {
   std::mt19937_64 random(42);
   for (int n = 0; n < 20000; ++n) {
     RawRequest raw;
-    raw.kind = static_cast<std::uint32_t>(random() % 28);
+    raw.kind = static_cast<std::uint32_t>(random() % 31);
     auto* bytes = reinterpret_cast<unsigned char*>(&raw.body);
     for (std::size_t i = 0; i < sizeof raw.body; ++i) bytes[i] = static_cast<unsigned char>(random() % 4 == 0 ? random() : 0);
     raw.text.assign(random() % 50, static_cast<char>(random()));
