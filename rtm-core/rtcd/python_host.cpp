@@ -46,6 +46,15 @@ void add_packages() {
   }
 }
 
+// As which Python starts: that of an active virtual environment, whose packages it then has, if it is this interpreter. By a bare name,
+// Python would find its library along PATH, which may be that of another installation.
+std::string started_as() {
+  std::error_code error;
+  const char* active = std::getenv("VIRTUAL_ENV");
+  const fs::path own = fs::path(active ? active : "") / "bin/python3";
+  return active && fs::equivalent(own, interpreter, error) ? own.string() : interpreter;
+}
+
 }  // namespace
 
 bool is_for_python(const std::vector<std::string>& modules, const std::vector<std::string>& load_path) {
@@ -64,7 +73,7 @@ bool is_for_python(const std::vector<std::string>& modules, const std::vector<st
 
 std::string become_python(const std::vector<std::string>& options, const std::vector<std::string>& modules) {
   add_packages();
-  std::vector<std::string> words = {"python3", "-m", "OpenRTM_aist.rtcd"};
+  std::vector<std::string> words = {started_as(), "-m", "OpenRTM_aist.rtcd"};
   words.insert(words.end(), options.begin(), options.end());
   words.emplace_back("--");
   words.insert(words.end(), modules.begin(), modules.end());

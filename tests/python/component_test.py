@@ -391,3 +391,31 @@ def test_a_run_names_the_component_that_does_not_go_on(tmp_path, statement):
                         options=["--module-path", str(tmp_path), "--module-path", lib_dir])
     assert not result.passed
     assert "Hostile0" in result.why
+
+
+# The host is Debian's Python with its own library, whatever comes first in PATH; of an active virtual environment it has the packages.
+@pytest.mark.parametrize("is_active", [False, True])
+def test_the_host_is_the_python_of_the_system_or_of_the_active_environment(system, tmp_path, is_active):
+    version = subprocess.run([python, "-c", "import sys; print('python%d.%d' % sys.version_info[:2])"], check=True, capture_output=True, text=True).stdout.strip()
+    (tmp_path / "bin").mkdir()
+    library = tmp_path / "lib" / version
+    (library / "lib-dynload").mkdir(parents=True)
+    if is_active:
+        (tmp_path / "bin/python3").symlink_to(python)
+        (tmp_path / "pyvenv.cfg").write_text("home = /usr/bin\ninclude-system-site-packages = true\n")
+        (library / "site-packages").mkdir()
+        (library / "site-packages/only_here.py").write_text("")
+    else:  # another installation
+        (tmp_path / "bin/python3").write_text("#!/bin/false\n")
+        (tmp_path / "bin/python3").chmod(0o755)
+        (library / "os.py").write_text("")
+    module = written(tmp_path, "Where", """
+    def onActivated(self, ec_id):
+        print("prefix", sys.base_prefix, "packages", importlib.util.find_spec("only_here") is not None, flush=True)
+        return RTC.RTC_OK
+""", "import importlib.util")
+    more = {"VIRTUAL_ENV": str(tmp_path)} if is_active else {}
+    host = system.rtcd("-o", "naming.formats:%n.rtc", str(tmp_path / module), PATH=f"{tmp_path}/bin:{os.environ['PATH']}", **more)
+    seen(system, "Where0")
+    system.rtse("act", "Where0")
+    assert f"prefix /usr packages {is_active}" in says(system, host, "prefix ")
