@@ -130,6 +130,26 @@ def test_structures_and_enumerators_survive_an_any():
         assert repr(read) == repr(value)
 
 
+# A port has the type code of its data, and an any takes it along; default and repeated labels, all kinds of discriminators.
+@pytest.mark.parametrize("number, declared, value", [
+    (1, "union U switch (long) { case 0: long seeds; case 1: case 2: string meat; default: boolean none; };", (2, "worm")),
+    (2, "union U switch (long) { case 0: long seeds; default: boolean none; };", (7, True)),
+    (3, "enum K { BIRD, FISH }; union U switch (K) { case BIRD: long seeds; case FISH: string meat; };", ("FISH", "worm")),
+    (4, "union U switch (boolean) { case TRUE: sequence<double> seeds; };", (True, [1.5])),
+    (5, "union U switch (char) { case 'a': long seeds; case 'b': string meat; };", ("b", "worm")),
+])
+def test_unions_are_in_data_of_ports_and_in_anys(number, declared, value):
+    name = f"Fed{number}"
+    omniORB.importIDLString(f"module {name} {{ struct Time {{ long sec; }}; {declared} struct Timed {{ Time tm; U food; }}; }};")
+    module = __import__(name)
+    discriminator = getattr(module, value[0]) if hasattr(module, str(value[0])) else value[0]
+    data = module.Timed(module.Time(1), module.U(discriminator, value[1]))
+    assert OpenRTM_aist.OutPort("out", data).getPortDataType() == f"IDL:{name}/Timed:1.0"
+    octets = omniORB.cdrMarshal(CORBA.TC_any, any_.to_any(data), True)
+    read = any_.from_any(omniORB.cdrUnmarshal(CORBA.TC_any, octets, True), keep_structs=True)
+    assert (read.food._d, read.food._v) == (discriminator, value[1])
+
+
 def test_default_values_are_those_of_the_original():
     assert OpenRTM_aist.instantiateDataType(RTC.TimedPose2D).data.position.x == 0.0
     assert OpenRTM_aist.instantiateDataType(RTC.TimedOctetSeq).data == []

@@ -1,6 +1,7 @@
 // Type codes of the ORB from compiled types, and back.
 #include <map>
 
+#include "coder.h"
 #include "gil.h"
 #include "types.h"
 
@@ -104,9 +105,33 @@ class Codes {
         return type.kind == CORBA::tk_except ? orb->create_exception_tc(type.id.c_str(), type.name.c_str(), members)
                                              : orb->create_struct_tc(type.id.c_str(), type.name.c_str(), members);
       }
+      case CORBA::tk_union: {
+        const CORBA::TypeCode_var discriminator = make(*type.element);
+        CORBA::UnionMemberSeq members;
+        members.length(static_cast<CORBA::ULong>(type.members.size()));
+        for (CORBA::ULong i = 0; i < members.length(); ++i) {
+          members[i].name = PyUnicode_AsUTF8(type.members[i].name);
+          members[i].type = make(*type.members[i].type);
+          if (static_cast<int>(i) == type.default_case)
+            members[i].label <<= CORBA::Any::from_octet(0);
+          else
+            set_label(members[i].label, *type.element, discriminator, type.labels[i]);
+        }
+        return orb->create_union_tc(type.id.c_str(), type.name.c_str(), discriminator, members);
+      }
       default:
-        throw CORBA::BAD_TYPECODE();  // unions travel in structures that stubs know, but not inside an any
+        throw CORBA::BAD_TYPECODE();
     }
+  }
+  static void set_label(CORBA::Any& label, const Type& type, CORBA::TypeCode_ptr code, PyObject* value) {
+    cdrMemoryStream stream;
+    CORBA::TypeCode::marshalTypeCode(code, stream);
+    try {
+      encode(type, value, stream);
+    } catch (const BadValue&) {
+      throw CORBA::BAD_TYPECODE();
+    }
+    label <<= stream;
   }
 
   std::vector<const Type*> around_;
