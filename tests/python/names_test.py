@@ -137,6 +137,16 @@ def test_the_names_of_minor_codes_are_those_of_the_orb():
         omniORB.TRANSIENT_NoSuchCode
 
 
+def test_corba_id_is_the_repository_id_of_a_class_or_a_value():
+    from omniORB import CORBA
+    for one in (RTC.TimedLong, RTC.TimedLong(RTC.Time(0, 0), 0)):
+        assert CORBA.TypeCode(CORBA.id(one)).name() == "TimedLong"
+    assert CORBA.id(RTC.RTObject) == "IDL:omg.org/RTC/RTObject:1.0" and CORBA.id(CORBA.TRANSIENT()) == "IDL:omg.org/CORBA/TRANSIENT:1.0"
+    for wrong in (3, "text", object):
+        with pytest.raises(CORBA.BAD_PARAM):
+            CORBA.id(wrong)
+
+
 @pytest.mark.parametrize("name", ["select", "_wait"])
 def test_no_wait_of_a_manager_of_csp_ports_is_without_end(name):
     with pytest.raises(TypeError):

@@ -6,7 +6,6 @@ from . import tcInternal
 from .tcInternal import TCKind, TypeCode
 from . import Enum as _Enum, EnumItem as _EnumItem, StructBase as _StructBase
 
-id = "omniORB4"
 ORB_ID = "omniORB4"
 TRUE, FALSE = True, False
 
@@ -62,6 +61,14 @@ _SYSTEM = ("UNKNOWN BAD_PARAM NO_MEMORY IMP_LIMIT COMM_FAILURE INV_OBJREF OBJECT
 for _name in _SYSTEM:
     globals()[_name] = type(_name, (SystemException,), {"_NP_RepositoryId": "IDL:omg.org/CORBA/%s:1.0" % _name, "__module__": "CORBA"})
 del _name
+
+
+def id(obj):  # noqa: A001: the name of the mapping
+    """The repository id of a class of stubs or of a value or exception of one."""
+    repository_id = getattr(obj, "_NP_RepositoryId", None)
+    if not repository_id:
+        raise BAD_PARAM()  # noqa: F821: made above
+    return repository_id
 
 
 class _BadKind(UserException):
