@@ -33,7 +33,8 @@ struct Resource {
 };
 struct Bounds {
   static constexpr std::string_view name = "simulation_interfaces/msg/Bounds";
-  std::uint8_t type = 0;
+  static constexpr std::uint8_t empty = 0, box = 1, sphere = 3;
+  std::uint8_t type = empty;
   std::vector<Vector3> points{};
   static void fields(auto& m, auto& visit) {
     visit("type", m.type);
@@ -310,6 +311,20 @@ struct GetEntityInfoResponse {
   static void fields(auto& m, auto& visit) {
     visit("result", m.result);
     visit("info", m.info);
+  }
+};
+struct GetEntityBoundsRequest {
+  static constexpr std::string_view name = "simulation_interfaces/srv/GetEntityBounds_Request";
+  std::string entity{};
+  static void fields(auto& m, auto& visit) { visit("entity", m.entity); }
+};
+struct GetEntityBoundsResponse {
+  static constexpr std::string_view name = "simulation_interfaces/srv/GetEntityBounds_Response";
+  SimulationResult result{};
+  Bounds bounds{};
+  static void fields(auto& m, auto& visit) {
+    visit("result", m.result);
+    visit("bounds", m.bounds);
   }
 };
 struct GetEntityStateRequest {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bounds.h"
+
 namespace ros2 {
 namespace {
 
@@ -83,8 +85,7 @@ std::optional<SimulationResult> problem_of(const ros::EntityFilters& filters) {
                             "in all; got \"" +
                                 filters.filter + "\""};
   if (!filters.tags.tags.empty()) return SimulationResult{SimulationResult::unsupported, "entities have no tags: tags must be empty"};
-  if (filters.bounds.type != 0) return SimulationResult{SimulationResult::unsupported, "bounds are not supported: they must be empty"};
-  return std::nullopt;
+  return problem_of(filters.bounds);
 }
 
 std::vector<Entity> filtered(std::vector<Entity> entities, const ros::EntityFilters& filters) {

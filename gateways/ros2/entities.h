@@ -21,7 +21,7 @@ std::vector<Entity> entities_in(const std::string& list);
 
 // Why the filter cannot be used, as a result of simulation_interfaces; nothing when it can.
 std::optional<ros::SimulationResult> problem_of(const ros::EntityFilters& filters);
-// Those that a good filter names.
+// Those that a good filter names; its bounds do not count.
 std::vector<Entity> filtered(std::vector<Entity> entities, const ros::EntityFilters& filters);
 
 }  // namespace ros2

@@ -21,8 +21,8 @@ std::string interface_tables() {
       "| JOINT/position_command | std_msgs/msg/Float64 | position of one joint |\n"
       "\n| service | type |\n| --- | --- |\n";
   for (const char* name : {"GetSimulatorFeatures", "GetSimulationState", "SetSimulationState", "ResetSimulation", "StepSimulation",
-                           "GetCurrentWorld", "GetEntities", "GetEntityInfo", "GetEntityState", "GetEntitiesStates", "SetEntityState",
-                           "SpawnEntity", "SpawnEntities", "GetSpawnables", "DeleteEntity"}) {
+                           "GetCurrentWorld", "GetEntities", "GetEntityInfo", "GetEntityBounds", "GetEntityState", "GetEntitiesStates",
+                           "SetEntityState", "SpawnEntity", "SpawnEntities", "GetSpawnables", "DeleteEntity"}) {
     std::string snake;
     for (const char* c = name; *c != '\0'; ++c) {
       const bool is_upper = *c >= 'A' && *c <= 'Z';

@@ -19,6 +19,8 @@ using ros::SimulationResult;
 enum Feature : std::uint16_t {
   spawning = 0,
   deleting = 1,
+  entity_bounds = 5,
+  entity_bounds_box = 6,
   entity_categories = 8,
   spawning_resource_string = 9,
   entity_state_getting = 10,
@@ -140,12 +142,28 @@ void SimulationServices::ask(shm::Request request, std::function<void(const Resu
 void SimulationServices::serve_time() {
   node_.serve<ros::GetSimulatorFeaturesRequest, ros::GetSimulatorFeaturesResponse>(
       name("get_simulator_features"), [](const auto&, const auto& reply) {
-        reply(ros::GetSimulatorFeaturesResponse{
-            {{spawning, deleting, entity_categories, spawning_resource_string, entity_state_getting, entity_state_setting,
-              entity_info_getting, spawnables, simulation_reset, simulation_reset_state, simulation_state_getting, simulation_state_setting,
-              simulation_state_pause, step_single, step_multiple, step_action, world_info_getting, spawning_entities},
-             {"sdf", "urdf"},
-             "rtm-sim"}});
+        reply(ros::GetSimulatorFeaturesResponse{{{spawning,
+                                                  deleting,
+                                                  entity_bounds,
+                                                  entity_bounds_box,
+                                                  entity_categories,
+                                                  spawning_resource_string,
+                                                  entity_state_getting,
+                                                  entity_state_setting,
+                                                  entity_info_getting,
+                                                  spawnables,
+                                                  simulation_reset,
+                                                  simulation_reset_state,
+                                                  simulation_state_getting,
+                                                  simulation_state_setting,
+                                                  simulation_state_pause,
+                                                  step_single,
+                                                  step_multiple,
+                                                  step_action,
+                                                  world_info_getting,
+                                                  spawning_entities},
+                                                 {"sdf", "urdf"},
+                                                 "rtm-sim"}});
       });
   node_.serve<ros::GetSimulationStateRequest, ros::GetSimulationStateResponse>(
       name("get_simulation_state"), [this](const auto&, const auto& reply) {
@@ -201,9 +219,21 @@ void SimulationServices::serve_time() {
 
 void SimulationServices::ask_entities(const ros::EntityFilters& filters, OnEntities done) {
   if (const auto problem = problem_of(filters)) return done({}, bad(problem->result, problem->error_message));
-  errands_.post(shm::ListRequest{}, [filters, done = std::move(done)](const base::Result<shm::Reply>& reply) {
+  errands_.post(shm::ListRequest{}, [this, filters, done = std::move(done)](const base::Result<shm::Reply>& reply) {
     if (!reply) return done({}, bad(SimulationResult::failed, reply.error().message));
-    done(filtered(entities_in(reply->text), filters), good());
+    auto entities = filtered(entities_in(reply->text), filters);
+    if (filters.bounds.type == ros::Bounds::empty) return done(entities, good());
+    ask_boxes("", [entities = std::move(entities), bounds = filters.bounds, done](const Boxes& boxes, const Result& result) mutable {
+      std::erase_if(entities, [&](const Entity& one) { return !boxes.contains(one.name) || !overlaps(boxes.at(one.name), bounds); });
+      done(entities, result);
+    });
+  });
+}
+
+void SimulationServices::ask_boxes(const std::string& entity, OnBoxes done) {
+  errands_.post(shm::TreeRequest{entity, true}, [done = std::move(done)](const base::Result<shm::Reply>& tree) {
+    if (!tree) return done({}, bad(SimulationResult::failed, tree.error().message));
+    done(boxes_in(tree->text), good());
   });
 }
 
@@ -222,6 +252,19 @@ void SimulationServices::serve_entities() {
           const auto found = std::ranges::find(entities, wanted, &Entity::name);
           if (found == entities.end()) return reply(ros::GetEntityInfoResponse{no_model(wanted), {}});
           reply(ros::GetEntityInfoResponse{good(), {{found->category}, "", {}}});
+        });
+      });
+  node_.serve<ros::GetEntityBoundsRequest, ros::GetEntityBoundsResponse>(
+      name("get_entity_bounds"), [this](const auto& request, const auto& reply) {
+        ask_entities({}, [this, reply, wanted = request.entity](const std::vector<Entity>& entities, const Result& listed) {
+          if (listed.result != SimulationResult::ok) return reply(ros::GetEntityBoundsResponse{listed, {}});
+          if (std::ranges::find(entities, wanted, &Entity::name) == entities.end())
+            return reply(ros::GetEntityBoundsResponse{no_model(wanted), {}});
+          ask_boxes(wanted, [reply, wanted](const Boxes& boxes, const Result& result) {
+            if (result.result != SimulationResult::ok) return reply(ros::GetEntityBoundsResponse{result, {}});
+            if (!boxes.contains(wanted)) return reply(ros::GetEntityBoundsResponse{no_model(wanted), {}});
+            reply(ros::GetEntityBoundsResponse{good(), bounds_of(boxes.at(wanted))});
+          });
         });
       });
   node_.serve<ros::DeleteEntityRequest, ros::DeleteEntityResponse>(name("delete_entity"), [this](const auto& request, const auto& reply) {

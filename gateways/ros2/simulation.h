@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bounds.h"
 #include "entities.h"
 #include "node.h"
 #include "ros/simulation_services.h"
@@ -34,6 +36,8 @@ class SimulationServices {
  private:
   using Result = ros::SimulationResult;
   using OnEntities = std::function<void(const std::vector<Entity>& entities, const Result& result)>;
+  using Boxes = std::map<std::string, EntityBox>;
+  using OnBoxes = std::function<void(const Boxes& boxes, const Result& result)>;
   using OnSpawned = std::function<void(const ros::SpawnEntityResponse&)>;
   using OnState = std::function<void(const ros::EntityState& state, const Result& result)>;
 
@@ -51,6 +55,8 @@ class SimulationServices {
   void set_state(const ros::SetEntityStateRequest2& request, const std::function<void(const ros::SetEntityStateResponse&)>& reply);
   // Asks the simulator for its models; those that the filters name.
   void ask_entities(const ros::EntityFilters& filters, OnEntities done);
+  // Of one entity, or of all without a name.
+  void ask_boxes(const std::string& entity, OnBoxes done);
   void ask_state(const std::string& entity, OnState done);
   // The simulator's answer as a result.
   void ask(shm::Request request, std::function<void(const Result&)> done);

@@ -127,6 +127,7 @@ std::vector<Entrance> entrances() {
       message(ros::SetEntityStateRequest{"n", {header, pose, {}, {}}}),
       message(ros::GetEntitiesRequest{{"a.*", {}, {{"t"}, 0}, {1, {{1, 2, 3}}}}}),
       message(ros::GetSpawnablesRequest{{"a"}}),
+      message(ros::GetEntityBoundsRequest{"a"}),
       message(ros::StepSimulationRequest{3}),
   };
 }

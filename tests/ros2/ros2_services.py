@@ -145,9 +145,49 @@ def entities():
         assert abs(both["states"][both["entities"].index("leader")]["pose"]["position"]["x"] + 3.2) < 1e-3, both
         nobody = ask(states, "GetEntitiesRequest", {"filter": "^nobody$", **unfiltered}, "GetEntitiesStatesResponse")
         assert nobody["result"]["result"] == 1 and not nobody["entities"] and not nobody["states"], nobody
-        for part in ({"tags": ["a"]}, {"bounds": {"type": 3, "points": [ZERO, ZERO]}}):
+        for part in ({"tags": ["a"]}, {"bounds": {"type": 2, "points": [ZERO] * 3}}):
             refused = ask(states, "GetEntitiesRequest", {"filter": "", **unfiltered, **part}, "GetEntitiesStatesResponse")["result"]
             assert refused["result"] == 0, (part, refused)
+
+
+# Around what collides: in the frame of the entity; as a filter, in the world.
+def bounds():
+    def model(name, pose, shape, more=""):
+        collision = f"<collision name='c'><geometry>{shape}</geometry></collision>" if shape else ""
+        return f"<model name='{name}'>{more}<pose>{pose}</pose><link name='l'><inertial><mass>1</mass></inertial>{collision}</link></model>"
+
+    plank = model("plank", "5 0 1 0 0 0.785398163", "<box><size>2 1 0.5</size></box>")
+    rest = (model("ball", "0 0 3 0 0 0", "<sphere><radius>0.5</radius></sphere>") + model("bare", "0 9 9 0 0 0", "") +
+            model("ground", "0 0 0 0 0 0", "<plane><normal>0 0 1</normal></plane>", "<static>true</static>"))
+    with Rig() as rig:
+        rig.sim(f"<sdf version='1.9'><world name='w'>{plank}{rest}</world></sdf>", "--paused")
+        rig.gateway("--distro", "jazzy", robots=0)
+        peer = rig.peer()
+        of_entity, listing = caller(peer, "GetEntityBounds"), caller(peer, "GetEntities")
+
+        def around(entity):
+            reply = ask(of_entity, "EntityRequest", {"entity": entity}, "GetEntityBoundsResponse")
+            return reply["result"]["result"], reply["bounds"]["type"], [[round(point[axis], 6) for axis in "xyz"] for point in reply["bounds"]["points"]]
+
+        assert around("plank") == (1, 1, [[1, 0.5, 0.25], [-1, -0.5, -0.25]]), around("plank")
+        assert around("bare") == (1, 1, [[0, 0, 0], [0, 0, 0]]), around("bare")
+        assert around("ground") == (1, 0, []), around("ground")
+        assert around("nobody") == (2, 0, []) and around("") == (2, 0, [])
+
+        def within(kind, *points):
+            request = {"filter": "", "categories": b"", "tags": [], "filter_mode": 0, "bounds": {"type": kind, "points": [dict(zip("xyz", map(float, one))) for one in points]}}
+            reply = ask(listing, "GetEntitiesRequest", request, "GetEntitiesResponse")
+            return sorted(reply["entities"]) if reply["result"]["result"] == 1 else reply["result"]["result"]
+
+        # A corner of the plank's box along the axes of the world is free; its own corner is not.
+        assert within(3, (5.9, 0.9, 1), (0.2, 0, 0)) == [] and within(3, (5.3, 1, 1), (0.2, 0, 0)) == ["plank"]
+        assert within(1, (6, 1, 1.1), (5.8, 0.8, 0.9)) == [] and within(1, (5.5, 0.9, 1.1), (5.2, 0.8, 0.9)) == ["plank"]
+        assert within(1, (9, 9, 9), (-9, -9, -9)) == ["ball", "bare", "ground", "plank"]
+        assert within(3, (0, 0, 3), (0.1, 0, 0)) == ["ball"] and within(3, (700, 0, -50), (1, 0, 0)) == ["ground"]
+        assert within(0) == ["ball", "bare", "ground", "plank"]
+        assert within(2, (0, 0, 0), (1, 0, 0), (0, 1, 0)) == 0 and within(9) == 0
+        for wrong in ((3, (0, 0, 0)), (3, (0, 0, 0), (-1, 0, 0)), (3, (math.nan, 0, 0), (1, 0, 0)), (3, (0, 0, 0), (math.inf, 0, 0)), (1, (0, 0, 0), (1, 1, 1))):
+            assert within(*wrong) == 4, wrong
 
 
 # The action: feedback, results, and what cannot be executed.

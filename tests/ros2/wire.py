@@ -127,6 +127,7 @@ simulation_interfaces/Resource: str uri, str resource_string
 simulation_interfaces/Spawnable2: simulation_interfaces/Resource entity_resource, str description, simulation_interfaces/Bounds spawn_bounds
 simulation_interfaces/GetSpawnablesResponse2: simulation_interfaces/Result result, simulation_interfaces/Spawnable2[] spawnables
 simulation_interfaces/GetEntityInfoResponse: simulation_interfaces/Result result, u8 category, str description, str[] tags
+simulation_interfaces/GetEntityBoundsResponse: simulation_interfaces/Result result, simulation_interfaces/Bounds bounds
 simulation_interfaces/SpawnEntity: str name, bool allow_renaming, simulation_interfaces/Resource entity_resource, str entity_namespace, geometry_msgs/PoseStamped initial_pose
 simulation_interfaces/SpawnResult: simulation_interfaces/Result result, str entity_name
 simulation_interfaces/SpawnEntitiesRequest: simulation_interfaces/SpawnEntity[] spawn_requests
