@@ -38,6 +38,13 @@ Point between(Point from, Point to, double at, double whole) {
           (va * from.position + vc * to.position) / whole + vb * from.velocity + vd * to.velocity};
 }
 
+base::Result<void> set(shm::JointPart& part, std::uint32_t mode, std::size_t joint, double value) {
+  if (!std::isfinite(value)) return base::Error{"has a value that is not finite"};
+  if (mode == RTMSIM_JOINT_POSITION) return part.follow(joint, value, 0, 0);
+  if (mode == RTMSIM_JOINT_VELOCITY) return part.turn(joint, value);
+  return part.push(joint, value);
+}
+
 }  // namespace
 
 void Commands::take_drive(std::shared_ptr<Source> source, const std::string& topic) {
@@ -101,18 +108,13 @@ bool Commands::is_ready() {
   return true;
 }
 
-base::Result<void> Commands::set(std::uint32_t mode, std::size_t joint, double value) {
-  if (!std::isfinite(value)) return base::Error{"has a value that is not finite"};
-  if (mode == RTMSIM_JOINT_POSITION) return part_->follow(joint, value, 0, 0);
-  if (mode == RTMSIM_JOINT_VELOCITY) return part_->turn(joint, value);
-  return part_->push(joint, value);
-}
-
 void Commands::set_all(std::uint32_t mode, const std::vector<double>& values, std::size_t first, const std::string& topic) {
   if (!is_ready() || !on_arrival_({topic, std::nullopt})) return;
+  shm::JointPart commanded = *part_;  // all or none
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (auto done = set(mode, first + i, values[i]); !done) return refuse(topic, done.error().message);
+    if (auto done = set(commanded, mode, first + i, values[i]); !done) return refuse(topic, done.error().message);
   }
+  part_ = std::move(commanded);
   trajectory_.reset();
   send();
 }
@@ -128,15 +130,21 @@ void Commands::start(const ros::JointTrajectory& message, const std::string& top
     std::size_t i = 0;
     while (i < part_->size() && ros::text_of(part_->joint(i).name) != name) ++i;
     if (i == part_->size()) return refuse(topic, "the robot has no joint \"" + name + "\"");
+    if (std::ranges::find(trajectory.joints, i) != trajectory.joints.end()) return refuse(topic, "joint_names has \"" + name + "\" twice");
     trajectory.joints.push_back(i);
   }
+  if (trajectory.joints.empty()) return refuse(topic, "joint_names is empty");
+  shm::JointPart checked = *part_;
   std::chrono::nanoseconds before{-1};
   for (const auto& point : message.points) {
     if (point.positions.size() != trajectory.joints.size() || !are_finite(point.positions) || !are_finite(point.velocities) ||
         (!point.velocities.empty() && point.velocities.size() != point.positions.size()))
-      return refuse(topic, "each point needs as many finite positions as there are joint_names");
+      return refuse(topic, "each point needs as many finite positions as there are joint_names, and as many velocities or none");
     if (duration_of(point.time_from_start) <= before) return refuse(topic, "time_from_start must grow from point to point");
     before = duration_of(point.time_from_start);
+    for (std::size_t i = 0; i < trajectory.joints.size(); ++i) {
+      if (auto done = checked.follow(trajectory.joints[i], point.positions[i], 0, 0); !done) return refuse(topic, done.error().message);
+    }
   }
   trajectory.start_ns = stamp_of(message.header).value_or(std::chrono::nanoseconds(-1)).count();
   trajectory_ = std::move(trajectory);
@@ -166,7 +174,9 @@ void Commands::advance() {
     };
     const Point wanted =
         between(next == 0 ? Point{run.from[i], 0} : point(next - 1), point(next), std::max(at - begin, 0.0), seconds(next) - begin);
-    if (auto done = part_->follow(run.joints[i], wanted.position, wanted.velocity, 0); !done) {
+    // A joint may begin a little beyond its stop, and a curve swing beyond one.
+    const auto& joint = part_->joint(run.joints[i]);
+    if (auto done = part_->follow(run.joints[i], std::clamp(wanted.position, joint.lower, joint.upper), wanted.velocity, 0); !done) {
       refuse("joint_trajectory", done.error().message);
       trajectory_.reset();
       return;

@@ -60,7 +60,6 @@ class Commands {
   void drive(const ros::Twist& twist, const std::string& topic, std::optional<std::chrono::nanoseconds> stamp);
   void start(const ros::JointTrajectory& message, const std::string& topic);
   void set_all(std::uint32_t mode, const std::vector<double>& values, std::size_t first, const std::string& topic);
-  base::Result<void> set(std::uint32_t mode, std::size_t joint, double value);
   bool is_ready();
   void refuse(const std::string& topic, const std::string& why);
   void send();

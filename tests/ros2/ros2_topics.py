@@ -251,9 +251,31 @@ def joints():
         message = {"header": {"stamp": zero, "frame_id": ""}, "joint_names": [names[0]], "points": [point((start + wanted) / 2, 1), point(wanted, 2)]}
         peer.put(path, "trajectory_msgs/JointTrajectory", message)
         peer.message(states, "sensor_msgs/JointState", lambda m: abs(m["position"][0] - wanted) < 0.02)
-        message["joint_names"] = ["nobody"]
-        peer.put(path, "trajectory_msgs/JointTrajectory", message)
-        await_("the refusal", lambda: 'the robot has no joint "nobody"' in rig.log(rig.process))
+
+        # Goals are checked before anything moves; a line has what was sent.
+        def refused(why, names, points):
+            peer.put(path, "trajectory_msgs/JointTrajectory", {**message, "joint_names": names, "points": points})
+            await_("the refusal", lambda: f"{path}: {why}" in rig.log(rig.process))
+
+        refused('the robot has no joint "nobody"', ["nobody"], message["points"])
+        refused(f"joint {names[0]}: a position must be within -2.9 and 2.9, got 100; it is ignored", names[:1], [point(100.0, 1)])
+        refused(f'joint_names has "{names[0]}" twice', names[:1] * 2, [{**point(0.0, 1), "positions": [0.0, 0.0]}])
+        refused("joint_names is empty", [], [{**point(0.0, 1), "positions": []}])
+        refused("each point needs as many finite positions", names[:2], [point(0.0, 1)])
+        # A joint at its stop, to which it was pushed.
+        finger = names.index("left_finger")
+        peer.put(path, "trajectory_msgs/JointTrajectory", {**message, "joint_names": ["left_finger"], "points": [point(0.02, 1)]})
+        peer.message(states, "sensor_msgs/JointState", lambda m: abs(m["position"][finger] - 0.02) < 0.002)
+        assert abs(peer.messages(states, "sensor_msgs/JointState")[-1]["position"][0] - wanted) < 0.02
+        # Of several values all count, or none.
+        every = f"/{model}/position_controller/commands"
+        peer.advertise(every, "std_msgs/Float64MultiArray")
+        peer.await_matched(every)
+        peer.put(every, "std_msgs/Float64MultiArray", {"layout": {"dim": [], "data_offset": 0}, "data": [start] * (len(names) - 1) + [100.0]})
+        await_("the refusal", lambda: f"{every}: joint {names[-1]}: a position must be within" in rig.log(rig.process))
+        peer.put(path, "trajectory_msgs/JointTrajectory", {**message, "joint_names": ["left_finger"], "points": [point(0.03, 1)]})
+        peer.message(states, "sensor_msgs/JointState", lambda m: abs(m["position"][finger] - 0.03) < 0.002)
+        assert abs(peer.messages(states, "sensor_msgs/JointState")[-1]["position"][0] - wanted) < 0.02
         one = f"/{model}/{names[0]}/position_command"
         peer.advertise(one, "std_msgs/Float64")
         peer.await_matched(one)
