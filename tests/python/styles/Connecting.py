@@ -42,7 +42,7 @@ class Connecting(OpenRTM_aist.DataFlowComponentBase):
         self._out.write(RTC.TimedLong(RTC.Time(1,2), 7))
         if self._in.isNew() and not hasattr(self, "said"):
             while self._in.isNew(): d = self._in.read()
-            self.said = print("OK Connecting", d.data, d.tm.sec, d, self._in.getName(), self._in.name(), self._in.getProfile().name, len(self._in.get_connector_profiles()), self._in.connectors(), self._in.getConnectorNames())
+            self.said = print("OK Connecting", d.data, d.tm.sec, d, self._in.getName(), self._in.name(), self._in.getProfile().name, len(self._in.get_connector_profiles()), [(c.id() == c.profile().id, c.name()) for c in self._in.connectors()], self._out.getConnectorByName("x").id() == self._out.getConnectorIds()[0], self._in.getConnectorNames())
         return RTC.RTC_OK
 
 def ConnectingInit(manager):

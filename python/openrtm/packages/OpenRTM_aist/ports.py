@@ -40,6 +40,22 @@ class RingBuffer:
         return self._length
 
 
+class _Connector:
+    """A connection of a port as the original has it: with methods."""
+
+    def __init__(self, info):
+        self._info = info
+
+    def profile(self):
+        return self._info
+
+    def id(self):
+        return self._info.id
+
+    def name(self):
+        return self._info.name
+
+
 class _Callback:
     def __call__(self, *args):
         return args[0] if args else None
@@ -136,7 +152,7 @@ class _DataPort(PortBase):
         return self._connectors
 
     def connectors(self):
-        return self._connectors
+        return [_Connector(one) for one in self._connectors]
 
     def getConnectorIds(self):
         return [one.id for one in self._connectors]
@@ -148,10 +164,10 @@ class _DataPort(PortBase):
         return bool(self._connectors)
 
     def getConnectorById(self, id_):
-        return next((one for one in self._connectors if one.id == id_), None)
+        return next((one for one in self.connectors() if one.id() == id_), None)
 
     def getConnectorByName(self, name):
-        return next((one for one in self._connectors if one.name == name), None)
+        return next((one for one in self.connectors() if one.name() == name), None)
 
     def addConnectorDataListener(self, type_, listener, autoclean=True):
         """Call the listener at events of samples. Returns what removeConnectorDataListener takes."""
