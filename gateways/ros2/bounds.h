@@ -1,4 +1,4 @@
-// Where the shapes of entities are, and bounds as simulation_interfaces has them. Lengths in m. Values; any thread.
+// Boxes around the shapes of entities, and bounds as simulation_interfaces has them. Lengths in m. Values; any thread.
 #pragma once
 
 #include <array>
