@@ -37,6 +37,11 @@ function other_value(value, pick, depth = 0) {
   return copy;
 }
 
+function frozen(value) {
+  if (value !== null && typeof value === 'object') for (const one of Object.values(Object.freeze(value))) frozen(one);
+  return value;
+}
+
 const pack = (value) => deflateSync(JSON.stringify(value) ?? 'null', { level: 1 }).toString('base64');
 
 // Text that is no longer that of the block; `json`: what it holds.
@@ -56,33 +61,39 @@ export function mutated(text, json, pick) {
   }
 }
 
-async function reader(web) {
+// The reader of the page. Blocks whose text is that of the page itself are unpacked once, and nobody may change what they hold; all others
+// take the way of the page.
+async function reader(web, whole) {
   const require = createRequire(resolve(web, 'package.json'));
   const { build } = require('esbuild');
-  const { outputFiles } = await build({ entryPoints: [join(web, 'src/run_data.ts')], bundle: true, format: 'esm', write: false, logLevel: 'error' });
+  const real = resolve(web, 'src/run_blocks.ts');
+  globalThis.kept_block = { is_whole: (id) => whole(id) === document.getElementById(`run-${id}`)?.textContent, frozen };
+  const keeping = `export { from_base64 } from '${real}';
+    import { json_of as fresh } from '${real}';
+    const kept = new Map();
+    export async function json_of(id) {
+      if (!kept_block.is_whole(id)) return fresh(id);
+      if (!kept.has(id)) kept.set(id, kept_block.frozen(await fresh(id)));
+      return kept.get(id);
+    }`;
+  const keep = {
+    name: 'keep',
+    setup: (building) => {
+      building.onResolve({ filter: /\/run_blocks$/ }, () => ({ path: 'keeping', namespace: 'keep' }));
+      building.onLoad({ filter: /.*/, namespace: 'keep' }, () => ({ contents: keeping, resolveDir: web }));
+    },
+  };
+  const entry = { contents: `export { RunData } from './src/run_data'; export { fetch_run } from '${real}';`, resolveDir: resolve(web), sourcefile: 'entry.js' };
+  const { outputFiles } = await build({ stdin: entry, bundle: true, format: 'esm', write: false, logLevel: 'error', plugins: [keep] });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
 
-// A request is lost if the reader has answered so many later ones meanwhile, however long they took.
-const later_ones = 200;
-let control; // unpacks a whole block on the way that all data take
-const waiting = new Set();
-let is_turning = false;
-async function turn() {
-  if (is_turning) return;
-  is_turning = true;
-  for (; waiting.size > 0; await control())
-    for (const one of waiting) if (++one.turns > later_ones) one.lost();
-  is_turning = false;
-}
+// A request is lost if it waits when the process has nothing left to do.
+const waiting = new Map();
 
 function answered(what, promise) {
-  return new Promise((resolve, reject) => {
-    const one = { turns: 0, lost: () => { waiting.delete(one); reject(new Error(`${what} is not answered`)); } };
-    waiting.add(one);
-    promise.then(resolve, reject).finally(() => waiting.delete(one));
-    turn();
-  });
+  const lost = new Promise((_, reject) => waiting.set(promise, () => reject(new Error(`${what} is not answered`))));
+  return Promise.race([promise, lost]).finally(() => waiting.delete(promise));
 }
 
 // Opens the page and asks for everything once that needs this block. Returns whether anything was said about it.
@@ -118,10 +129,8 @@ async function main([html_file, web, number = '3000', seed = '1']) {
   const shown = new Map(blocks);
   globalThis.WebSocket ??= class {};
   globalThis.WebSocket.OPEN ??= 1;
-  const smallest = [...blocks.values()].reduce((a, b) => (a.length < b.length ? a : b));
-  globalThis.document = { getElementById: (id) => (id === 'run-control' ? { textContent: smallest } : shown.has(id.slice(4)) ? { textContent: shown.get(id.slice(4)) } : null) };
-  const { RunData, fetch_run, unpacked } = await reader(web);
-  control = () => unpacked('control');
+  globalThis.document = { getElementById: (id) => (shown.has(id.slice(4)) ? { textContent: shown.get(id.slice(4)) } : null) };
+  const { RunData, fetch_run } = await reader(web, (id) => blocks.get(id));
   const topics = index.signals.signals.map((signal) => signal.topic);
   const { from, to } = index.hello.recording;
   const asked = [
@@ -130,6 +139,7 @@ async function main([html_file, web, number = '3000', seed = '1']) {
     ['series', { topic: topics[0], members: ['data.vx'] }], ['series', { topic: topics[1], members: ['ranges[3]'], other: true }],
     ...index.system.components.slice(0, 1).map((one) => ['component', { path: one.path }]), ['watch_image', { watch: 3, iface: 'x' }]];
   let unhandled;
+  process.on('beforeExit', () => waiting.forEach((lose) => lose()));
   process.on('unhandledRejection', (error) => { unhandled = error; });
   for (const id of blocks.keys()) if (await use(RunData, fetch_run, asked, id)) throw new Error('the page itself is not whole');
   const pick = random(Number(seed)), ids = [...blocks.keys()];

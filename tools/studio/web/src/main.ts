@@ -17,7 +17,7 @@ import { act, changed, component, link_problem, on, read_only, select, selected_
 import { Playback, recording } from './playback';
 import { profile_dialog } from './profile_dialog';
 import { recordings_dialog } from './recordings_dialog';
-import { has_run } from './run_data';
+import { has_run } from './run_blocks';
 import { run_summary } from './run_summary';
 import { spawn_dialog } from './spawn_dialog';
 import { with_token } from './token';

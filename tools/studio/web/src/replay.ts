@@ -1,7 +1,7 @@
 // Sends the recorded inputs to a component again and compares its outputs.
 import { open_dialog } from './dialog';
 import { h } from './dom';
-import { has_run } from './run_data';
+import { has_run } from './run_blocks';
 import { shell_line } from './shell';
 import { act, changed, store } from './store';
 

@@ -1,5 +1,6 @@
 // The data of a run inside the page itself: a page that `rtse run --page` wrote. It answers the requests of a recording (see the protocol of
-// rtm-studio) in place of the server. Each block is zlib data in base64; parts hold up to ten seconds each and are unpacked when they are needed.
+// rtm-studio) in place of the server. Parts hold up to ten seconds each and are unpacked when they are needed.
+import { from_base64, json_of } from './run_blocks';
 import type { Hello, Signal, System, WorldEvent } from './wire';
 
 interface Index { hello: Hello; system: System; signals: { signals: Signal[] }; world: WorldEvent; parts: [number, number][] }
@@ -11,35 +12,6 @@ interface Watch { topic: string; members?: string[]; is_image: boolean; shown: s
 type Timed = [number, ...unknown[]];
 
 const kept_parts = 6;
-const text_of = new TextDecoder();
-
-const block = (id: string): HTMLElement | null => document.getElementById(`run-${id}`);
-export const has_run = (): boolean => block('index') !== null;
-
-// As Uint8Array.fromBase64, which older browsers do not have; a function for each octet is several times slower than this.
-function from_base64(text: string): Uint8Array<ArrayBuffer> {
-  const octets = atob(text), data = new Uint8Array(octets.length);
-  for (let i = 0; i < octets.length; ++i) data[i] = octets.charCodeAt(i);
-  return data;
-}
-
-export async function unpacked(id: string): Promise<ArrayBuffer> {
-  const element = block(id);
-  if (!element) throw new Error(`this page has no block "${id}"`);
-  const stream = new Blob([from_base64(element.textContent ?? '')]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Response(stream).arrayBuffer();
-}
-
-async function json_of(id: string): Promise<any> {
-  return JSON.parse(text_of.decode(await unpacked(id)));
-}
-
-// In place of a GET of the server: the world as glTF.
-export async function fetch_run(path: string): Promise<Response> {
-  const id = path.includes('collisions=1') && block('collisions') ? 'collisions' : 'world';
-  return block(id) ? new Response(await unpacked(id)) : new Response('this page has no world', { status: 404 });
-}
-
 // The number of entries that are not later than this time.
 function count_until(times: (i: number) => number, length: number, time: number): number {
   let low = 0, high = length;

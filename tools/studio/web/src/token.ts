@@ -1,7 +1,7 @@
 // The right to look and act: the token of the URL that rtm-studio printed. It comes behind the '#', so no server, proxy or log sees it, leaves
 // the address bar at once, and is kept by this tab alone: a cookie would be sent to every port of the host. Another tab of this browser that
 // has no token asks the tabs of the same origin.
-import { fetch_run, has_run } from './run_data';
+import { fetch_run, has_run } from './run_blocks';
 
 const kept = 'rtm-studio-token';
 const in_address = /(?:^#|&)token=([0-9a-f]{32})(?=&|$)/;

@@ -1,5 +1,6 @@
 // The socket to rtm-studio: requests and replies, events, poses and images. It waits for a server that is gone and comes back by itself.
-import { has_run, RunData } from './run_data';
+import { has_run } from './run_blocks';
+import { RunData } from './run_data';
 import { fetch_data, token } from './token';
 
 export interface Port { name: string; kind: 'in' | 'out' | 'service'; data_type: string; interfaces?: { instance: string; type: string; provided: boolean }[]; properties?: Record<string, string>; connections?: string[] }

@@ -14,7 +14,7 @@ import { Marker } from './marker';
 import { linear, place_lights } from './material';
 import { Eye, EyeState, to_ours } from './orbit';
 import { Pace } from './pace';
-import { has_run } from './run_data';
+import { has_run } from './run_blocks';
 import { Ranges } from './ranges';
 import { settings } from './settings';
 import { changed, link_problem, on, selected_model, store, wire } from './store';
