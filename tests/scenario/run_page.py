@@ -106,16 +106,18 @@ def writer_killed(folder):
     assert os.listdir(folder) == ["run.html"], os.listdir(folder)
 
 
-# A page that cannot be written costs nobody the recording.
+# A page that cannot be written costs nobody the recording, and the report does not attach what has its name.
 def page_fails(folder):
-    page = os.path.join(folder, "run.html")
-    with subprocess.Popen(run_words(60, "--page", page), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    page, report = (os.path.join(folder, name) for name in ("run.html", "run.xml"))
+    with subprocess.Popen(run_words(60, "--page", page, "--junit", report), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         writer_of(process)
         os.mkdir(page)
         problems = process.communicate(timeout=watchdog)[1]
     recording = f"{page}.{process.pid}.mcap"
     assert process.returncode == 1 and problems == f'rtse: page "{page}": is a folder; the recording is kept: {recording}\n', problems
-    assert sorted(os.listdir(folder)) == ["run.html", os.path.basename(recording)], os.listdir(folder)
+    assert sorted(os.listdir(folder)) == ["run.html", os.path.basename(recording), "run.xml"], os.listdir(folder)
+    with open(report, encoding="utf8") as file:
+        assert "ATTACHMENT" not in file.read()
     os.rmdir(page)
     done(f"{bin_dir}/rtse", "page", recording, "-o", page)
     assert index_of(page)["parts"]

@@ -67,7 +67,7 @@ struct RunResult {
   std::vector<std::string> notes;  // what is not as the world's file says
   std::vector<Verdict> verdicts;
   std::vector<RunMark> marks;  // what a script did; not in JSON
-  std::string page;            // HTML of the run, if it could be written; empty: none was wanted
+  std::string page;            // HTML of the run; empty: none was wanted, or it could not be written
   std::string state_hash;
   std::string run_hash;    // of the hash log
   int runs = 1;            // 2 with --twice

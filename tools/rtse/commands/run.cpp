@@ -256,9 +256,9 @@ void run(const Session& session, Console& console, const RunOptions& options, co
     WrittenPage page(options, made);
     const RunHooks hooks{.recording = [&page] { page.begin(); }};
     results.push_back(made.twice ? run_twice(session.orb(), made, progress) : run_system(session.orb(), made, progress, hooks));
-    results.back().page = options.page;
-    report(console, results.back(), false);
-    page.end(console, results.back());
+    if (!console.json()) report(console, results.back(), false);
+    if (page.end(console, results.back())) results.back().page = options.page;
+    if (console.json()) report(console, results.back(), false);
     if (!results.back().logs.empty() && options.keep.empty() && !console.json()) console.warn("--keep DIR keeps the logs of all processes");
   }
   if (options.junit.empty()) return;

@@ -57,15 +57,15 @@ void WrittenPage::begin() {
   if (auto started = PageBesideRun::start(call())) beside_.emplace(std::move(*started));
 }
 
-void WrittenPage::end(Console& console, const RunResult& result) {
-  if (given_.page.empty()) return;
+bool WrittenPage::end(Console& console, const RunResult& result) {
+  if (given_.page.empty()) return false;
   std::error_code error;
   if (!std::filesystem::exists(made_.record, error)) {
     // A run that did not start has said so, and with --last one that passes keeps nothing.
-    if (!result.is_passed()) return;
-    if (given_.record_last_s > 0)
-      return console.warn("page " + base::in_quotes(given_.page) + ": not written, since --last keeps failed runs only");
-    return console.fail({"page " + base::in_quotes(given_.page) + ": the run left no recording"});
+    const auto page = "page " + base::in_quotes(given_.page);
+    if (result.is_passed() && given_.record_last_s > 0) console.warn(page + ": not written, since --last keeps failed runs only");
+    if (result.is_passed() && given_.record_last_s <= 0) console.fail({page + ": the run left no recording"});
+    return false;
   }
   const auto summary = page_summary(result, repeating_command(given_));
   const auto written = beside_ ? beside_->finish(summary) : write_run_page(call(), summary);
@@ -73,9 +73,11 @@ void WrittenPage::end(Console& console, const RunResult& result) {
   if (given_.record.empty() && !is_kept) std::filesystem::remove(made_.record, error);
   if (!written) {
     const bool names_it = given_.record.empty() && is_kept;
-    return console.fail({written.error().message + (names_it ? "; the recording is kept: " + made_.record : "")});
+    console.fail({written.error().message + (names_it ? "; the recording is kept: " + made_.record : "")});
+    return false;
   }
   if (!console.json()) std::cout << "page " << *written;
+  return true;
 }
 
 }  // namespace tools

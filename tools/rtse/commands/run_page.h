@@ -21,9 +21,9 @@ class WrittenPage {
 
   // The recording has begun.
   void begin();
-  // Ends the page. A temporary recording is removed, unless the page failed. Problems go to `console`. A run that left no recording leaves
-  // an older page as it is.
-  void end(Console& console, const RunResult& result);
+  // Ends the page. A temporary recording is removed, unless the page failed. Problems go to `console`. Returns whether there is a page of
+  // this run: one that left no recording leaves an older page as it is.
+  bool end(Console& console, const RunResult& result);
 
  private:
   PageCall call() const {
