@@ -227,14 +227,14 @@ std::string nothing_compared(const Options& options, const ReplayResult& result)
   return "replay: cannot compare: the recording has no outputs of " + options.component + " while it was active";
 }
 
-base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem) {
+base::Result<void> write_report(const Options& options, const ReplayResult& result, const std::string& problem, const std::string& page) {
   tools::RunOptions names;
   names.system = "replay";
   names.world = options.component;
   names.duration_s = result.simulated_s;
   tools::RunResult run;
   run.problem = problem;
-  run.page = options.page;
+  run.page = page;
   run.wall_s = result.wall_s;
   for (const auto& output : result.outputs)
     run.verdicts.push_back(
@@ -280,11 +280,15 @@ std::string repeating_command(const Options& options) {
 
 void conclude(Console& console, const Options& options, const ReplayResult& result, const std::string& problem) {
   if (!problem.empty()) console.fail({problem});
+  std::string page;  // an older one stays as it is
   if (!options.page.empty() && problem.empty()) {
-    if (const auto written = write_page(console, options, result, repeating_command(options)); !written) console.fail(written.error());
+    if (const auto written = write_page(console, options, result, repeating_command(options)); written)
+      page = options.page;
+    else
+      console.fail(written.error());
   }
   if (options.junit.empty()) return;
-  if (const auto written = write_report(options, result, problem); !written) console.fail(written.error());
+  if (const auto written = write_report(options, result, problem, page); !written) console.fail(written.error());
 }
 
 // It is of another maker: its stamps are those of its own clock.
