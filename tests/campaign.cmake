@@ -9,7 +9,7 @@ function(campaign_cases script)
   endforeach()
 endfunction()
 campaign_cases(campaigns.py sweep reports pages killed warm_killed disk_full interrupted refused)
-campaign_cases(plans.py without_simctl events goes_to faults models_as_simulated hunts hunts_restarts)
+campaign_cases(plans.py without_simctl events goes_to like_faulty faults models_as_simulated hunts hunts_restarts)
 campaign_cases(trouble.py kills shared machine finds)
 # On a cluster of one machine; skipped where Slurm is not installed (scripts/setup --with-slurm).
 foreach(case rows broken killed other_rows)

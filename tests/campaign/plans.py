@@ -63,7 +63,7 @@ faults:
     recording = folder / "recorded/run.mcap"
     stats = f"{bin_dir}/simctl --json stats"
     done = rtse("--json", "goto", recording, "1", "--module-path", lib_dir, "--then", stats)
-    assert "is not done again" not in done.stderr, done.stderr
+    assert "not repeated" not in done.stderr, done.stderr
     assert json.loads(done.stdout.split("\n", 1)[1])["hash"] == whole, (done.stdout, whole)
     # By steps, and back: the state at 0.55 s is one, whichever way leads there.
     there = json.loads(rtse("--json", "goto", recording, "0.55", "--module-path", lib_dir, "--then", stats).stdout.split("\n", 1)[1])["hash"]
@@ -72,8 +72,22 @@ faults:
     assert [json.loads(line)["time"] for line in stepped.stdout.splitlines()][-3:] == [0.55, 1, 0.55], stepped.stdout
     assert there not in (quiet["state"], whole), there
     # A replay sends what ports wrote, not what a faulty connection made of it: it says so instead of a difference that is none.
-    done = rtse("replay", recording, "--into", "LaserObstacleAvoid0", "--compare", "--module-path", lib_dir, code=1)
+    page, report = folder / "replay.html", folder / "replay.xml"
+    page.write_text("of an earlier replay")
+    done = rtse("replay", recording, "--into", "LaserObstacleAvoid0", "--compare", "--module-path", lib_dir, "--page", page, "--junit", report, code=1)
+    assert page.read_text() == "of an earlier replay" and "ATTACHMENT" not in report.read_text(), report
     assert 'replay: cannot compare: connection "RTCLaser0.range_LaserObstacleAvoid0.range" had the fault "drop:0.2:' in done.stderr and len(done.stderr.splitlines()) == 1, done
+
+
+# A run like a recorded one has the faults of its connections and components, but not what happened between its steps, and says so.
+def like_faulty():
+    found = {}
+    for name, deeds in (("drop", "faults: [{at: 0, connector: range-to-avoidance, is: drop, amount: 1}]\n"), ("pushed", "events: [{at: 0.2, push: {model: pioneer2dx, force: [0, 40, 0], for: 0.1}}]\n"), ("quiet", "")):
+        found[name] = json.loads(rtse("--json", "sweep", plan(deeds, f"{name}.yaml"), "--row", 1, "--record", "--keep", folder / name).stdout)["state"]
+    assert len(set(found.values())) == 3, found
+    for name, state, said in (("drop", "drop", ""), ("quiet", "quiet", ""), ("pushed", "quiet", "rtse: events of the campaign's plan and its faults of devices and processes are not repeated\n")):
+        done = rtse("--json", "run", "--like", folder / name / "run.mcap", "--module-path", lib_dir)
+        assert json.loads(done.stdout)["state_hash"] == found[state] and done.stderr == said, (name, done)
 
 
 # What happens at a time or on a condition happens at the same step in every run.

@@ -67,7 +67,7 @@ std::string RecordedRun::note(const std::string& key) const {
 }
 
 std::string RecordedRun::lost() const {
-  return note("script") == "yes" ? "what the plan of a campaign did in the run (faults, events) is not done again" : "";
+  return note("script") == "yes" ? "events of the campaign's plan and its faults of devices and processes are not repeated" : "";
 }
 
 base::Result<tools::RunOptions> RecordedRun::options() const {

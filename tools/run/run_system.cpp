@@ -380,7 +380,7 @@ class Run final : public RunningSystem {
     return {
         {options_note, to_json(options, RunOptionSet::repeats_run).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)},
         {"others", base::join(foreign_.names(), "\n")},
-        {"script", hooks_.script != nullptr ? "yes" : "no"}};
+        {"script", hooks_.script != nullptr && !hooks_.script->written().empty() ? "yes" : "no"}};
   }
 
   Result<void> listen() {
