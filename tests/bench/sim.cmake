@@ -1,6 +1,6 @@
 find_package(embree 3 REQUIRED)
 find_library(ODE_LIBRARY ode REQUIRED)
-add_executable(sim_bench sim_bench.cpp bare_rays.cpp bare_steps.cpp)
+add_executable(sim_bench sim_bench.cpp sim_bench_process.cpp sim_bench_rays.cpp sim_bench_steps.cpp bare_rays.cpp bare_steps.cpp)
 target_include_directories(sim_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests)
 target_link_libraries(sim_bench PRIVATE simserver embree ${ODE_LIBRARY} rtmsim_settings)
 target_compile_definitions(sim_bench PRIVATE RTMSIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" RTMSIM_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
