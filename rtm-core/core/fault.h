@@ -1,6 +1,5 @@
-// Faults that somebody asks for on purpose, to see what a system makes of them: of a component by its property `fault.on_execute`, of a
-// connection by dataport.fault. A text names them, as base/fault_text.h has it, with a seed as LAST, several with blanks between; times are
-// of the clock that the component lives by. Values; any thread.
+// Injected faults: of a component by its property `fault.on_execute`, of a connection by dataport.fault. The text of a fault is that of
+// base/fault_text.h with a seed as LAST; blanks separate faults. Times are those of the component's clock. Values; any thread.
 #pragma once
 
 #include <chrono>

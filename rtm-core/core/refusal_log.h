@@ -1,4 +1,4 @@
-// When a refused call is logged, so that who asks without end does not fill the disk. Any thread.
+// Limits how often refused calls are logged, so that a caller that repeats them does not fill the disk. Any thread.
 #pragma once
 
 #include <chrono>

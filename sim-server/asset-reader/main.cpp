@@ -5,7 +5,7 @@
 #include "base/command_line.h"
 
 int main(int argc, char** argv) {
-  base::Command app("Reads meshes and pictures for sim-server, which starts it. Not for use by hand.", "rtm-asset-reader");
+  base::Command app("Reads meshes and images for sim-server, which starts it. Not for use by hand.", "rtm-asset-reader");
   base::add_standard_options(app, "rtm-asset-reader", RTMSIM_VERSION);
   bool has_socket = false;
   app.add_flag("--socket", has_socket, "requests come over descriptor 3");
