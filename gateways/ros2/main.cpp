@@ -23,9 +23,9 @@ void block_end_signals() {
   sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
-int end_with(const base::Error& error) {
+int end_with(const base::Error& error, int code = 1) {
   std::cerr << base::for_terminal("ros2-gateway: " + error.message + "\n");
-  return 1;
+  return code;
 }
 
 // As typed, before it is checked.
@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   const bool is_domain_typed = app.count("--domain") > 0 || std::getenv("ROS_DOMAIN_ID") != nullptr;
-  if (auto done = complete(options, typed, is_domain_typed, app.count("--clock-rate") > 0); !done) return end_with(done.error());
+  if (auto done = complete(options, typed, is_domain_typed, app.count("--clock-rate") > 0); !done) return end_with(done.error(), 2);
   block_end_signals();
   return ros2::supervise([&] {
     try {

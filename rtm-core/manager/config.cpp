@@ -85,7 +85,7 @@ bool ManagerConfig::init(int argc, char** argv, bool strict) {
   file_ = *file;
   if (!file_.empty()) {
     const auto text = rt::read_text_file(file_);
-    if (!text) return fail(1, text.error().message);
+    if (!text) return fail(2, text.error().message);
     const auto parsed = rt::parse_config(*text);
     for (const auto& finding : parsed.findings) warnings_.push_back(file_ + ":" + std::to_string(finding.line) + ": " + finding.text);
     for (const auto& entry : parsed.entries) {

@@ -311,10 +311,10 @@ def refused():
     for verb, *words in (("sweep", "-o", ""), ("sweep", "--keep", ""), ("hunt", "-o", "")):
         done = rtse(verb, plan(""), *words, code=2)
         assert 'expected the name of a file or folder, got ""' in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
-    done = rtse("sweep", plan(""), "-o", "nowhere/plan.db", code=1)
+    done = rtse("sweep", plan(""), "-o", "nowhere/plan.db", code=2)
     assert done.stderr == 'rtse: file "nowhere/plan.db": there is no folder nowhere\n' and not (folder / "nowhere").exists(), done.stderr
     assert not (folder / "plan.db").exists()
-    done = rtse("results", plan(""), code=1)
+    done = rtse("results", plan(""), code=2)
     assert "file is not a database" in done.stderr, done.stderr
 
 
@@ -333,7 +333,7 @@ def disk_full():
     assert {key: times()[key] for key in before} == before
     last = json.loads(rtse("--json", "sweep", p, "--rows", "1..3").stdout)
     assert last["passed"] == 3 and last["stored"] >= 2, last
-    done = rtse("results", folder / "plan.db", "--html", folder, code=1)
+    done = rtse("results", folder / "plan.db", "--html", folder, code=2)
     assert "is a folder" in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
     # A disk for temporary files that is full before the first row, or while rows run: one line, and no row is stored as one that has failed.
     (folder / "tmp").mkdir()

@@ -71,7 +71,7 @@ def first_difference():
     assert code == 1 and found["same"] is False and found["first"]["where"] and found["also"], out
     (place / "no.log").write_text("no log")
     code, out, err = call("diff", "1.log", "no.log")
-    assert code == 1 and 'file "no.log": is no hash log' in err, err
+    assert code == 2 and 'file "no.log": is no hash log' in err, err
     cut = (place / "1.log").read_bytes()
     (place / "cut.log").write_bytes(cut[: len(cut) * 2 // 3])
     code, out, err = call("diff", "1.log", "cut.log")

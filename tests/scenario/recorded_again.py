@@ -31,11 +31,11 @@ def replayed():
     # Another module than the one that was asked for says nothing.
     empty = rig.path("empty")
     os.mkdir(empty)
-    refused(*call, "--module-path", empty, says="module LaserObstacleAvoid.so or LaserObstacleAvoid.py is not in --module-path")
+    refused(*call, "--module-path", empty, code=2, says="module LaserObstacleAvoid.so or LaserObstacleAvoid.py is not in --module-path")
     refused("run", f"{rig.source}/worlds/systems/obstacle_avoidance.xml", "-w", f"{rig.source}/worlds/obstacle_course.sdf", "-d", "1", "--module-path", empty,
             says=f'module path "{empty}": holds no modules (*.so, *.py)', code=2)
-    refused("replay", path, "--into", "Nobody0", says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
-    refused(*call, "--link", "A:b=range", says='link "A:b=range": the recording has no channel "/A/b"')
+    refused("replay", path, "--into", "Nobody0", code=2, says="components: RTCLaser0, LaserObstacleAvoid0, RTCPosition2d0")
+    refused(*call, "--link", "A:b=range", code=2, says='link "A:b=range": the recording has no channel "/A/b"')
     refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
     refused(*call, "--set", "speed_gain=abc", says='parameter default.speed_gain cannot be "abc", expected a number')
     refused("replay", path, "--into", "RTCLaser0", says="refuses to be activated alone; one that uses the simulator's devices finds none")
@@ -64,7 +64,7 @@ def replayed_without_inputs():
     done = rig.try_rtse("replay", file, "--into", "LaserObstacleAvoid0")
     assert done.returncode == 0, done
     assert "input LaserObstacleAvoid0:range: missing, the recording has no /RTCLaser0/range" in done.stderr, done
-    refused("replay", rig.path("nothing.mcap"), "--into", "A", says="no such file")
+    refused("replay", rig.path("nothing.mcap"), "--into", "A", code=2, says="no such file")
     os.remove(file)
     process = recording("RTCLaser0:range", "--attach", f"system.xml={rig.source}/worlds/systems/obstacle_avoidance.xml")
     seconds(2)

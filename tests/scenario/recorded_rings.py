@@ -51,7 +51,7 @@ def killed():
         info = json.loads(rig.try_rtse("--json", "recording", "info", rig.path(name)).stdout)
         assert [a["name"] for a in info["attachments"]] == ["world.sdf"] and info["run"]["lockstep"] == "yes", info
         assert next(c for c in info["channels"] if c["topic"] == "/tf_static")["samples"] == 1, info
-    refused("recording", "info", file, says=f'is not there, but "{rig.path(names[0])}" and "{rig.path(names[1])}" of its ring; rtse recording repair {file} puts')
+    refused("recording", "info", file, code=2, says=f'is not there, but "{rig.path(names[0])}" and "{rig.path(names[1])}" of its ring; rtse recording repair {file} puts')
     assert rig.rtse("recording", "repair", file).startswith(f"{len(lines('cat', file))} samples kept of ")
     times = scan_times("run.mcap")
     assert times == [round(t / 10, 1) for t in range(35, 56)], times

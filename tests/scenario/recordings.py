@@ -353,7 +353,7 @@ def hashed():
     done = rig.try_rtse("recording", "compare", path, without)
     assert done.returncode == 0 and done.stderr == f"rtse: channel /hashes is in {path} only, and is left out\n", done
     done = rig.try_rtse("recording", "compare", path, without, "--channel", "/*/velocity", "--channel", "/hashes")
-    assert done.returncode == 1 and 'has no channel "/hashes"' in done.stderr, done
+    assert done.returncode == 2 and 'has no channel "/hashes"' in done.stderr, done
 
 
 # The end of the simulator is the end of a recording of what it shows, and is said.
@@ -381,11 +381,11 @@ def bad_input():
     refused("record", "-o", file, "--all", "--exclude", "*", says="--exclude leaves none of the 5 OutPorts")
     refused("record", "-o", file, "RTCPosition2d0:velocity", says="record reads OutPorts")
     refused("record", "-o", "/no/such/folder/x.mcap", "RTCLaser0:range", says="cannot be written")
-    refused("recording", "info", "/no/such/file", says='"/no/such/file": no such file; there is no folder "/no/such"')
+    refused("recording", "info", "/no/such/file", code=2, says='"/no/such/file": no such file; there is no folder "/no/such"')
     with open(file, "w") as out:
         out.write("no recording")
-    refused("recording", "cat", file, says="is not an MCAP file")
-    refused("play", file, "A:b=RTCPosition2d0:velocity", says="is not an MCAP file")
+    refused("recording", "cat", file, code=2, says="is not an MCAP file")
+    refused("play", file, "A:b=RTCPosition2d0:velocity", code=2, says="is not an MCAP file")
     assert rig.try_rtse("record", "RTCLaser0:range").returncode == 2
     assert rig.try_rtse("record", "-o", file).returncode == 2
 

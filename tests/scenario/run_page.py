@@ -143,8 +143,10 @@ def messages(folder):
         file.write("hello")
     rtse = f"{bin_dir}/rtse"
     nowhere = os.path.join(folder, "none/run.html")
+    assert done(rtse, "page", bad, "-o", page, code=2) == f'rtse: "{bad}": is not an MCAP file: it does not start with the magic bytes\n'
+    with open(bad, "wb") as file:
+        file.write(b"\x89MCAP0\r\nhello")
     assert done(rtse, "page", bad, "-o", nowhere, code=1) == f'rtse: page "{nowhere}": No such file or directory\n'
-    assert done(rtse, "page", bad, "-o", page, code=1) == f'rtse: page "{page}": "{bad}": is not an MCAP file: it does not start with the magic bytes\n'
     assert done(rtse, "page", bad, "-o", bad, code=1) == f'rtse: page "{bad}": is the recording; expected another file\n'
     assert done(*run_words(1, "--page", nowhere), code=2) == f'rtse: file "{nowhere}": there is no folder {os.path.dirname(nowhere)}\n'
     pipe, link = (os.path.join(folder, name) for name in ("pipe", "link"))

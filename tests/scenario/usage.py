@@ -1,6 +1,7 @@
 # Every program answers a wrong command line, and a wrong file of orders that it names, by one line and exit code 2: usage.py BIN_DIR SOURCE_DIR. Nothing is run.
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,6 +31,8 @@ calls = [
     (["player-gateway", "--config", "none.yaml"], "no such file"), (["player-gateway", "--config", "."], "is a folder"), (["rtcprof", "none.so"], "none.so"),
     (["sim-server", course, "--ends-with-input"], "expected a pipe"), (["sim-server", course, "--fault", "weak"], "weak"), (["sim-server"], "WORLD"),
 ]
+if shutil.which("ros2-gateway", path=bin_dir):
+    calls += [(["ros2-gateway", "--clock-rate", "-1"], "must be from 0 to 10000"), (["ros2-gateway", "--wait-for", "cmd_vel=20Hz"], "needs --lockstep")]
 environment = dict(os.environ, RTCTREE_NAMESERVERS="127.0.0.1:1", RTMSIM_SERVER_ID="9000")
 wrong = []
 with tempfile.TemporaryDirectory() as folder:

@@ -1,15 +1,16 @@
 // rtse-page: a recording as one HTML file. `rtse recording export --html` and `rtse run --page` start it.
 #include <signal.h>
 
-#include <filesystem>
 #include <iostream>
 #include <new>
 
 #include "base/command_line.h"
+#include "base/good_file.h"
 #include "base/output_name.h"
 #include "base/text.h"
 #include "page/followed_run.h"
 #include "page/run_page.h"
+#include "recording/ring.h"
 #include "studio/page_files.h"
 
 namespace {
@@ -28,7 +29,7 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required();
   app.add_option("-o,--output", settings.page.file, "HTML file to write")->required()->check(base::output_name());
   app.add_option("--other", settings.page.other, "Recording to compare with (MCAP); its models are shown as ghosts")
-      ->check(base::existing_file());
+      ->check(base::good_file(recorder::recording_problem));
   app.add_option("--page-camera-rate", settings.page.camera_rate, "Images of each camera per simulated second; 0: none")
       ->check(base::number_between(0, 1000.0))
       ->capture_default_str();
@@ -44,9 +45,9 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("--viewer", settings.page.viewer, "run.html of the built page of rtm-studio")->capture_default_str();
 }
 
-int fail(const base::Error& error) {
+int fail(const base::Error& error, int code = 1) {
   std::cerr << "rtse-page: " << error.message << '\n';
-  return 1;
+  return code;
 }
 
 int write_page(Settings& settings) {
@@ -55,9 +56,8 @@ int write_page(Settings& settings) {
     settings.page.summary = studio::Json::parse(std::cin, nullptr, false);
     if (!settings.page.summary.is_object()) return fail({"the result of the run is not a JSON object"});
   }
-  std::error_code ignored;
-  if (settings.share == 0 && !std::filesystem::is_regular_file(settings.page.recording, ignored))
-    return fail({settings.page.recording + ": there is no such file"});
+  const auto problem = settings.share == 0 ? recorder::recording_problem(settings.page.recording) : std::string();
+  if (!problem.empty()) return fail({problem}, 2);
   page::FollowedRun run(settings.share);
   if (settings.share > 0) {
     ::signal(SIGINT, SIG_IGN);  // it is for the run, which then ends our input

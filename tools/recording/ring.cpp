@@ -12,7 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "base/plain_file.h"
 #include "base/text.h"
+#include "recording/mcap/bytes.h"
 #include "recording/mcap/file.h"
 
 namespace recorder {
@@ -360,6 +362,19 @@ std::string check_recording(const std::string& path) {
   if (fs::exists(path, error)) return "";
   const auto reader = open_recording(path);
   return reader ? "" : reader.error().message;
+}
+
+bool is_recording(const std::string& path) {
+  std::string begin(mcap::magic.size(), '\0');
+  if (base::is_plain_file(path)) std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == mcap::magic;
+}
+
+std::string recording_problem(const std::string& path) {
+  if (is_recording(path)) return "";
+  if (!ring_pieces(path).empty()) return check_recording(path);
+  if (const auto problem = base::file_problem(path); !problem.empty()) return "recording " + base::in_quotes(path) + ": " + problem;
+  return base::in_quotes(path) + ": is not an MCAP file: it does not start with the magic bytes";
 }
 
 }  // namespace recorder

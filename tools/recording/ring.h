@@ -52,7 +52,11 @@ base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const s
 
 // The reader of a recording. When there are only pieces of it the error says so.
 base::Result<mcap::Reader> open_recording(const std::string& path);
-// For options of the command line: why it cannot be a recording; empty: it is there.
+// For options of the command line: why there is nothing of this name; empty: it is there.
 std::string check_recording(const std::string& path);
+// Whether the file begins as a recording does.
+bool is_recording(const std::string& path);
+// For options of the command line: why it cannot be a recording; empty: it begins as one.
+std::string recording_problem(const std::string& path);
 
 }  // namespace recorder

@@ -87,6 +87,12 @@ Result<void> RunSimulator::check() {
   return Error{"sim-server " + process_->how_it_ended() + ": " + telling_line(place_.file(log_name))};
 }
 
+std::string RunSimulator::refusal() {
+  constexpr int wrong_command_line = 2;  // or a file that it names
+  const bool is_refused = process_ && !process_->is_running() && process_->exit_code() == wrong_command_line;
+  return is_refused ? telling_line(place_.file(log_name)) : std::string();
+}
+
 std::vector<std::string> RunSimulator::notes() const {
   std::vector<std::string> notes;
   for (const auto& line : lines_of(place_.file(log_name))) {

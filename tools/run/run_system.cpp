@@ -212,7 +212,8 @@ class Run final : public RunningSystem {
   Result<void> start_simulator() {
     const auto started = simulator_process_.start(wait(), writes_poses());
     if (started) result_.notes = simulator_process_.notes();
-    return started;
+    const auto refusal = simulator_process_.refusal();
+    return refusal.empty() ? started : refused(RunResult::Refusal::system, fail(refusal));
   }
 
   // When everybody has ended.

@@ -111,7 +111,7 @@ int show_recording(boost::asio::io_context& loop, const Settings& settings, cons
   if (!settings.start.world.empty())
     return reject({"recording " + base::in_quotes(settings.start.system) + ": has its world itself; leave --world out"});
   const auto recording = studio::RecordedStudio::open(loop, settings.start.system);
-  if (!recording) return fail(recording.error());
+  if (!recording) return reject(recording.error());
   return serve(loop, settings, page, (*recording)->handlers(), settings.start.system);
 }
 
@@ -131,8 +131,9 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
   }
   std::unique_ptr<studio::StartedRun> started;
   if (!settings.start.world.empty()) {
-    auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id, errors);
-    if (!run) return fail(run.error());
+    bool is_rejected = false;
+    auto run = studio::StartedRun::start(orb.get(), settings.start, settings.studio.server_id, errors, is_rejected);
+    if (!run) return is_rejected ? reject(run.error()) : fail(run.error());
     started = std::move(*run);
     settings.studio.server_id = started->server_id();
     if (!started->name_server().empty()) settings.studio.name_server = started->name_server();
@@ -143,7 +144,7 @@ int show_run(boost::asio::io_context& loop, Settings settings, const studio::Pag
 
 int run(const Settings& settings) {
   const auto page = studio::PageFiles::read(settings.page);
-  if (!page) return fail(page.error());
+  if (!page) return reject(page.error());
   boost::asio::io_context loop(1);
   boost::asio::signal_set signals(loop, SIGINT, SIGTERM);
   signals.async_wait([&](boost::system::error_code, int) { loop.stop(); });

@@ -93,10 +93,11 @@ Result<std::shared_ptr<const RecordedScene>> RecordedScene::make(const std::stri
   if (!recorded) return recorded.error();
   options.resource_paths = recorded->resource_paths;
   tools::SilentReporter reporter;  // the error says enough
+  bool is_rejected = false;
   Result<std::unique_ptr<StartedRun>> started = Error{"no server id is free"};
   for (std::uint32_t i = 0; i < tries && !started; ++i) {
     const auto id = free_server_id(i);
-    started = StartedRun::start(CORBA::ORB::_nil(), options, id, reporter);
+    started = StartedRun::start(CORBA::ORB::_nil(), options, id, reporter, is_rejected);
     if (!started && !shm::Requester::open(id)) return started.error();  // else somebody was quicker
   }
   if (!started) return started.error();

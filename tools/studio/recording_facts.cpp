@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <set>
 
@@ -272,12 +271,7 @@ Result<RecordingFacts> RecordingFacts::read(const std::string& file) {
   return facts;
 }
 
-bool is_recording(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string head(mcap::magic.size(), '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return (in && head == mcap::magic) || file.ends_with(".mcap");
-}
+bool is_recording(const std::string& file) { return recorder::is_recording(file) || file.ends_with(".mcap"); }
 
 nanoseconds to_nanoseconds(mcap::Time time) {
   return nanoseconds(static_cast<std::int64_t>(std::min<std::uint64_t>(time.count(), INT64_MAX)));

@@ -30,6 +30,7 @@ class Standing final : public tools::RunScript {
     bool is_there = false;
     bool is_ending = false;
     std::optional<Error> problem;  // it has ended, and why
+    bool is_rejected = false;      // before anything ran
   };
 
   const std::vector<tools::Expectation>& watched() const override { return nothing_; }
@@ -47,8 +48,10 @@ class Standing final : public tools::RunScript {
   bool excuses(const std::string&) const override { return true; }
   void end(tools::RunScene*, const tools::Seen&, tools::RunResult&) override {}
 
-  void has_ended(const std::string& problem) {
-    state_.lock()->problem = Error{problem};
+  void has_ended(const std::string& problem, bool is_rejected) {
+    auto state = state_.lock();
+    state->problem = Error{problem};
+    state->is_rejected = is_rejected;
     changed_.notify_all();
   }
   Result<void> wait_until_there() {
@@ -78,6 +81,7 @@ class SystemRun final : public StartedRun {
     thread_.join();
   }
   Result<void> wait() { return standing_.wait_until_there(); }
+  bool is_rejected() const { return standing_.state().is_rejected; }
   std::string name_server() const override { return standing_.state().naming; }
   std::uint32_t server_id() const override { return standing_.state().server_id; }
 
@@ -89,14 +93,17 @@ class SystemRun final : public StartedRun {
     options.world = start.world;
     options.in_real_time = true;
     std::string problem;
+    bool is_rejected = false;
     try {
-      problem = tools::run_system(orb, options, reporter, {.script = &standing_}).problem;
+      const auto result = tools::run_system(orb, options, reporter, {.script = &standing_});
+      problem = result.problem;
+      is_rejected = result.refusal != tools::RunResult::Refusal::none;
     } catch (const CORBA::Exception& e) {
       problem = tools::describe(e);
     } catch (const std::exception& e) {
       problem = e.what();
     }
-    standing_.has_ended(problem);
+    standing_.has_ended(problem, is_rejected);
   }
 
   Standing standing_;
@@ -117,6 +124,7 @@ class WorldRun final : public StartedRun {
     while (std::chrono::steady_clock::now() < deadline) {
       if (!process_.is_running()) {
         const auto lines = base::split_list(process_.said(), '\n');
+        if (is_rejected() && !lines.empty()) return Error{lines.back()};
         return Error{"sim-server " + process_.how_it_ended() + (lines.empty() ? "" : ": " + lines.back())};
       }
       if (auto simulator = shm::Requester::open(server_id_); simulator && simulator->ask(shm::StatsRequest{}, 1s)) return {};
@@ -124,11 +132,23 @@ class WorldRun final : public StartedRun {
     }
     return Error{"sim-server: not ready after 60 s"};
   }
+  bool is_rejected() {
+    constexpr int wrong_command_line = 2;  // or the world that it names
+    return !process_.is_running() && process_.exit_code() == wrong_command_line;
+  }
 
  private:
   base::ChildProcess process_;
   const std::uint32_t server_id_;
 };
+
+template <class Run>
+Result<std::unique_ptr<StartedRun>> ready(std::unique_ptr<Run> run, bool& is_rejected) {
+  const auto there = run->wait();
+  is_rejected = run->is_rejected();
+  if (!there) return there.error();
+  return std::unique_ptr<StartedRun>(std::move(run));
+}
 
 }  // namespace
 
@@ -141,11 +161,10 @@ Result<base::ChildProcess> start_host(const std::string& name_server) {
 }
 
 Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
-                                                      tools::Reporter& reporter) {
+                                                      tools::Reporter& reporter, bool& is_rejected) {
   if (!options.system.empty()) {
     auto run = std::make_unique<SystemRun>(orb, options, reporter);
-    if (const auto there = run->wait(); !there) return there.error();
-    return std::unique_ptr<StartedRun>(std::move(run));
+    return ready(std::move(run), is_rejected);
   }
   if (shm::Requester::open(server_id))
     return Error{"simulator " + std::to_string(server_id) + ": runs already; leave --world out to attach to it, or choose another -s"};
@@ -153,9 +172,7 @@ Result<std::unique_ptr<StartedRun>> StartedRun::start(CORBA::ORB_ptr orb, const 
   for (const auto& path : options.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   auto process = base::ChildProcess::start(call);
   if (!process) return process.error();
-  auto run = std::make_unique<WorldRun>(std::move(*process), server_id);
-  if (const auto there = run->wait(); !there) return there.error();
-  return std::unique_ptr<StartedRun>(std::move(run));
+  return ready(std::make_unique<WorldRun>(std::move(*process), server_id), is_rejected);
 }
 
 }  // namespace studio

@@ -26,10 +26,10 @@ base::Result<base::ChildProcess> start_host(const std::string& name_server);
 
 class StartedRun {
  public:
-  // Returns when everything is there, or says why it will not be. Without a system, the simulator gets this id. `reporter` must live as
-  // long as the run.
+  // Returns when everything is there, or says why it will not be; `is_rejected`: a file of the options is wrong. Without a system, the
+  // simulator gets this id. `reporter` must live as long as the run.
   static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
-                                                         tools::Reporter& reporter);
+                                                         tools::Reporter& reporter, bool& is_rejected);
   virtual ~StartedRun() = default;
   virtual std::string name_server() const = 0;  // empty: none of ours
   virtual std::uint32_t server_id() const = 0;

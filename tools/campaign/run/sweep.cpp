@@ -5,7 +5,6 @@
 #include "base/interrupt.h"
 #include "base/shell_word.h"
 #include "base/text.h"
-#include "base/whole_file.h"
 #include "campaign/results/disk_room.h"
 #include "campaign/run/row_locks.h"
 #include "campaign/run/tally.h"
@@ -61,7 +60,6 @@ RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options,
 std::string folder_name(std::size_t number, const std::string& key) { return "row-" + std::to_string(number) + "-" + key.substr(0, 8); }
 
 Result<void> make_kept(const SweepOptions& options) {
-  if (const auto writable = base::check_writable_file(options.results); !writable) return writable;
   std::error_code error;
   fs::create_directories(options.kept, error);
   if (error) return Error{"folder " + base::in_quotes(options.kept) + ": " + error.message()};

@@ -8,6 +8,7 @@
 #include "base/command_line.h"
 #include "base/output_name.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "campaign/results/report.h"
 #include "rtse/campaign/campaign_commands.h"
 #include "rtse/command.h"
@@ -31,8 +32,12 @@ std::string runs_of(const ResultsCall& call) {
 }
 
 void show_results(Console& console, const ResultsCall& call) {
+  for (const auto& file : {call.junit, call.html}) {
+    if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
+      return console.reject(writable.error());
+  }
   const auto results = read_results(call.file);
-  if (!results) return console.fail(results.error());
+  if (!results) return console.reject(results.error());
   for (const auto& parameter : call.by) {
     if (std::ranges::find(results->parameters, parameter) == results->parameters.end())
       return console.reject({"--by " + base::in_quotes(parameter) + ": no varied value has this name; it has " +

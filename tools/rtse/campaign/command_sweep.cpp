@@ -19,6 +19,7 @@
 #include "base/output_name.h"
 #include "base/shell_word.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "campaign/plan/grammar.h"
 #include "campaign/results/statistics.h"
 #include "campaign/run/sweep.h"
@@ -246,6 +247,7 @@ void sweep_plan(const Session& session, Console& console, const SweepCall& call)
     if (const auto done = run_task(session.orb(), *campaign, options, *parse_task(call.task), console); !done) console.fail(done.error());
     return;
   }
+  if (const auto writable = base::check_writable_file(options.results); !writable) return console.reject(writable.error());
   const bool shows = isatty(2) != 0 && !console.json();
   bool has_told = false;
   const auto show = [&](const Progress& progress) {

@@ -30,7 +30,7 @@ void diff(Console& console, const std::string& a, const std::string& b) {
     return console.fail({"program " + program + ": cannot be started; expected it beside rtse"});
   }
   const auto comparison = base::compare_hash_logs(a, b);
-  if (!comparison) return console.fail(comparison.error());
+  if (!comparison) return console.reject(comparison.error());
   const auto difference = difference_text(*comparison);
   if (console.json()) {
     std::cout << difference_json(*comparison).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';

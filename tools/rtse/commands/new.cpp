@@ -93,7 +93,7 @@ void make_component(Console& console, const Options& options) {
   if (!component) return console.reject(component.error());
   const auto folder = options.folder.empty() ? component->name : options.folder;
   const bool is_python = options.language == "python";
-  if (const auto written = write_skeleton(*component, is_python, folder); !written) return console.fail(written.error());
+  if (const auto written = write_skeleton(*component, is_python, folder); !written) return console.reject(written.error());
   if (is_python) {
     std::cout << "wrote " << folder << "; run it: cd " << folder << " && python3 " << component->name << ".py\n";
     return;

@@ -15,6 +15,7 @@
 #include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/file_handle.h"
+#include "base/good_file.h"
 #include "base/guarded.h"
 #include "base/interrupt.h"
 #include "base/text.h"
@@ -284,7 +285,7 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
   }
   add_run_options(*run, *given, names);
   if (read_like) {
-    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(check);
+    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(base::good_file(check));
   } else {
     run->option("SYSTEM")->required();
     run->option("--world")->required();
@@ -298,7 +299,7 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
   run->callback([=, &chosen] {
     chosen.work = [=](const Session& session, Console& console) {
       auto base = read_like ? read_like(console, *like) : *has_input ? read_input() : RunOptions();
-      if (!base) return console.fail(base.error());
+      if (!base) return console.reject(base.error());
       tools::run(session, console, with_given(std::move(*base), *given, *run), *seeds, *jobs);
     };
   });

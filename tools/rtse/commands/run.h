@@ -21,7 +21,7 @@ struct Chosen;
 using ReadLike = std::function<base::Result<RunOptions>(Console& console, const std::string& recording)>;
 
 // `run --like RECORDING`, and all options of `run` in place of the recorded ones.
-// `check`: what is wrong with the name of a recording; empty: nothing.
+// `check`: why a file cannot be a recording, as a whole line; empty: it can.
 void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::function<std::string(const std::string&)> check);
 
 }  // namespace tools

@@ -16,7 +16,6 @@
 #include "base/interrupt.h"
 #include "base/text.h"
 #include "campaign/run/deeds_script.h"
-#include "recording/mcap/bytes.h"
 #include "recording/ring.h"
 #include "recording/sample_text.h"
 #include "rtse/command.h"
@@ -196,14 +195,6 @@ base::Result<void> Stand::drive(tools::RunningSystem& system) {
   return options_.then.empty() ? listen() : then();
 }
 
-// Somebody has forgotten the world of a profile.
-bool is_recording(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string head(mcap::magic.size(), '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head == mcap::magic;
-}
-
 // What a plan did in the run; null: nothing.
 using Script = std::unique_ptr<campaign::DeedsScript>;
 base::Result<Script> script_of(const RecordedRun& run) {
@@ -226,11 +217,11 @@ void go(const Session& session, Console& console, const GotoOptions& options, co
     if (!is_recording(options.what))
       return console.reject({base::in_quotes(options.what) + ": is not a recording; for a system profile, give its world: -w WORLD"});
     auto run = RecordedRun::unpack(options.what);
-    if (!run) return console.fail(run.error());
+    if (!run) return console.reject(run.error());
     if (const auto lost = run->lost(); run->script().empty() && !lost.empty()) console.warn(lost);
     recorded.emplace(std::move(*run));
     auto recorded_options = recorded->options();
-    if (!recorded_options) return console.fail(recorded_options.error());
+    if (!recorded_options) return console.reject(recorded_options.error());
     call = std::move(*recorded_options);
     if (options.time_s.value_or(0) > call.duration_s)
       console.warn("the recorded run ended at " + base::format_number(call.duration_s) + " s");

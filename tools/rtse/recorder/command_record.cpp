@@ -155,13 +155,18 @@ std::string file_text(const std::string& path) {
   return text.size() > largest_world ? std::string() : text;
 }
 
+// Why NAME=FILE cannot be attached; empty: it can.
+std::string attachment_problem(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos) return "expected NAME=FILE";
+  const auto problem = base::file_problem(text.substr(equals + 1));
+  return problem.empty() ? "" : base::in_quotes(text) + ": " + problem;
+}
+
 base::Result<void> attach_files(mcap::Writer& writer, const RecordOptions& options) {
   for (const std::string& one : options.attached) {
     const auto equals = one.find('=');
-    const std::string path = one.substr(equals + 1);
-    if (const auto problem = base::file_problem(path); !problem.empty())
-      return base::Error{"attachment " + base::in_quotes(one) + ": " + problem};
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(one.substr(equals + 1), std::ios::binary);
     const std::string text((std::istreambuf_iterator<char>(in)), {});
     if (const auto done = writer.attach({mcap::Time(0), mcap::Time(0), one.substr(0, equals), "application/octet-stream", text}); !done)
       return done;
@@ -470,9 +475,7 @@ void add_record(base::Command& app, tools::Chosen& chosen) {
   command->add_flag("--only-ports", options->only_ports, "With --all: record ports only")->needs("--all");
   command->add_flag("--raw-pictures", options->raw_pictures, "Record camera images uncompressed (default: JPEG)");
   command->add_option("--exclude", options->excluded, "Leave out the ports and topics that match, e.g. 'RTCCamera*:*', '/sim/camera/*'");
-  command->add_option("--attach", options->attached, "Attach a file to the recording: NAME=FILE")->check([](const std::string& text) {
-    return text.find('=') == std::string::npos ? "expected NAME=FILE" : "";
-  });
+  command->add_option("--attach", options->attached, "Attach a file to the recording: NAME=FILE")->check(attachment_problem);
   command->add_option("--note", options->notes, "Add KEY=VALUE to the metadata of the recording")
       ->allow_extra_args(false)
       ->check([](const std::string& text) { return text.find('=') == std::string::npos ? "expected KEY=VALUE" : ""; });

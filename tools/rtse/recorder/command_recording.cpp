@@ -11,6 +11,7 @@
 
 #include "base/command_line.h"
 #include "base/descriptors.h"
+#include "base/good_file.h"
 #include "base/output_name.h"
 #include "base/text.h"
 #include "recording/compare.h"
@@ -276,7 +277,7 @@ Json to_json(const Comparison& comparison) {
 
 void compare_recordings(Console& console, const CompareOptions& options) {
   const auto comparison = compare(options, console);
-  if (!comparison) return console.fail(comparison.error());
+  if (!comparison) return console.reject(comparison.error());
   if (!comparison->are_equal()) console.set_failed();
   for (const auto& line : comparison->not_compared) console.fail({line});
   if (console.json()) return console.print(to_json(*comparison));
@@ -348,7 +349,7 @@ void repair(Console& console, const std::string& file, const std::string& output
 }
 
 void add_selection(base::Command& command, Selection& selection) {
-  command.add_option("FILE", selection.file, "Recording")->required();
+  command.add_option("FILE", selection.file, "Recording")->required()->check(base::good_file(recording_problem));
   command.add_option("CHANNEL", selection.topics, "Topics, COMPONENT:PORT or patterns (default: all)");
   command.add_option("--from", selection.from_s, "Start time [s]")->seconds_between(0.0, 1e10);
   command.add_option("--to", selection.to_s, "End time [s]")->seconds_between(0.0, 1e10);
@@ -369,7 +370,7 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
     auto* command = with_run ? recording->add_subcommand("info", "Show duration, run, attachments, channels and gaps")
                              : recording->add_subcommand("ls", "List the channels");
     auto file = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "Recording")->required();
+    command->add_option("FILE", *file, "Recording")->required()->check(base::good_file(recording_problem));
     choose(command, [file, with_run](const Session&, Console& console) { list(console, *file, with_run); });
   }
   auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, one per line");
@@ -394,8 +395,8 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();
-  compare_command->add_option("A", compared->first, "Recording")->required();
-  compare_command->add_option("B", compared->second, "Recording to compare with")->required();
+  compare_command->add_option("A", compared->first, "Recording")->required()->check(base::good_file(recording_problem));
+  compare_command->add_option("B", compared->second, "Recording to compare with")->required()->check(base::good_file(recording_problem));
   compare_command->add_option("--channel", compared->topics, "Compare only these topics, COMPONENT:PORT or patterns");
   compare_command->add_option("--ignore", compared->tolerated.ignored, "Members to ignore, e.g. tm");
   auto tolerances = std::make_shared<std::vector<std::string>>();
@@ -414,7 +415,8 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
       recording->add_subcommand("repair", "Rebuild the summary of a truncated file, or merge the segments of a ring recording");
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
-  repair_command->add_option("FILE", *file, "Recording")->required();
+  const auto no_ring_either = [](const std::string& path) { return ring_pieces(path).empty() ? recording_problem(path) : std::string(); };
+  repair_command->add_option("FILE", *file, "Recording")->required()->check(base::good_file(no_ring_either));
   repair_command->add_option("-o,--output", *output, "Output file (default: FILE)")->check(base::output_name());
   choose(repair_command, [file, output](const Session&, Console& console) { repair(console, *file, *output); });
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/command_line.h"
+#include "base/good_file.h"
 #include "base/interrupt.h"
 #include "base/output_name.h"
 #include "base/shell_word.h"
@@ -300,16 +301,16 @@ bool has_own_stamps(const RecordedRun& run, const std::string& component) {
 void replay_file(const Session& session, Console& console, const Options& options) {
   for (const auto& file : {options.page, options.junit}) {
     if (const auto writable = file.empty() ? base::Result<void>() : base::check_writable_file(file); !writable)
-      return console.fail(writable.error());
+      return console.reject(writable.error());
   }
   const auto run = RecordedRun::unpack(options.file);
-  if (!run) return console.fail(run.error());
+  if (!run) return console.reject(run.error());
   const auto system = tools::read_system(run->system());
-  if (!system) return console.fail(system.error());
+  if (!system) return console.reject(system.error());
   if (system->component(options.component) == nullptr) {
     std::vector<std::string> names;
     for (const auto& component : system->components) names.push_back(component.instance);
-    return console.fail({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
+    return console.reject({"component " + options.component + ": is not in the recording; components: " + base::join(names, ", ")});
   }
   if (const auto faulty = faulty_inputs(*system, options.component); !faulty.empty()) {
     const auto why = base::join(faulty, ", ") + ", which a replay does not repeat";
@@ -321,12 +322,12 @@ void replay_file(const Session& session, Console& console, const Options& option
   if (has_own_stamps(*run, options.component)) replayed.tolerated.ignored.emplace_back("tm");
   for (const auto& text : options.tolerances) replayed.tolerated.tolerances.insert(*parse_tolerance(text));
   const auto links = links_of(*system, options);
-  if (!links) return console.fail(links.error());
+  if (!links) return console.reject(links.error());
   auto given = possible(console, *links, *system, options);
-  if (!given) return console.fail(given.error());
+  if (!given) return console.reject(given.error());
   replayed.links = std::move(*given);
   auto life = RecordedLife::read(options.file, options.component);
-  if (!life) return console.fail(life.error());
+  if (!life) return console.reject(life.error());
   if (!life->is_recorded)
     console.warn("configuration and states of " + options.component + ": those of the profile, the recording has no /rtc/" +
                  options.component + "/state");
@@ -334,9 +335,9 @@ void replay_file(const Session& session, Console& console, const Options& option
   replayed.life = std::move(*life);
 
   auto one = alone(*system, options.component);
-  if (const auto taken = take_rate(console, one.components.front(), options.file); !taken) return console.fail(taken.error());
+  if (const auto taken = take_rate(console, one.components.front(), options.file); !taken) return console.reject(taken.error());
   auto recorded = run->options();
-  if (!recorded) return console.fail(recorded.error());
+  if (!recorded) return console.reject(recorded.error());
   auto& call = *recorded;
   const auto world = empty_world(*run, one.components.front());
   if (!world) return console.fail(world.error());
@@ -347,11 +348,11 @@ void replay_file(const Session& session, Console& console, const Options& option
   call.start_folder.clear();
   call.run_file.clear();
   call.hang_timeout_s = options.hang_timeout_s;
-  if (const auto good = check_module(options, one.components.front()); !good) return console.fail(good.error());
+  if (const auto good = check_module(options, one.components.front()); !good) return console.reject(good.error());
   call.module_paths.insert(call.module_paths.begin(), options.module_paths.begin(), options.module_paths.end());
   std::erase_if(call.properties, [&](const std::string& property) { return !property.starts_with(options.component + ":"); });
   call.properties.insert(call.properties.end(), options.properties.begin(), options.properties.end());
-  if (const auto done = configure(one.components.front(), options.settings); !done) return console.fail(done.error());
+  if (const auto done = configure(one.components.front(), options.settings); !done) return console.reject(done.error());
   if (const auto written = tools::write_system(one, call.system); !written) return console.fail(written.error());
   ReplayResult result;
   tools::RunHooks hooks;
@@ -363,6 +364,7 @@ void replay_file(const Session& session, Console& console, const Options& option
   };
   base::catch_interrupts();
   const auto made = tools::run_system(session.orb(), call, console, hooks);
+  if (made.refusal != tools::RunResult::Refusal::none) return console.reject({made.problem});
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
     problem += "; it was in a third-party process: start that with --start COMMAND";
@@ -383,7 +385,7 @@ void replay_file(const Session& session, Console& console, const Options& option
 void add_replay(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("replay", "Send recorded inputs to one component, in lock step, and compare its outputs");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "Recording of rtse run --record")->required();
+  command->add_option("FILE", options->file, "Recording of rtse run --record")->required()->check(base::good_file(recording_problem));
   command->add_option("--into", options->component, "Instance name of the component")->required();
   command->add_flag("--compare", options->compares, "Fail unless the outputs are bit-identical to the recording");
   command->add_option("--tolerance", options->tolerances, "Absolute tolerance: MEMBER=EPS, or EPS for all members")
