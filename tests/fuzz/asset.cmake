@@ -16,3 +16,4 @@ add_test(NAME asset_campaign COMMAND asset_campaign --runs 50 ${CMAKE_CURRENT_SO
          ${CMAKE_CURRENT_SOURCE_DIR}/assets/text.ply ${CMAKE_CURRENT_SOURCE_DIR}/assets/cube.glb ${CMAKE_CURRENT_SOURCE_DIR}/assets/walk.bvh
          WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/campaign)
 set_tests_properties(asset_campaign PROPERTIES TIMEOUT 300 LABELS "world;fuzz")
+rtmsim_test(fuzz_worker_test worker_test.cpp worker.cpp memory_budget.cpp LIBRARIES base LABELS fuzz)
