@@ -1,9 +1,12 @@
 #include "asset-reader/ply_check.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "asset-reader/scene_check.h"
 #include "base/text.h"
 
 namespace sim {
@@ -26,6 +29,7 @@ struct Element {
   std::string name;
   std::uint64_t count = 0;
   std::uint64_t least_bytes = 0;  // of one
+  bool begins_with_list = false;
 };
 
 base::Error damaged(const std::string& why) { return base::Error{"is damaged: " + why}; }
@@ -39,6 +43,25 @@ base::Result<void> take(const Element& element, std::uint64_t& left) {
     return damaged("its header counts " + std::to_string(element.count) + " of " + base::in_quotes(element.name) +
                    ", the file has room for " + std::to_string(left / element.least_bytes));
   left -= element.count * element.least_bytes;
+  return {};
+}
+
+// Of a text, which has a line for each of an element: no list counts more numbers than the file has bytes. Assimp makes room for them
+// first. Lines that begin with no number count for no element: a check that is ahead of Assimp's reads of a later element at most.
+base::Result<void> check_lists(std::string_view content, std::size_t header_size, const std::vector<Element>& elements) {
+  std::size_t at = content.find('\n', header_size);
+  for (const Element& element : elements) {
+    for (std::uint64_t i = 0; i < element.count && at != std::string_view::npos; at = content.find('\n', at + 1)) {
+      const std::string_view rest = content.substr(std::min(content.find_first_not_of(" \t", at + 1), content.size()));
+      if (rest.empty() || std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) continue;
+      ++i;
+      std::uint32_t count = 0;  // one that does not fit is 0 here
+      std::from_chars(rest.data(), rest.data() + rest.size(), count);
+      if (element.begins_with_list && count > most_invented_corners && count > content.size())
+        return damaged("a list of " + base::in_quotes(element.name) + " counts " + std::to_string(count) + " numbers, the file has " +
+                       std::to_string(content.size()) + " bytes");
+    }
+  }
   return {};
 }
 
@@ -56,6 +79,7 @@ base::Result<void> check_ply(std::string_view content) {
   std::uint64_t left = content.size() - end - header_end.size();
   bool is_text = true;
   Element element;
+  std::vector<Element> elements;
   for (std::size_t at = 0; at < end;) {
     const std::size_t stop = content.find_first_of("\r\n", at);
     const auto words = base::split_list(std::string(content.substr(at, stop - at)), ' ');
@@ -63,18 +87,22 @@ base::Result<void> check_ply(std::string_view content) {
     if (words.size() > 1 && words[0] == "format") is_text = words[1] == "ascii";
     if (words.size() > 2 && words[0] == "element") {
       if (const auto fits = take(element, left); !fits) return fits;
-      element = {words[1], 0, 0};
+      elements.push_back(element);
+      element = {words[1], 0, 0, false};
       const auto [rest, fault] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
       if (fault != std::errc() || rest != words[2].data() + words[2].size())
         return damaged("its header counts " + base::in_quotes(words[2]) + " of " + base::in_quotes(element.name) + ", expected a number");
     }
     if (words.size() > 2 && words[0] == "property") {
+      element.begins_with_list = element.begins_with_list || (words[1] == "list" && element.least_bytes == 0);
       const std::uint64_t bytes = bytes_of(words[words[1] == "list" ? 2 : 1]);
       element.least_bytes += is_text ? 2 : bytes;  // in text a digit and what ends it
     }
   }
   ++left;  // the last number of a text needs no end
-  return take(element, left);
+  if (const auto fits = take(element, left); !fits) return fits;
+  elements.push_back(element);
+  return is_text ? check_lists(content, end, elements) : base::Result<void>();
 }
 
 }  // namespace sim

@@ -8,7 +8,8 @@
 
 namespace sim {
 
-// The header has an end, and the file is long enough for the elements that it counts, each as short as its properties allow. The error is
+// The header has an end, and the file is long enough for the elements that it counts, each as short as its properties allow, and
+// for the lists of a text. The error is
 // one line without the file.
 base::Result<void> check_ply(std::string_view content);
 

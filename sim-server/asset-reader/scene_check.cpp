@@ -22,9 +22,16 @@ bool has_items(T* const* items, unsigned count) {
   return count == 0 || (items != nullptr && std::all_of(items, items + count, [](const T* item) { return item != nullptr; }));
 }
 
+// A polygon with holes, joined to its edge, has fewer corners than twice its vertices.
+bool has_invented_corners(const aiMesh& mesh, const aiFace& face) {
+  return face.mNumIndices > most_invented_corners && face.mNumIndices / 2 > mesh.mNumVertices;
+}
+
 Fault fault_of_faces(const aiMesh& mesh) {
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
+    if (has_invented_corners(mesh, face))
+      return fmt::format("face {} has {} corners, its mesh {} vertices", f, face.mNumIndices, mesh.mNumVertices);
     if (face.mNumIndices > 0 && face.mIndices == nullptr) return fmt::format("face {} has no corners", f);
     for (unsigned i = 0; i < face.mNumIndices; ++i)
       if (face.mIndices[i] >= mesh.mNumVertices)
