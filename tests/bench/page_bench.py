@@ -23,7 +23,7 @@ def row(what, value, limit, is_good):
 
 
 def run(system, world, *more):
-    words = [f"{bin_dir}/rtse", "--json", "run", f"{source}/worlds/systems/{system}.xml", "--world", f"{source}/worlds/{world}.sdf", "--module-path", lib_dir, *more]
+    words = [f"{bin_dir}/rtse", "--json", "run", system, "--world", f"{source}/worlds/{world}.sdf", "--module-path", lib_dir, *more]
     return json.loads(subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True, timeout=3600).stdout.splitlines()[0])
 
 
@@ -123,7 +123,11 @@ def memory(recording, page, *more):
 
 
 def memories(place):
-    for name, system, world, length in (("obstacle course", "obstacle_avoidance", "obstacle_course", "600"), ("farm with a camera", "farm", "farm", "120")):
+    avoid, farm = (f"{source}/worlds/systems/{name}.xml" for name in ("obstacle_avoidance", "farm"))
+    hundred = f"{place}/hundred.xml"
+    with open(avoid, encoding="utf8") as file, open(hundred, "w", encoding="utf8") as copy:
+        copy.write(file.read().replace("pioneer2dx", "pioneer_0"))
+    for name, system, world, length in (("obstacle course", avoid, "obstacle_course", "600"), ("farm with a camera", farm, "farm", "120"), ("100 robots", hundred, "hundred", "20")):
         file = f"{place}/{world}.mcap"
         run(system, world, "--duration", length, "--record", file)
         peak = memory(file, f"{place}/{world}.html")

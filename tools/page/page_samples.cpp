@@ -5,6 +5,7 @@
 
 #include "base/base64.h"
 #include "base/text.h"
+#include "studio/client_message.h"
 #include "studio/shown_picture.h"
 
 namespace page {
@@ -38,7 +39,23 @@ std::size_t rounded(Json& value, bool& is_rounded) {
   return count;
 }
 
+void add(std::string& samples, const std::string& sample) {
+  if (!samples.empty()) samples += ',';
+  samples += sample;
+}
+
 }  // namespace
+
+std::string Part::text() const {
+  const auto rest = studio::to_text(more);
+  std::string text = "{\"samples\":[";
+  text.reserve(samples.size() + rest.size() + other.size() + 32);
+  text += samples;
+  text += rest.size() > 2 ? "]," : "]";  // "{}"
+  text.append(rest, 1, rest.size() - 2);
+  if (!other.empty()) text.append(",\"other\":").append(other);
+  return text += '}';
+}
 
 Result<std::unique_ptr<PageSamples>> PageSamples::open(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate) {
   auto reader = mcap::Reader::open(facts->file);
@@ -90,10 +107,10 @@ void PageSamples::find_channels(nanoseconds from) {
   reader_.seek(query);
 }
 
-Result<Json> PageSamples::part_until(nanoseconds to) {
-  Json part{{"samples", Json::array()}, {"images", Json::object()}};
-  for (const auto& [topic, newest] : newest_) part["samples"].push_back(Json::array({topic, newest.time, newest.value}));
-  for (const auto& [topic, image] : images_) part["images"][topic] = Json::array({Json::array({image.first, image.second})});
+Result<Part> PageSamples::part_until(nanoseconds to) {
+  Part part{.samples = {}, .more = {{"images", Json::object()}}, .other = {}};
+  for (const auto& [topic, sample] : newest_) add(part.samples, sample);
+  for (const auto& [topic, image] : images_) part.more["images"][topic] = Json::array({Json::array({image.first, image.second})});
   if (ahead_ && studio::to_nanoseconds(ahead_->first.log_time) < to) {
     auto [message, data] = std::move(*ahead_);
     ahead_.reset();
@@ -114,7 +131,7 @@ Result<Json> PageSamples::part_until(nanoseconds to) {
   return part;
 }
 
-Result<void> PageSamples::take(const mcap::Message& message, Json& part) {
+Result<void> PageSamples::take(const mcap::Message& message, Part& part) {
   Signal& signal = signals_.at(message.channel);
   const auto time = studio::to_nanoseconds(message.log_time);
   const bool ends_ring = signal.number + 1 >= signal.of_ring;  // true without a ring
@@ -148,20 +165,21 @@ Result<void> PageSamples::take(const mcap::Message& message, Json& part) {
   return {};
 }
 
-Result<void> PageSamples::take_image(const mcap::Message& message, Signal& signal, Json& part) {
+Result<void> PageSamples::take_image(const mcap::Message& message, Signal& signal, Part& part) {
   const auto schema = reader_.schemas().find(reader_.channels().at(message.channel).schema);
   const auto jpeg = studio::jpeg_in_message(schema == reader_.schemas().end() ? "" : schema->second.name, message.data);
   if (!jpeg) return Error{signal.topic + ": " + jpeg.error().message};
   const auto time = studio::to_nanoseconds(message.log_time);
   signal.next = time + nanoseconds(static_cast<std::int64_t>(1e9 / camera_rate_)) - 1ms;
   const auto& image = images_[signal.topic] = {facts_->seconds(time), base::to_base64(*jpeg)};
-  part["images"][signal.topic].push_back(Json::array({image.first, image.second}));
+  part.more["images"][signal.topic].push_back(Json::array({image.first, image.second}));
   return {};
 }
 
-void PageSamples::keep(const std::string& topic, double time, Json value, Json& part) {
-  part["samples"].push_back(Json::array({topic, time, value}));
-  newest_[topic] = {time, std::move(value)};
+void PageSamples::keep(const std::string& topic, double time, Json value, Part& part) {
+  auto& sample = newest_[topic];
+  sample = studio::to_text(Json::array({topic, time, std::move(value)}));
+  add(part.samples, sample);
 }
 
 std::vector<std::string> PageSamples::left_out() const {

@@ -1,5 +1,5 @@
-// Collects the samples and images of a recording in parts of equal duration, as JSON for a page. Each part begins with the newest earlier
-// sample of each signal, so that a viewer needs one part for one time. One thread at a time.
+// Collects the samples and images of a recording in parts for a page. Each part begins with the newest earlier sample of each signal, so
+// that a viewer needs one part for one time. One thread at a time.
 #pragma once
 
 #include <chrono>
@@ -18,14 +18,23 @@ namespace page {
 
 using studio::Json;
 
+// One JSON object. Its samples are text, since their JSON takes up to ten times as much memory.
+struct Part {
+  std::string samples;  // "[TOPIC, s, sample],..." in the order of time, so that a scan and the sample of the port that carries it compress
+                        // together
+  Json more;            // the other members
+  std::string other;    // text of the part of a second recording; empty: none
+
+  std::string text() const;
+};
+
 class PageSamples {
  public:
   // `camera_rate`: images of each camera per simulated second.
   static base::Result<std::unique_ptr<PageSamples>> open(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate);
 
-  // {"samples":[[TOPIC, s, sample]], "images":{TOPIC:[[s, JPEG in base64]]}} up to and without `to`, in the order of time, so that a scan
-  // and the sample of the port that carries it compress together. Call with growing times.
-  base::Result<Json> part_until(std::chrono::nanoseconds to);
+  // The samples up to and without `to`, and "images":{TOPIC:[[s, JPEG in base64]]}. Call with growing times.
+  base::Result<Part> part_until(std::chrono::nanoseconds to);
   // The file has grown, and these are its facts now: goes on with the samples from this time on, the end of the last part.
   base::Result<void> go_on(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
   // Chunks of the file that could not be read so far.
@@ -42,23 +51,19 @@ class PageSamples {
     std::size_t number = 0;   // in the ring
     std::chrono::nanoseconds next{0};
   };
-  struct Newest {
-    double time = 0;
-    Json value;
-  };
 
   PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader);
   void find_channels(std::chrono::nanoseconds from);
-  base::Result<void> take(const mcap::Message& message, Json& part);
-  base::Result<void> take_image(const mcap::Message& message, Signal& signal, Json& part);
-  void keep(const std::string& topic, double time, Json value, Json& part);
+  base::Result<void> take(const mcap::Message& message, Part& part);
+  base::Result<void> take_image(const mcap::Message& message, Signal& signal, Part& part);
+  void keep(const std::string& topic, double time, Json value, Part& part);
 
   std::shared_ptr<const studio::RecordingFacts> facts_;
   const double camera_rate_;
   mcap::Reader reader_;
   recorder::SampleValues values_{reader_};
   std::map<Channel, Signal> signals_;
-  std::map<std::string, Newest> newest_;                          // by topic
+  std::map<std::string, std::string> newest_;                     // samples as in a part, by topic
   std::map<std::string, Json> rings_;                             // the ranges of a ring of sonars
   std::map<std::string, std::pair<double, std::string>> images_;  // the newest
   std::map<std::string, std::uint64_t> thinned_, too_large_;      // samples

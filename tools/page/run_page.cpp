@@ -25,7 +25,7 @@ using base::Result;
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-// Parts are as long as their text has about this size, which bounds the memory: as JSON a part takes ten times of it.
+// Parts are as long as their text has about this size, which bounds the memory.
 constexpr std::size_t part_size = 3U << 19U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
 constexpr nanoseconds pose_step(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));
@@ -209,7 +209,7 @@ class RunPage {
   Result<void> put_part(nanoseconds from, nanoseconds to) {
     auto part = samples_->part_until(to);
     if (!part) return part.error();
-    if (const auto posed = add_poses(*part, *facts_, *playhead_, from, to); !posed) return posed;
+    if (const auto posed = add_poses(part->more, *facts_, *playhead_, from, to); !posed) return posed;
     if (const auto added = add_other(*part, from, to); !added) return added;
     const auto begin = file_.size();
     const auto size = put_text(*part);
@@ -227,12 +227,12 @@ class RunPage {
   }
 
   // The size of its text; nothing: the page has reached its limit.
-  std::optional<std::size_t> put_text(Json& part) {
+  std::optional<std::size_t> put_text(Part& part) {
     const auto id = std::to_string(parts_.size());
-    const auto text = studio::to_text(part);
+    const auto text = part.text();
     if (file_.put_data({{id, text}})) return text.size();
-    part.erase("images");
-    if (!file_.put_data({{id, studio::to_text(part)}})) return std::nullopt;
+    part.more.erase("images");
+    if (!file_.put_data({{id, part.text()}})) return std::nullopt;
     are_images_left_out_ = true;
     return text.size();
   }
@@ -249,16 +249,16 @@ class RunPage {
     return {};
   }
 
-  // "other": the poses and samples of the second recording, whose frames name the links of the first one's world.
-  Result<void> add_other(Json& part, nanoseconds from, nanoseconds to) {
+  // The poses and samples of the second recording, whose frames name the links of the first one's world.
+  Result<void> add_other(Part& part, nanoseconds from, nanoseconds to) {
     if (!other_) return {};
     const auto there = [&](nanoseconds time) { return other_->zero + (time - facts_->zero); };
     auto other = other_samples_->part_until(there(to));
     if (!other) return other.error();
-    if (const auto posed = add_poses(*other, *other_, *other_playhead_, there(from), there(to)); !posed) return posed.error();
-    other->erase("images");
-    other->erase("late");  // models that the first world does not have from its beginning have no ghosts
-    part["other"] = std::move(*other);
+    if (const auto posed = add_poses(other->more, *other_, *other_playhead_, there(from), there(to)); !posed) return posed.error();
+    other->more.erase("images");
+    other->more.erase("late");  // models that the first world does not have from its beginning have no ghosts
+    part.other = other->text();
     return {};
   }
 
