@@ -784,7 +784,7 @@ enum {
   RTMSIM_REQUEST_WRENCH = 9,  /* name = model or link; values 0..5 = force, torque, world frame at the centre of mass; 6 = [s], 0: one step,
                                  -1: until the next -1. flags 1: name = MODEL::JOINT; values 0 = its effort [N m or N] */
   RTMSIM_REQUEST_LIST = 10,   /* reply text: JSON, see docs/shared-memory.md */
-  RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors; flags 1 = with their bounds */
+  RTMSIM_REQUEST_TREE = 11,   /* name = model or empty for all; reply text: JSON tree of models, links, joints, sensors; flags 1: bounds */
   RTMSIM_REQUEST_SPAWN = 12,  /* text = SDF, or flags bit 0: text = path of an SDF file or model folder (of a
                                  shared server: inside its model path); name = new name or empty; flags bit 1: values 0..6 = pose; bit 2:
                                  nothing outside of the model path is opened. Reply message = name given */
