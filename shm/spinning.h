@@ -30,7 +30,7 @@ class FreeProcessors {
   static constexpr std::chrono::milliseconds pause{5};
 
   bool is_due(std::chrono::steady_clock::time_point now) const { return now >= next_look_ && file_ >= 0; }
-  // Counts who wants to run beside the caller and so many who take part, at most once in a pause.
+  // Counts the threads that want to run, without the caller and those that take part; at most once in a pause.
   void look(std::chrono::steady_clock::time_point now, std::size_t taking_part = 0);
   // For the caller and so many others.
   bool are_there_for(std::size_t others) const;

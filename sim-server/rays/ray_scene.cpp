@@ -24,8 +24,8 @@ using embree::FlushDenormals;
 using embree::without_dust;
 
 constexpr float none = std::numeric_limits<float>::infinity();
-// So many moving bodies in reach of a sensor are met one by one, each in its own frame: no tree has to be built for a scan, and most of
-// them are out of the way of most packets. With more, a tree over all bodies is built once for all scans of a moment.
+// If no more moving bodies are in reach of a sensor, each is met in its own frame: no tree has to be built for a scan, and most bodies are
+// out of the way of most packets. With more, a tree over all bodies is built once for all scans of a moment.
 constexpr std::size_t few_bodies = 32;
 
 void on_error(void*, RTCError, const char* text) { base::log(base::Level::error, "rays", "embree: {}", text); }
@@ -236,7 +236,7 @@ class RayScene::Impl {
     is_crowd_built_.store(false, std::memory_order_relaxed);
   }
 
-  // By the first of the threads that trace who needs it. Embree can't refit a scene of instances: it is built anew, as fast as it can be.
+  // Called by each thread that needs it; the first one builds. Embree can't refit a scene of instances, so it is built again each time.
   void build_crowd() {
     if (is_crowd_built_.load(std::memory_order_acquire)) return;  // pairs with the store below
     const auto mine = building_.take();

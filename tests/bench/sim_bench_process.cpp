@@ -206,7 +206,7 @@ void bench_load() {
       std::this_thread::sleep_for(2s);
       shares.push_back(100 * (process.processor_time() - before) / (us_since(start) * 1e-6));
     }
-    print(is_paused ? "obstacle course, paused: of a core" : "obstacle course, 1000 steps/s in real time, nobody listens: of a core",
+    print(is_paused ? "obstacle course, paused: of a core" : "obstacle course, 1000 steps/s in real time, no subscriber: of a core",
           least(shares), "%", Goal::at_most, is_paused ? 0.5 : 4);
   }
 }

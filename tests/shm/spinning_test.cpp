@@ -132,7 +132,9 @@ TEST(TurnWait, ends_at_its_deadline_and_sleeps_while_the_other_is_slow) {
   TurnWait wait(10ms, file.path.c_str(), 2);
   const auto never = [] { return false; };
   const auto now = [] { return std::chrono::steady_clock::now(); };
-  while (!finds_it_over(wait, 0)) usleep(1000);
+  bool is_free = false;
+  for (int i = 0; i < 5000 && !is_free; ++i) usleep(1000), is_free = finds_it_over(wait, 0);
+  ASSERT_TRUE(is_free);
   int looks = 0;
   const auto counted = [&] { return ++looks < 0; };
   for (int i = 0; i < 30; ++i) {
