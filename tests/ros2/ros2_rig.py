@@ -43,7 +43,7 @@ class Peer:
     def __init__(self, domain, user_data="enclave=/;"):
         self.process = subprocess.Popen([f"{bin_dir}/ros2_peer", domain, user_data], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                         env={**os.environ, "CYCLONEDDS_URI": cyclone})
-        self.samples, self.guids, self.counts, self.peers, self.list = {}, {}, {}, None, []
+        self.samples, self.decoded, self.guids, self.counts, self.peers, self.list = {}, {}, {}, {}, None, []
         self.is_ready = False
         self.thread = threading.Thread(target=self.listen, daemon=True)
         self.thread.start()
@@ -73,6 +73,8 @@ class Peer:
 
     def reader(self, name, topic, kind, reliability="reliable", durability="volatile", user_data="-"):
         self.samples[name] = []
+        for key in [key for key in self.decoded if key[0] == name]:
+            del self.decoded[key]
         self.say(f"reader {name} {topic} {kind} {reliability} {durability} {user_data}")
         return await_(f"reader {name}", lambda: self.guids[name])
 
@@ -90,11 +92,13 @@ class Peer:
     def put(self, name, kind, value):
         self.say(f"put {name} {wire.encode(kind, value).hex()}")
 
-    # Messages that came so far.
+    # Messages that came so far; each is decoded once, since those who wait ask again and again.
     def messages(self, topic, kind):
-        return [wire.decode(kind, data) for data in list(self.samples[topic])]
+        known = self.decoded.setdefault((topic, kind), [])
+        known += [wire.decode(kind, data) for data in self.samples[topic][len(known):]]
+        return known
 
-    # The first message, or the first that is good.
+    # The newest message, or the newest that is good.
     def message(self, topic, kind, good=lambda message: True):
         def found():
             return next(message for message in reversed(self.messages(topic, kind)) if good(message))

@@ -271,7 +271,7 @@ def joints():
         every = f"/{model}/position_controller/commands"
         peer.advertise(every, "std_msgs/Float64MultiArray")
         peer.await_matched(every)
-        peer.put(every, "std_msgs/Float64MultiArray", {"layout": {"dim": [], "data_offset": 0}, "data": [start] * (len(names) - 1) + [100.0]})
+        peer.put(every, "std_msgs/Float64MultiArray", {"layout": {"dim": [], "data_offset": 0}, "data": [0.0] * (len(names) - 1) + [100.0]})
         await_("the refusal", lambda: f"{every}: joint {names[-1]}: a position must be within" in rig.log(rig.process))
         peer.put(path, "trajectory_msgs/JointTrajectory", {**message, "joint_names": ["left_finger"], "points": [point(0.03, 1)]})
         peer.message(states, "sensor_msgs/JointState", lambda m: abs(m["position"][finger] - 0.03) < 0.002)
