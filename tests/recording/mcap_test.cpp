@@ -10,8 +10,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "recording/mcap/scan.h"
 
 namespace mcap {
 namespace {
@@ -220,6 +223,30 @@ TEST_P(Single, a_flipped_octet_in_a_chunk_costs_that_chunk_alone_and_is_told) {
       std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.find("the chunk") != std::string::npos; });
   EXPECT_EQ(errors, 1);
   EXPECT_GT(lines.size(), 90U);
+}
+
+// A thousand chunks of a thousand channels are what 100 robots leave in a minute.
+TEST_P(Single, an_index_keeps_the_channels_of_equal_chunks_once) {
+  record(50, {.chunk_size = 200});
+  const auto check = [&] {
+    const auto index = read_index(*File::open(path_));
+    ASSERT_TRUE(index) << index.error().message;
+    const auto& chunks = index->summary.chunks;
+    ASSERT_GT(chunks.size(), 10U);
+    std::map<ChannelSet, std::shared_ptr<const ChannelSet>> known;
+    for (const ChunkEntry& chunk : chunks) {
+      EXPECT_EQ(chunk.index_offsets.capacity(), 0U);
+      ASSERT_NE(chunk.channels, nullptr);
+      EXPECT_EQ(known.emplace(*chunk.channels, chunk.channels).first->second, chunk.channels);
+    }
+    EXPECT_TRUE(known.contains({1, 2}));
+    EXPECT_LT(known.size(), 4U);
+  };
+  check();
+  std::string cut = octets();
+  cut.resize(cut.size() - 20);
+  put(cut);  // without an end it is walked over
+  check();
 }
 
 TEST_P(Single, times_of_messages_are_known_without_their_chunks) {

@@ -96,13 +96,16 @@ std::optional<Schema> take_schema(std::string_view content);
 std::optional<Channel> take_channel(std::string_view content);
 std::optional<Message> take_message(std::string_view content);
 
-// A record of the summary that says where a chunk is.
+// A record of the summary that says where a chunk is. A reader of 100 robots has a thousand channels in each of a thousand chunks: it keeps
+// which channels those are, once for all chunks with the same, and not where the index of each stands, which only a writer says.
+using ChannelSet = std::vector<std::uint16_t>;  // sorted
 struct ChunkEntry {
   Time first{0};
   Time last{0};
   std::uint64_t start = 0;                                             // [octets] of its record in the file
   std::uint64_t length = 0;                                            // [octets] with opcode and length
-  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets;  // by channel
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets;  // by channel; empty in what a reader keeps
+  std::shared_ptr<const ChannelSet> channels;                          // null: unknown, or in index_offsets
   std::uint64_t index_length = 0;                                      // [octets]
   std::string compression;
   std::uint64_t compressed = 0;    // [octets]

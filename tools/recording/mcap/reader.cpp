@@ -67,8 +67,8 @@ struct Reader::State {
 
 bool Reader::State::is_wanted(const ChunkEntry& chunk) const {
   if (chunk.last < query.from || chunk.first > query.to) return false;
-  if (query.channels.empty() || chunk.index_offsets.empty()) return true;
-  return std::any_of(chunk.index_offsets.begin(), chunk.index_offsets.end(), [&](const auto& entry) { return is_wanted(entry.first); });
+  return query.channels.empty() || chunk.channels == nullptr ||
+         std::ranges::any_of(*chunk.channels, [&](auto one) { return is_wanted(one); });
 }
 
 void Reader::State::begin(Query new_query) {

@@ -40,6 +40,29 @@ class Collector {
   std::uint64_t described_ = 0;
 };
 
+// Puts the channels of a chunk in the place of the offsets of their indexes.
+class ChannelSets {
+ public:
+  void share(ChunkEntry& entry) {
+    if (entry.index_offsets.empty()) return;
+    ChannelSet set;
+    set.reserve(entry.index_offsets.size());
+    for (const auto& [channel, offset] : entry.index_offsets) set.push_back(channel);
+    decltype(entry.index_offsets)().swap(entry.index_offsets);  // = {} would keep the memory
+    std::ranges::sort(set);
+    auto& known = sets_[set];
+    if (known == nullptr) known = std::make_shared<const ChannelSet>(set);
+    entry.channels = known;
+  }
+  bool are_in(const std::map<std::uint16_t, Channel>& channels) const {
+    return std::ranges::all_of(
+        sets_, [&](const auto& set) { return std::ranges::all_of(set.first, [&](auto channel) { return channels.contains(channel); }); });
+  }
+
+ private:
+  std::map<ChannelSet, std::shared_ptr<const ChannelSet>> sets_;
+};
+
 void note(Index& index, const base::Error& error) {
   if (!index.damage) index.damage = error.message;
 }
@@ -90,7 +113,8 @@ base::Result<std::optional<Footer>> read_footer(const File& file, std::uint64_t 
 bool is_in_file(std::uint64_t start, std::uint64_t length, std::uint64_t end) { return start <= end && length <= end - start; }
 
 base::Result<void> take_summary_record(const File& file, Opcode opcode, std::string_view content, std::uint64_t offset,
-                                       std::uint64_t data_end, Collector& collector, Index& index, bool& has_statistics) {
+                                       std::uint64_t data_end, Collector& collector, ChannelSets& sets, Index& index,
+                                       bool& has_statistics) {
   const auto wrong = [&] { return at(file, offset, "a record of the summary is cut off or points outside of the data"); };
   Summary& summary = index.summary;
   switch (opcode) {
@@ -100,6 +124,7 @@ base::Result<void> take_summary_record(const File& file, Opcode opcode, std::str
     case Opcode::chunk_index: {
       auto entry = take_chunk_index(content);
       if (!entry || !is_in_file(entry->start, entry->length, data_end)) return wrong();
+      sets.share(*entry);
       summary.chunks.push_back(std::move(*entry));
       return {};
     }
@@ -128,21 +153,17 @@ base::Result<void> take_summary_record(const File& file, Opcode opcode, std::str
 }
 
 // Whether the summary says enough: writers may leave parts of it out.
-bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end, std::uint64_t data_end) {
+bool is_enough(const Index& index, const ChannelSets& sets, bool has_statistics, std::uint64_t header_end, std::uint64_t data_end) {
   const Summary& summary = index.summary;
   if (!has_statistics || summary.statistics.chunks != summary.chunks.size()) return false;
   if (summary.statistics.attachments != summary.attachments.size() || summary.statistics.metadata != summary.metadata.size()) return false;
   std::uint64_t known = header_end;  // [octets] of the data that the summary accounts for
-  std::set<std::uint16_t> seen;
-  for (const ChunkEntry& entry : summary.chunks) {
-    known += entry.length + entry.index_length;
-    for (const auto& [channel, offset] : entry.index_offsets) seen.insert(channel);
-  }
-  for (const auto& [channel, count] : summary.statistics.messages_of) seen.insert(channel);
+  for (const ChunkEntry& entry : summary.chunks) known += entry.length + entry.index_length;
   for (const AttachmentPlace& place : summary.attachments) known += place.length;
   for (const MetadataPlace& place : summary.metadata) known += place.length;
   if (known > data_end || data_end - known > record_head + 4) return false;  // messages outside of chunks
-  return std::all_of(seen.begin(), seen.end(), [&](std::uint16_t channel) { return summary.channels.contains(channel); });
+  return sets.are_in(summary.channels) &&
+         std::ranges::all_of(summary.statistics.messages_of, [&](const auto& one) { return summary.channels.contains(one.first); });
 }
 
 // Walks over the data of a file.
@@ -291,6 +312,7 @@ class Scanner {
     });
     if (!walked) note(index_, at(file_, offset, "in the chunk: " + walked.error().message));
     if (!result) return result;
+    entry.index_offsets.reserve(channels.size());
     for (const std::uint16_t channel : channels) entry.index_offsets.emplace_back(channel, 0);
     if (const auto fields = chunk_fields(offset, head.length)) {
       entry.compression = fields->first;
@@ -420,14 +442,15 @@ base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t 
   }
 
   Collector collector(file, index);
+  ChannelSets sets;
   bool has_statistics = false;
   base::Result<void> result;
   const auto walked = for_each_record(all, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
-    if (result) result = take_summary_record(file, opcode, content, start + offset, start, collector, index, has_statistics);
+    if (result) result = take_summary_record(file, opcode, content, start + offset, start, collector, sets, index, has_statistics);
   });
   if (!walked) return broken(start, "the summary is cut off; the file is read without it");
   if (!result) return damage = result.error().message, std::optional<Index>();
-  if (!is_enough(index, has_statistics, *header_end, start)) return std::optional<Index>();
+  if (!is_enough(index, sets, has_statistics, *header_end, start)) return std::optional<Index>();
   index.data_end = start;
   return std::optional<Index>(std::move(index));
 }
@@ -440,7 +463,10 @@ base::Result<Index> read_index(const File& file) {
   if (!index) return index.error();
   if (index->has_value()) return std::move(**index);
   auto scanned = scan(file);
-  if (scanned && !scanned->damage) scanned->damage = damage;
+  if (!scanned) return scanned;
+  if (!scanned->damage) scanned->damage = damage;
+  ChannelSets sets;
+  for (ChunkEntry& chunk : scanned->summary.chunks) sets.share(chunk);
   return scanned;
 }
 

@@ -138,6 +138,7 @@ base::Result<void> Writer::State::close_chunk() {
 
   std::string index;
   std::sort(in_chunk.begin(), in_chunk.end());
+  entry.index_offsets.reserve(in_chunk.size());
   for (const std::uint16_t channel : in_chunk) {
     entry.index_offsets.emplace_back(channel, written + index.size());
     auto& entries = indexes[channel];
