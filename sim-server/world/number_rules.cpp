@@ -12,7 +12,7 @@ namespace {
 using Form = NumberRule::Form;
 
 const std::map<std::string_view, NumberRule>& number_rules() {
-  using enum Form;
+  using enum NumberRule::Form;
   using enum NumberRule::Remedy;
   static const std::map<std::string_view, NumberRule> table{
       {"box/size", {positive3, drop_owner}},
