@@ -82,13 +82,18 @@ base::Result<void> check_ply(std::string_view content) {
   std::vector<Element> elements;
   for (std::size_t at = 0; at < end;) {
     const std::size_t stop = content.find_first_of("\r\n", at);
-    const auto words = base::split_list(std::string(content.substr(at, stop - at)), ' ');
+    std::string line(content.substr(at, stop - at));
+    std::ranges::replace(line, '\t', ' ');  // for Assimp a tab is as good
+    const auto words = base::split_list(line, ' ');
     at = stop + 1;
     if (words.size() > 1 && words[0] == "format") is_text = words[1] == "ascii";
     if (words.size() > 2 && words[0] == "element") {
       if (const auto fits = take(element, left); !fits) return fits;
       elements.push_back(element);
       element = {words[1], 0, 0, false};
+      if (element.name.front() >= '0' &&
+          element.name.front() <= '9')  // for Assimp, which does not skip names that it does not know, a count
+        return damaged("its header has an element " + base::in_quotes(element.name) + ", expected a name that begins with no digit");
       const auto [rest, fault] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
       if (fault != std::errc() || rest != words[2].data() + words[2].size())
         return damaged("its header counts " + base::in_quotes(words[2]) + " of " + base::in_quotes(element.name) + ", expected a number");

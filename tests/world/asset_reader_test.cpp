@@ -317,6 +317,11 @@ TEST(AssetReader, a_ply_whose_header_does_not_fit_the_file_is_refused_before_it_
   EXPECT_THAT(said("ply\nformat binary_little_endian 1.0\nelement vertex 4\n" + corner + "end_header\n" + std::string(36, '\0')),
               testing::HasSubstr("4 of \"vertex\", the file has room for 3"));
   EXPECT_THAT(said(head + "element nothing 400\n" + end), testing::HasSubstr("400 of \"nothing\", which have no property"));
+  EXPECT_THAT(said(head + "element\tvertex\t99999999\n" + corner + "element face 1\n" + faces + end),
+              testing::HasSubstr("its header counts 99999999 of \"vertex\""));
+  EXPECT_THAT(said(head + "element 99999999vertex 3\n" + corner + "element face 1\n" + faces + end),
+              testing::HasSubstr("is damaged: its header has an element \"99999999vertex\", expected a name that begins with no digit"));
+  EXPECT_EQ(said(head + "element\tvertex 3\n" + corner + "element face\t1\n" + faces + end), "read");
 }
 
 // Assimp fills a list with zeros that is longer than its line, and would take seconds to make triangles of it.
