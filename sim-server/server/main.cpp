@@ -284,7 +284,11 @@ int serve(int argc, char** argv) {
   app.add_option("--resource-path", options.resource_paths,
                  "folder with models; repeatable (also RTMSIM_RESOURCE_PATH, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH)")
       ->expected(1)
-      ->take_all();
+      ->take_all()
+      ->check([](const std::string& text) {
+        std::error_code error;
+        return std::filesystem::is_directory(text, error) ? std::string() : "expected a folder, got " + base::in_quotes(text);
+      });
   app.add_option("--gains", options.gains,
                  "take the gains of joint controllers from a YAML file of ros_control or ros2_control, before those of the world; "
                  "repeatable")

@@ -27,6 +27,7 @@ calls = [
     (["simctl", "spawn", "crate", "--for", "robot"], "robot"), (["simctl", "pose", "crate", "1"], "expected X Y YAW"), (["simctl", "rtf", "fast"], "fast"),
     (["sim-server", course, "--shm-mode", "0999"], "0999"), (["sim-server", course, "--shm-group", "no such group"], "no such group"),
     (["sim-server", "none.sdf"], "no such file"), (["sim-server", "bad.xml", "--check"], "bad.xml"), (["sim-server", course, "--gains", "none.yaml"], "none.yaml"),
+    (["sim-server", course, "--resource-path", "nowhere"], "expected a folder"), (["sim-server", course, "--resource-path", "run.yaml"], '--resource-path: expected a folder, got "run.yaml"'),
     (["sim-server", course, "--hash-log", "nowhere/x"], "there is no folder"), (["sim-server", course, "--record", "."], "is a folder"),
     (["player-gateway", "--config", "none.yaml"], "no such file"), (["player-gateway", "--config", "."], "is a folder"), (["rtcprof", "none.so"], "none.so"),
     (["sim-server", course, "--ends-with-input"], "expected a pipe"), (["sim-server", course, "--fault", "weak"], "weak"), (["sim-server"], "WORLD"),
