@@ -29,7 +29,7 @@ struct Element {
   std::string name;
   std::uint64_t count = 0;
   std::uint64_t least_bytes = 0;  // of one
-  bool begins_with_list = false;
+  std::vector<bool> is_list;      // of its properties, up to the last list
 };
 
 base::Error damaged(const std::string& why) { return base::Error{"is damaged: " + why}; }
@@ -46,8 +46,36 @@ base::Result<void> take(const Element& element, std::uint64_t& left) {
   return {};
 }
 
-// Of a text, which has a line for each of an element: no list counts more numbers than the file has bytes. Assimp makes room for them
-// first. Lines that begin with no number count for no element: a check that is ahead of Assimp's reads of a later element at most.
+// A list counts no more numbers than the file has bytes: Assimp makes room for them first. A line has the count of each list: Assimp looks
+// for one that is missing in what the line before left behind.
+base::Result<void> check_line(std::string_view line, const Element& element, std::size_t file_size) {
+  constexpr std::string_view space = " \t\r";
+  std::size_t at = 0;
+  const auto next_word = [&] {
+    at = std::min(line.find_first_not_of(space, at), line.size());
+    const std::string_view word = line.substr(at, line.find_first_of(space, at) - at);
+    at += word.size();
+    return word;
+  };
+  for (const bool is_list : element.is_list) {
+    const std::string_view word = next_word();
+    if (word.empty()) return damaged("a line of " + base::in_quotes(element.name) + " ends before the count of a list");
+    if (!is_list) continue;
+    std::uint32_t count = 0;  // one that does not fit is 0 here
+    std::from_chars(word.data(), word.data() + word.size(), count);
+    if (count > most_invented_corners && count > file_size)
+      return damaged("a list of " + base::in_quotes(element.name) + " counts " + std::to_string(count) + " numbers, the file has " +
+                     std::to_string(file_size) + " bytes");
+    while (count > 0 && at < line.size()) {
+      next_word();
+      --count;
+    }
+  }
+  return {};
+}
+
+// Of a text, which has a line for each of an element. Lines that begin with no number count for no element: a check that is ahead of
+// Assimp's reads of a later element at most.
 base::Result<void> check_lists(std::string_view content, std::size_t header_size, const std::vector<Element>& elements) {
   std::size_t at = content.find('\n', header_size);
   for (const Element& element : elements) {
@@ -55,11 +83,7 @@ base::Result<void> check_lists(std::string_view content, std::size_t header_size
       const std::string_view rest = content.substr(std::min(content.find_first_not_of(" \t", at + 1), content.size()));
       if (rest.empty() || std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) continue;
       ++i;
-      std::uint32_t count = 0;  // one that does not fit is 0 here
-      std::from_chars(rest.data(), rest.data() + rest.size(), count);
-      if (element.begins_with_list && count > most_invented_corners && count > content.size())
-        return damaged("a list of " + base::in_quotes(element.name) + " counts " + std::to_string(count) + " numbers, the file has " +
-                       std::to_string(content.size()) + " bytes");
+      if (const auto fits = check_line(rest.substr(0, rest.find('\n')), element, content.size()); !fits) return fits;
     }
   }
   return {};
@@ -79,6 +103,7 @@ base::Result<void> check_ply(std::string_view content) {
   std::uint64_t left = content.size() - end - header_end.size();
   bool is_text = true;
   Element element;
+  std::size_t properties = 0;  // of it, so far
   std::vector<Element> elements;
   for (std::size_t at = 0; at < end;) {
     const std::size_t stop = content.find_first_of("\r\n", at);
@@ -90,7 +115,8 @@ base::Result<void> check_ply(std::string_view content) {
     if (words.size() > 2 && words[0] == "element") {
       if (const auto fits = take(element, left); !fits) return fits;
       elements.push_back(element);
-      element = {words[1], 0, 0, false};
+      element = {words[1], 0, 0, {}};
+      properties = 0;
       if (element.name.front() >= '0' &&
           element.name.front() <= '9')  // for Assimp, which does not skip names that it does not know, a count
         return damaged("its header has an element " + base::in_quotes(element.name) + ", expected a name that begins with no digit");
@@ -99,7 +125,11 @@ base::Result<void> check_ply(std::string_view content) {
         return damaged("its header counts " + base::in_quotes(words[2]) + " of " + base::in_quotes(element.name) + ", expected a number");
     }
     if (words.size() > 2 && words[0] == "property") {
-      element.begins_with_list = element.begins_with_list || (words[1] == "list" && element.least_bytes == 0);
+      ++properties;
+      if (words[1] == "list") {
+        element.is_list.resize(properties);
+        element.is_list.back() = true;
+      }
       const std::uint64_t bytes = bytes_of(words[words[1] == "list" ? 2 : 1]);
       element.least_bytes += is_text ? 2 : bytes;  // in text a digit and what ends it
     }
