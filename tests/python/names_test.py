@@ -33,6 +33,19 @@ def test_times_have_differences():
     assert (first - later).getTime().toDouble() == -2
 
 
+@pytest.mark.parametrize("given, expected", [((1, 2500000), (3, 500000)), ((1, -500000), (0, 500000)), ((-1, 500000), (0, -500000)),
+                                             ((0, -2500000), (-2, -500000)), ((-0.5,), (0, -500000)), ((1.75,), (1, 750000)),
+                                             ((1, -1000000), (0, 0)), ((None, 1500000), (1, 500000)), ((), (0, 0))])
+def test_seconds_and_microseconds_of_a_time_have_one_sign(given, expected):
+    made = OpenRTM_aist.TimeValue(*given)
+    assert (made.sec(), made.usec()) == expected
+    if len(given) == 2:
+        made.tv_sec, made.tv_usec = given[0] or 0, given[1]
+        made.normalize()
+        assert (made.tv_sec, made.tv_usec) == expected
+    assert made.sign() == (expected > (0, 0)) - (expected < (0, 0))
+
+
 def test_a_timer_calls_its_listeners_until_they_are_taken_away():
     called = threading.Semaphore(0)
     timer = OpenRTM_aist.Timer(OpenRTM_aist.TimeValue(0, 1000))
@@ -55,6 +68,70 @@ def test_a_periodic_task_that_is_suspended_is_called_by_a_signal():
     task.signal()
     assert called.acquire(timeout=30)
     task.finalize()
+
+
+def test_a_periodic_task_measures_its_calls_and_the_time_between_them():
+    called = threading.Semaphore(0)
+    task = OpenRTM_aist.PeriodicTask()
+    task.setTask(called.release)
+    task.suspend()
+    for stat in (task.getExecStat(), task.getPeriodStat()):
+        assert (stat._max_interval, stat._min_interval, stat._mean_interval, stat._std_deviation) == (0, 0, 0, 0)
+
+    def three_calls():
+        task.activate()
+        for _ in range(3):
+            task.signal()
+            assert called.acquire(timeout=30)
+        task.finalize()
+
+    three_calls()
+    for stat in (task.getExecStat(), task.getPeriodStat()):
+        assert 0 <= stat._min_interval <= stat._mean_interval <= stat._max_interval > 0
+    task.executionMeasure(False)
+    task.periodicMeasure(False)
+    task.executionMeasureCount(1)
+    task.periodicMeasureCount(0)
+    three_calls()
+    assert task.getExecStat()._max_interval == task.getPeriodStat()._max_interval == 0
+    task.executionMeasure(True)
+    task.periodicMeasure(True)
+    three_calls()
+    for stat in (task.getExecStat(), task.getPeriodStat()):
+        assert stat._min_interval == stat._max_interval > 0, "one length is kept"
+
+
+# In a process with a manager: the object is asked, so its adapter must serve.
+def manager_script(text, *options):
+    script = "import sys, OpenRTM_aist, RTC__POA\nmanager = OpenRTM_aist.Manager.init(sys.argv)\nmanager.activateManager()\n" + text
+    return subprocess.run([sys.executable, "-c", script, "-o", "naming.enable:NO", "-o", "manager.instance_name:mine", "-o", "logger.enable:NO", *options],
+                          capture_output=True, text=True, timeout=120)
+
+
+def test_the_kind_of_a_component_is_asked_by_its_reference():
+    ran = manager_script("""from OpenRTM_aist import RTCUtil
+kinds = ("DataFlowComponent", "FsmParticipant", "FsmObject", "MultiModeObject")
+for kind in kinds:
+    servant = type("Servant", (getattr(RTC__POA, kind),), {})()
+    asked = [getattr(OpenRTM_aist, "is" + one) for one in kinds]
+    assert asked == [getattr(RTCUtil, "is" + one) for one in kinds]
+    print(kind, *[one for one, is_kind in zip(kinds, asked) if is_kind(servant._this())], any(is_kind(None) for is_kind in asked))
+""")
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.splitlines() == ["%s %s False" % (one, one) for one in ("DataFlowComponent", "FsmParticipant", "FsmObject", "MultiModeObject")]
+
+
+@pytest.mark.parametrize("options, text", [
+    ([], "servant = manager.getManagerServant(); profile = servant.get_profile(); print('is', servant.getObjRef()._is_equivalent("
+         "manager.getORB().string_to_object(manager.getORB().object_to_string(servant.getObjRef()))), servant.get_components())\n"
+         "print([one.value.value() for one in profile.properties if one.name == 'instance_name'])\n"
+         "print(servant.create_component('None'), hasattr(servant, 'no_such_operation'))\n"
+         "manager.shutdown(); print('after', manager.getManagerServant())"),
+    (["-o", "manager.corba_servant:NO"], "print('none', manager.getManagerServant())")], ids=["with", "without"])
+def test_the_manager_has_its_own_corba_object(options, text):
+    ran = manager_script(text, *options)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout == ("none None\n" if options else "is True []\n['mine']\nNone False\nafter None\n"), ran.stdout + ran.stderr
 
 
 def test_functions_of_references_are_in_the_flat_namespace_too():

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <rtm/DataType.h>
 #include <rtm/Manager.h>
+#include <rtm/ManagerServant.h>
 #include <rtm/NamingManager.h>
 #include <rtm/Timestamp.h>
 
@@ -78,6 +79,14 @@ class Factory final : public RTC::FactoryBase {
 // What has been given to the manager lives as long as the process.
 PyObject* init_function = nullptr;
 
+// Nil with manager.corba_servant NO. Taken when the manager starts: the servant itself is gone when the manager has ended.
+RTM::Manager_ptr manager_reference = RTM::Manager::_nil();
+
+class Host : public RTC::Manager {
+ public:
+  static RTM::ManagerServant* servant(const RTC::Manager& manager) { return manager.*&Host::m_mgrservant; }
+};
+
 void init_modules(RTC::Manager*) {
   std::string problem;
   {
@@ -96,6 +105,7 @@ void init(const std::vector<std::string>& words, bool is_host, const std::vector
   arguments->push_back(nullptr);
   const RTC::ManagerOptions options{.strict_arguments = is_host, .bind_manager = is_host, .modules = modules};
   RTC::Manager* const manager = unlocked([&] { return RTC::Manager::init(static_cast<int>(words.size()), arguments->data(), options); });
+  if (const auto* servant = Host::servant(*manager)) manager_reference = RTM::Manager::_duplicate(servant->getObjRef());
   const Function load(loader);
   RTC::set_script_loader(*manager, [load](const std::string& file, const std::string& function) -> std::string {
     const Locked locked;
@@ -189,6 +199,10 @@ void add_life(py::module_& module) {
   module.def("manager_set_init_function", [](const py::object& function) {
     init_function = py::object(function).release().ptr();
     the_manager().setModuleInitProc(&init_modules);
+  });
+  module.def("manager_reference", [] {
+    auto* const reference = the_manager().isRunning() ? manager_reference : RTM::Manager::_nil();
+    return py::reinterpret_steal<py::object>(reference_out(reference, "IDL:RTM/Manager:1.0"));
   });
   module.def("manager_config", [] { return Properties{nullptr, &the_manager().getConfig()}; });
 }

@@ -27,7 +27,7 @@ _LATER = {
     "uuid": ("utility", None), "EventPort": ("EventPort", None), "CSPEventPort": ("CSPEventPort", None),
     "CSPMachine": ("CSPMachine", None),
     # Files of the original whose names are no classes.
-    "RTObject": ("component", None), "SystemLogger": ("logger", None), "RTCUtil": ("ports", None), "Async": ("utility", None),
+    "RTObject": ("component", None), "SystemLogger": ("logger", None), "RTCUtil": ("RTCUtil", None), "Async": ("utility", None),
 }
 for _name in ("FSM_TOPSTATE", "FSM_SUBSTATE", "Link", "State", "Event", "Machine", "deephistory", "history"):
     _LATER.setdefault(_name, ("StaticFSM", _name))
@@ -54,6 +54,8 @@ for _name in ("activate", "already_connected", "connect", "connect_by_name", "co
               "get_actual_ec", "get_component_profile", "get_ec_id", "get_port_by_name", "get_port_names", "get_state", "is_existing",
               "is_in_active", "is_in_error", "is_in_inactive", "reset"):
     _LATER[_name] = ("CORBA_RTCUtil", _name)
+for _name in ("isDataFlowComponent", "isFsmParticipant", "isFsmObject", "isMultiModeObject"):
+    _LATER[_name] = ("RTCUtil", _name)
 del _name
 
 

@@ -281,6 +281,12 @@ class Manager:
     def getNaming(self):
         return _Naming()
 
+    def getManagerServant(self):
+        """The CORBA object of this manager: the operations of RTM.Manager, and getObjRef(). None if manager.corba_servant is NO, and when
+        the manager ends."""
+        reference = _core.manager_reference()
+        return None if reference is None else _ManagerServant(reference)
+
     def addTask(self, function, period, delay=0):
         return _core.manager_add_task(function, _seconds(period), _seconds(delay))
 
@@ -292,6 +298,19 @@ class Manager:
 
     def __getattr__(self, name):
         raise AttributeError("Manager.%s is not part of this implementation (docs/python-components.md lists what is)" % name)
+
+
+class _ManagerServant:
+    def __init__(self, reference):
+        self._reference = reference
+
+    def getObjRef(self):
+        return self._reference
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._reference, name)
 
 
 class _Naming:

@@ -98,13 +98,22 @@ class Task:
 
 
 class TimeValue:
+    """A length of time: seconds and microseconds, both of the same sign."""
+
     def __init__(self, sec=None, usec=None):
         if isinstance(sec, TimeValue):
             sec, usec = sec.tv_sec, sec.tv_usec
-        if sec is not None and usec is None:
-            total = int(round(float(sec) * 1000000))
-            sec, usec = divmod(total, 1000000)
-        self.tv_sec, self.tv_usec = int(sec or 0), int(usec or 0)
+        if usec is None:
+            sec, usec = 0, round(float(sec or 0) * 1000000)
+        self.tv_sec, self.tv_usec = int(sec or 0), int(usec)
+        self.normalize()
+
+    def normalize(self):
+        """Carries whole seconds of tv_usec to tv_sec, and makes both signs the same. For sources that set the two attributes."""
+        total = self.tv_sec * 1000000 + self.tv_usec
+        sign = -1 if total < 0 else 1
+        sec, usec = divmod(abs(total), 1000000)
+        self.tv_sec, self.tv_usec = sign * sec, sign * usec
 
     def sec(self):
         return self.tv_sec
@@ -182,6 +191,8 @@ class PeriodicTask:
         self.__thread = None
         self.__changed = threading.Condition()
         self.__is_over = self.__is_suspended = self.__is_told = False
+        self.__measures_execution = self.__measures_period = True
+        self.__execution, self.__between = TimeMeasure(1000), TimeMeasure(1000)
 
     def setTask(self, function, delete_in_dtor=True):
         self.__function = getattr(function, "svc", function)
@@ -221,6 +232,32 @@ class PeriodicTask:
             self.__thread.join()
         self.__thread = None
 
+    def executionMeasure(self, value):
+        """Whether to measure how long each call takes; it does so from the start."""
+        self.__measures_execution = bool(value)
+
+    def executionMeasureCount(self, n):
+        """Begins a new measurement that keeps the last n lengths."""
+        with self.__changed:
+            self.__execution = TimeMeasure(max(n, 1))
+
+    def periodicMeasure(self, value):
+        """Whether to measure the time from call to call; it does so from the start."""
+        self.__measures_period = bool(value)
+
+    def periodicMeasureCount(self, n):
+        """Begins a new measurement that keeps the last n lengths."""
+        with self.__changed:
+            self.__between = TimeMeasure(max(n, 1))
+
+    def getExecStat(self):
+        with self.__changed:
+            return self.__execution.getStatistics()
+
+    def getPeriodStat(self):
+        with self.__changed:
+            return self.__between.getStatistics()
+
     def __run(self):
         due = time.monotonic()
         while True:
@@ -230,7 +267,15 @@ class PeriodicTask:
                 if self.__is_over:
                     return
                 self.__is_told = False
+                if self.__measures_period:
+                    self.__between.tack()
+                    self.__between.tick()
+                if self.__measures_execution:
+                    self.__execution.tick()
             self.__function()
+            with self.__changed:
+                if self.__measures_execution:
+                    self.__execution.tack()
             due = max(due + self.__period, time.monotonic())
 
 
