@@ -94,6 +94,7 @@ TEST(Keys, a_manager_without_servant_cannot_be_asked) {
   Started manager({"manager.corba_servant:NO", "corba.endpoints::" + port});
   CORBA::Object_var object = manager->getORB()->string_to_object(("corbaloc:iiop:127.0.0.1:" + port + "/manager").c_str());
   EXPECT_THROW(object->_is_a("IDL:RTM/Manager:1.0"), CORBA::Exception);
+  EXPECT_THROW(manager->getManagerServant(), CORBA::OBJECT_NOT_EXIST);
 }
 
 TEST(Keys, manager_name_is_the_object_key) {

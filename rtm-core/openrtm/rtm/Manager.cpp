@@ -257,7 +257,10 @@ PortableServer::POA_ptr Manager::getPOA() { return impl_->orb ? impl_->orb->root
 PortableServer::POAManager_ptr Manager::getPOAManager() {
   return impl_->orb ? impl_->orb->poa_manager() : PortableServer::POAManager::_nil();
 }
-RTM::ManagerServant& Manager::getManagerServant() { return *impl_->servant; }
+RTM::ManagerServant& Manager::getManagerServant() {
+  if (impl_->servant == nullptr) throw CORBA::OBJECT_NOT_EXIST();  // manager.corba_servant is NO, or the manager has ended
+  return *impl_->servant;
+}
 NamingManager* Manager::getNaming() { return impl_->naming.get(); }
 
 Manager::TaskId Manager::addTask(std::function<void()> task, std::chrono::nanoseconds period, std::chrono::nanoseconds delay) {
