@@ -90,9 +90,15 @@ base::Result<void> complete(ros2::Options& options, const Typed& typed, bool is_
   }
   options.dds.domain = is_domain_typed ? typed.domain : options.naming.domain.value_or(typed.domain);
   if (!is_rate_typed) options.clock_rate = options.naming.clock_rate.value_or(options.clock_rate);
-  if (!(options.clock_rate >= 0 && options.clock_rate <= 10000)) return base::Error{"--clock-rate must be from 0 to 10000 Hz"};
-  if (!(typed.command_timeout >= 0 && typed.command_timeout <= 1e6)) return base::Error{"--command-timeout must be from 0 to 1000000 s"};
-  if (!(typed.wait_timeout > 0 && typed.wait_timeout <= 1e6)) return base::Error{"--wait-timeout must be positive and at most 1000000 s"};
+  const auto wrong = [](const std::string& rule, double value) {
+    return base::Error{rule + ", got " + (std::isnan(value) ? "nan" : base::format_number(value))};
+  };
+  if (!(options.clock_rate >= 0 && options.clock_rate <= 10000))
+    return wrong("--clock-rate must be from 0 to 10000 Hz", options.clock_rate);
+  if (!(typed.command_timeout >= 0 && typed.command_timeout <= 1e6))
+    return wrong("--command-timeout must be from 0 to 1000000 s", typed.command_timeout);
+  if (!(typed.wait_timeout > 0 && typed.wait_timeout <= 1e6))
+    return wrong("--wait-timeout must be positive and at most 1000000 s", typed.wait_timeout);
   if (!options.service_prefix.empty()) {
     if (options.service_prefix.front() != '/') options.service_prefix = "/" + options.service_prefix;
     if (const auto problem = ros2::problem_of_name(options.service_prefix)) return base::Error{"--service-prefix " + *problem};

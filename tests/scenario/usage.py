@@ -33,7 +33,7 @@ calls = [
     (["sim-server", course, "--ends-with-input"], "expected a pipe"), (["sim-server", course, "--fault", "weak"], "weak"), (["sim-server"], "WORLD"),
 ]
 if shutil.which("ros2-gateway", path=bin_dir):
-    calls += [(["ros2-gateway", "--clock-rate", "-1"], "must be from 0 to 10000"), (["ros2-gateway", "--wait-for", "cmd_vel=20Hz"], "needs --lockstep")]
+    calls += [(["ros2-gateway", "--clock-rate", "-1"], "must be from 0 to 10000 Hz, got -1"), (["ros2-gateway", "--wait-for", "cmd_vel=20Hz"], "needs --lockstep")]
 environment = dict(os.environ, RTCTREE_NAMESERVERS="127.0.0.1:1", RTMSIM_SERVER_ID="9000")
 wrong = []
 with tempfile.TemporaryDirectory() as folder:

@@ -47,7 +47,7 @@ std::vector<std::string> grid(const YAML::Node& node) {
   if (!node["from"] || !node["to"]) fail_at(node, "a grid needs from and to");
   if (node["step"] && node["steps"]) fail_at(node, "a grid has step or steps, not both");
   const auto steps = count(node, "steps", 0);
-  if (node["steps"] && steps < 1) fail_at(node["steps"], "steps must be at least 1");
+  if (node["steps"] && steps < 1) fail_at(node["steps"], "steps must be at least 1, got " + std::to_string(steps));
   double step = number(node, "step").value_or(1);
   if (steps > 1) step = (to - from) / static_cast<double>(steps - 1);
   if (!node["steps"] && to < from) fail_at(node["to"], "to must not be less than from");
@@ -161,7 +161,7 @@ HuntSpace to_hunt(const YAML::Node& node, const Plan& plan) {
   HuntSpace hunt;
   if (!node || !node.IsMap()) return hunt;
   hunt.most = count(node, "most", 3);
-  if (hunt.most < 1 || hunt.most > 100) fail_at(node["most"], "most must be from 1 to 100");
+  if (hunt.most < 1 || hunt.most > 100) fail_at(node["most"], "most must be from 1 to 100, got " + std::to_string(hunt.most));
   hunt.seed = count(node, "seed", 1);
   for (const auto& entry : node["events"]) hunt.events.push_back(to_event_in_run(entry, plan));
   for (const auto& entry : node["faults"]) {
@@ -209,9 +209,9 @@ void read_expect(const YAML::Node& node, Plan& plan) {
 void read_variation(const YAML::Node& root, Plan& plan) {
   plan.seed = count(root, "seed", 1);
   plan.repeat = count(root, "repeat", 1);
-  if (plan.repeat < 1) fail_at(root["repeat"], "repeat must be at least 1");
+  if (plan.repeat < 1) fail_at(root["repeat"], "repeat must be at least 1, got " + std::to_string(plan.repeat));
   plan.samples = count(root, "samples", 10);
-  if (plan.samples < 1) fail_at(root["samples"], "samples must be at least 1");
+  if (plan.samples < 1) fail_at(root["samples"], "samples must be at least 1, got " + std::to_string(plan.samples));
   plan.sampling_seed = count(root, "sampling_seed", 1);
   const auto sampling = word(root, "sampling", "random");
   plan.sampling = sampling == "latin" ? Plan::Sampling::latin : sampling == "sobol" ? Plan::Sampling::sobol : Plan::Sampling::random;
