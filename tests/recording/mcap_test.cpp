@@ -1,6 +1,7 @@
 #include "recording/mcap/mcap.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -10,11 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
-
-#include "recording/mcap/scan.h"
 
 namespace mcap {
 namespace {
@@ -225,30 +223,6 @@ TEST_P(Single, a_flipped_octet_in_a_chunk_costs_that_chunk_alone_and_is_told) {
   EXPECT_GT(lines.size(), 90U);
 }
 
-// A thousand chunks of a thousand channels are what 100 robots leave in a minute.
-TEST_P(Single, an_index_keeps_the_channels_of_equal_chunks_once) {
-  record(50, {.chunk_size = 200});
-  const auto check = [&] {
-    const auto index = read_index(*File::open(path_));
-    ASSERT_TRUE(index) << index.error().message;
-    const auto& chunks = index->summary.chunks;
-    ASSERT_GT(chunks.size(), 10U);
-    std::map<ChannelSet, std::shared_ptr<const ChannelSet>> known;
-    for (const ChunkEntry& chunk : chunks) {
-      EXPECT_EQ(chunk.index_offsets.capacity(), 0U);
-      ASSERT_NE(chunk.channels, nullptr);
-      EXPECT_EQ(known.emplace(*chunk.channels, chunk.channels).first->second, chunk.channels);
-    }
-    EXPECT_TRUE(known.contains({1, 2}));
-    EXPECT_LT(known.size(), 4U);
-  };
-  check();
-  std::string cut = octets();
-  cut.resize(cut.size() - 20);
-  put(cut);  // without an end it is walked over
-  check();
-}
-
 TEST_P(Single, times_of_messages_are_known_without_their_chunks) {
   record(50, {.chunk_size = 200});
   const auto times = [&] {
@@ -416,6 +390,37 @@ TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
   std::memcpy(bomb.data() + chunk, &small, sizeof small);
   put(bomb);
   EXPECT_NE(read().at(0).find("does not decompress to the 1000 bytes"), std::string::npos) << read().at(0);
+}
+
+// A reader of `rounds` chunks of 2000 channels, [bytes] of the heap that it holds.
+std::size_t held_by_reader(const std::string& path, int rounds, bool is_closed) {
+  constexpr std::uint16_t channels = 2000;
+  const auto heap = [] {
+    const auto all = mallinfo2();
+    return all.uordblks + all.hblkhd;
+  };
+  auto writer = Writer::create(path, {.compression = Compression::none});
+  for (int n = 0; n < channels; ++n) (void)writer->add_channel(0, "t", "");
+  for (int round = 0; round < rounds; ++round) {
+    for (std::uint16_t channel = 1; channel <= channels; ++channel) (void)writer->write({channel, 0, Time(round), Time(0), ""});
+    (void)writer->flush();
+  }
+  if (is_closed) (void)writer->close();
+  const auto before = heap();
+  const auto reader = Reader::open(path);
+  EXPECT_TRUE(reader && reader->statistics().chunks == static_cast<std::uint32_t>(rounds));
+  EXPECT_EQ(reader->damage().has_value(), !is_closed);
+  return heap() - before;
+}
+
+TEST_P(Single, a_reader_of_a_long_recording_holds_little_for_each_chunk) {
+  constexpr std::size_t most = 500;  // [bytes] of a chunk; an offset for each channel would take 32,000
+  if (mallinfo2().uordblks == 0) GTEST_SKIP() << "the allocator of a sanitizer does not count";
+  for (const bool is_closed : {true, false}) {
+    const auto of_20 = held_by_reader(path_, 20, is_closed);
+    const auto of_120 = held_by_reader(path_, 120, is_closed);
+    EXPECT_LT(of_120, of_20 + 100 * most) << (is_closed ? "with" : "without") << " a summary; 20 chunks: " << of_20;
+  }
 }
 
 TEST_P(Single, what_is_no_recording_is_refused_with_one_line) {

@@ -1,5 +1,6 @@
 #include "recording/mcap/bytes.h"
 
+#include <algorithm>
 #include <tuple>
 #include <type_traits>
 
@@ -147,6 +148,28 @@ std::optional<Message> take_message(std::string_view content) {
   message.publish_time = in.time();
   message.data = in.rest();
   return in.ok() ? std::optional(message) : std::nullopt;
+}
+
+ChannelSet::ChannelSet(std::vector<std::uint16_t> channels) {
+  std::ranges::sort(channels);
+  for (const std::uint16_t channel : channels) {
+    if (!runs_.empty() && channel <= runs_.back().second + 1)
+      runs_.back().second = channel;
+    else
+      runs_.emplace_back(channel, channel);
+  }
+  runs_.shrink_to_fit();
+}
+
+bool ChannelSet::contains(std::uint16_t channel) const {
+  const auto run = std::ranges::lower_bound(runs_, channel, {}, [](const auto& one) { return one.second; });
+  return run != runs_.end() && run->first <= channel;
+}
+
+void ChannelSet::add_to(std::vector<bool>& all) const {
+  if (is_empty()) return;
+  all.resize(std::max(all.size(), runs_.back().second + std::size_t{1}));
+  for (const auto& [first, last] : runs_) std::fill(all.begin() + first, all.begin() + last + 1, true);
 }
 
 void put_chunk_index(std::string& out, const ChunkEntry& entry) { put_members(out, Opcode::chunk_index, entry, of_chunk_index); }

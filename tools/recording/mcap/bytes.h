@@ -96,20 +96,32 @@ std::optional<Schema> take_schema(std::string_view content);
 std::optional<Channel> take_channel(std::string_view content);
 std::optional<Message> take_message(std::string_view content);
 
-// A record of the summary that says where a chunk is. A reader of 100 robots has a thousand channels in each of a thousand chunks: it keeps
-// which channels those are, once for all chunks with the same, and not where the index of each stands, which only a writer says.
-using ChannelSet = std::vector<std::uint16_t>;  // sorted
+// The channels of a chunk, as runs of consecutive IDs: most chunks of a recording have nearly all channels.
+class ChannelSet {
+ public:
+  ChannelSet() = default;
+  explicit ChannelSet(std::vector<std::uint16_t> channels);
+
+  bool is_empty() const { return runs_.empty(); }
+  bool contains(std::uint16_t channel) const;
+  void add_to(std::vector<bool>& all) const;  // by ID; grows as needed
+
+ private:
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> runs_;  // first and last, in their order
+};
+
+// A record of the summary that says where a chunk is.
 struct ChunkEntry {
   Time first{0};
   Time last{0};
   std::uint64_t start = 0;                                             // [octets] of its record in the file
   std::uint64_t length = 0;                                            // [octets] with opcode and length
-  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets;  // by channel; empty in what a reader keeps
-  std::shared_ptr<const ChannelSet> channels;                          // null: unknown, or in index_offsets
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets;  // by channel; needed only to write the record
   std::uint64_t index_length = 0;                                      // [octets]
   std::string compression;
   std::uint64_t compressed = 0;    // [octets]
   std::uint64_t uncompressed = 0;  // [octets]
+  ChannelSet channels;             // of its messages; empty: not known. Not part of the record
 };
 void put_chunk_index(std::string& out, const ChunkEntry& entry);
 std::optional<ChunkEntry> take_chunk_index(std::string_view content);

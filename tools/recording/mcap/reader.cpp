@@ -67,8 +67,8 @@ struct Reader::State {
 
 bool Reader::State::is_wanted(const ChunkEntry& chunk) const {
   if (chunk.last < query.from || chunk.first > query.to) return false;
-  return query.channels.empty() || chunk.channels == nullptr ||
-         std::ranges::any_of(*chunk.channels, [&](auto one) { return is_wanted(one); });
+  if (query.channels.empty() || chunk.channels.is_empty()) return true;
+  return std::ranges::any_of(query.channels, [&](std::uint16_t channel) { return chunk.channels.contains(channel); });
 }
 
 void Reader::State::begin(Query new_query) {

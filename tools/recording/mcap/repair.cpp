@@ -24,7 +24,7 @@ void note(Repair& repair, const base::Error& error) {
 
 // The octets of the data stay as they are, whoever wrote them; what follows the last whole record is replaced by a summary,
 // which does not name what is broken.
-base::Result<Repair> keep_octets(const File& file, std::uint64_t size, Index index, const std::string& to) {
+base::Result<Repair> keep_octets(const File& file, std::uint64_t size, const Index& index, const std::string& to) {
   auto out = File::create(to);
   if (!out) return out.error();
   std::uint32_t crc = 0;
@@ -33,10 +33,6 @@ base::Result<Repair> keep_octets(const File& file, std::uint64_t size, Index ind
     if (const auto done = file.read(offset, std::min(piece_size, index.data_end - offset), piece); !done) return done.error();
     crc = crc32(crc, piece);
     if (const auto done = out->append(piece); !done) return done.error();
-  }
-  for (ChunkEntry& chunk : index.summary.chunks) {
-    std::erase_if(chunk.index_offsets, [](const auto& entry) { return entry.second == 0; });  // channels whose index the file lost
-    if (chunk.index_length == 0) chunk.index_offsets.clear();
   }
   if (const auto done = out->append(end_of_file(index.summary, index.data_end, crc)); !done) return done.error();
 
@@ -192,14 +188,14 @@ base::Result<Repair> write(const std::string& from, const std::string& to) {
   if (!file) return file.error();
   const auto size = file->size();
   if (!size) return size.error();
-  auto scanned = scan(*file);
+  auto scanned = scan(*file, Offsets::kept);
   std::optional<std::string> damage;
   const auto whole = read_summary(*file, *size, damage);
   const bool has_summary = whole && whole->has_value();
   if (!scanned && !has_summary) return scanned.error();
   // The record of a channel without messages may be in the summary alone.
   if (scanned && has_summary) add_channels((*whole)->summary, scanned->summary);
-  if (!has_summary || agrees(scanned, (*whole)->summary)) return keep_octets(*file, *size, std::move(*scanned), to);
+  if (!has_summary || agrees(scanned, (*whole)->summary)) return keep_octets(*file, *size, *scanned, to);
 
   auto copied = copy_by_summary(from, (*whole)->summary, to);
   if (copied && !(scanned && is_worth_more(*scanned, (*whole)->summary, *copied))) {
@@ -207,7 +203,7 @@ base::Result<Repair> write(const std::string& from, const std::string& to) {
     return copied;
   }
   if (!scanned) return copied;
-  return keep_octets(*file, *size, std::move(*scanned), to);
+  return keep_octets(*file, *size, *scanned, to);
 }
 
 }  // namespace
