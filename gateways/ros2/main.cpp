@@ -1,7 +1,6 @@
 // ros2-gateway: shows the robots of a simulation to ROS 2 as nodes. See --help.
 #include <signal.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
 
@@ -90,9 +89,7 @@ base::Result<void> complete(ros2::Options& options, const Typed& typed, bool is_
   }
   options.dds.domain = is_domain_typed ? typed.domain : options.naming.domain.value_or(typed.domain);
   if (!is_rate_typed) options.clock_rate = options.naming.clock_rate.value_or(options.clock_rate);
-  const auto wrong = [](const std::string& rule, double value) {
-    return base::Error{rule + ", got " + (std::isnan(value) ? "nan" : base::format_number(value))};
-  };
+  const auto wrong = [](const std::string& rule, double value) { return base::Error{rule + ", got " + base::format_number(value)}; };
   if (!(options.clock_rate >= 0 && options.clock_rate <= 10000))
     return wrong("--clock-rate must be from 0 to 10000 Hz", options.clock_rate);
   if (!(typed.command_timeout >= 0 && typed.command_timeout <= 1e6))

@@ -293,14 +293,14 @@ void SimulationServices::serve_spawning() {
         const auto& [uri, text] = newer.entity_resource;
         spawn({newer.label, newer.allow_renaming, uri, text, newer.entity_namespace, newer.initial_pose}, reply);
       });
-  node_.serve<ros::SpawnEntitiesRequest, ros::SpawnEntitiesResponse>(name("spawn_entities"), [this](const auto& request,
-                                                                                                    const auto& reply) {
-    constexpr std::size_t most = 500;
-    if (request.spawn_requests.size() > most)
-      return reply(ros::SpawnEntitiesResponse{
-          bad(SimulationResult::failed, "spawn_requests must be at most 500, got " + std::to_string(request.spawn_requests.size())), {}});
-    spawn_next(std::make_shared<Batch>(Batch{request.spawn_requests, reply}));
-  });
+  node_.serve<ros::SpawnEntitiesRequest, ros::SpawnEntitiesResponse>(
+      name("spawn_entities"), [this](const auto& request, const auto& reply) {
+        constexpr std::size_t most = 500;
+        const std::size_t count = request.spawn_requests.size();
+        const auto wrong = [&] { return "spawn_requests must be at most " + std::to_string(most) + ", got " + std::to_string(count); };
+        if (count > most) return reply(ros::SpawnEntitiesResponse{bad(SimulationResult::failed, wrong()), {}});
+        spawn_next(std::make_shared<Batch>(Batch{request.spawn_requests, reply}));
+      });
 }
 
 void SimulationServices::spawn_next(const std::shared_ptr<Batch>& batch) {

@@ -117,8 +117,8 @@ base::Result<void> check_ply(std::string_view content) {
       elements.push_back(element);
       element = {words[1], 0, 0, {}};
       properties = 0;
-      if (element.name.front() >= '0' &&
-          element.name.front() <= '9')  // for Assimp, which does not skip names that it does not know, a count
+      // For Assimp, which does not skip names that it does not know, a count.
+      if (element.name.front() >= '0' && element.name.front() <= '9')
         return damaged("its header has an element " + base::in_quotes(element.name) + ", expected a name that begins with no digit");
       const auto [rest, fault] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
       if (fault != std::errc() || rest != words[2].data() + words[2].size())

@@ -331,17 +331,21 @@ TEST(AssetReader, a_ply_whose_header_does_not_fit_the_file_is_refused_before_it_
 // Assimp fills a list with zeros that is longer than its line, and would take seconds to make triangles of it.
 TEST(AssetReader, a_face_with_more_corners_than_its_mesh_or_its_file_can_have_is_refused) {
   const WorldFiles files;
-  const auto said = [&](const std::string& property, const std::string& value, const std::string& count) {
+  const auto said = [&](const std::string& property, const std::string& value, const std::string& count, const std::string& comment = "") {
     const std::string head =
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n";
+        "ply\nformat ascii 1.0\n" + comment + "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n";
     const std::string lists = property + "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
     const std::string faces = value + "3 0 1 2\n" + value + count + " 0 1 2\n";
-    const auto met = TriangleCache().triangles(MeshShape{files.write(value + count + ".ply", head + lists + faces), "", false, {1, 1, 1}});
+    const auto met = TriangleCache().triangles(
+        MeshShape{files.write(value + count + (comment.empty() ? ".ply" : "c.ply"), head + lists + faces), "", false, {1, 1, 1}});
     return met ? std::string("read") : met.error().message;
   };
   for (const std::string count : {"3", "5", "20000"}) EXPECT_EQ(said("", "", count), "read");
   for (const std::string count : {"65536", "99999999"})
     EXPECT_THAT(said("", "", count), testing::HasSubstr("is damaged: a list of \"face\" counts " + count + " numbers, the file has "));
+  // In a file with so many bytes only the mesh shows it.
+  EXPECT_THAT(said("", "", "65536", "comment " + std::string(66000, 'x') + "\n"),
+              testing::HasSubstr("is damaged: mesh 0 \"\": face 1 has 65537 corners, its mesh 3 vertices"));
   EXPECT_THAT(said("property int first\n", "0 ", "65536"), testing::HasSubstr("is damaged: a list of \"face\" counts 65536 numbers"));
 }
 
