@@ -34,7 +34,7 @@ executed = {
     "docs/pictures.md": "sim-server worlds/farm.sdf --rtf 5",
     "docs/run-page.md": "",
     "docs/simulator.md": "",
-    "docs/worlds.md": "cp worlds/obstacle_course.sdf my.world",
+    "docs/worlds.md": "mkdir -p models; cp worlds/obstacle_course.sdf my.world",
     "docs/campaigns.md": "",
     "docs/fleets.md": "",
     "docs/player.md": "",
