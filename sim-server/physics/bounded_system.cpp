@@ -1,8 +1,14 @@
 #include "physics/bounded_system.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
+namespace {
+
+constexpr Eigen::Index block = 4;  // rows
+
+}  // namespace
 
 void BoundedSystem::resize(Eigen::Index size) {
   a.setZero(size, size);
@@ -10,9 +16,11 @@ void BoundedSystem::resize(Eigen::Index size) {
   low.setZero(size);
   high.setZero(size);
   x.setZero(size);
-  if (part_.rows() < size) part_.resize(size, size), found_.resize(size);
+  stride_ = size + block;
+  if (part_.size() < size * stride_) part_.resize(size * stride_), found_.resize(size);
   bounds.assign(static_cast<std::size_t>(size), Bound::free);
   solved_.clear();
+  factored_.clear();
 }
 
 Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance) {
@@ -24,39 +32,57 @@ Bound better_bound(Bound bound, double x, double left_over, double low, double h
   return (bound == Bound::low ? left_over < -tolerance : left_over > tolerance) ? Bound::free : bound;
 }
 
-// Of the rows that are free, with what those at bounds do to them: the lower half of the matrix, and the right side.
-void BoundedSystem::gather_free() {
+// What is left of the right side with what those at bounds do to it.
+void BoundedSystem::find_rest() {
   rest_ = b;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
     if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) rest_.noalias() -= x[k] * a.col(k);
   }
+}
+
+// The systems are small: what Eigen does to be fast with large ones takes longer. A block of a column is finished in registers.
+void BoundedSystem::factor_free() {
+  using Block = Eigen::Array<double, block, 1>;
   const auto count = static_cast<Eigen::Index>(free_.size());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index row = free_[static_cast<std::size_t>(i)];
-    found_[i] = rest_[row];
-    const double* from = a.col(row).data();
-    double* to = part_.col(i).data();
-    for (Eigen::Index k = i; k < count; ++k) to[k] = from[free_[static_cast<std::size_t>(k)]];
+  const Eigen::Index stride = stride_;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    double* to = column(j);
+    const double* from = a.col(free_[static_cast<std::size_t>(j)]).data();
+    for (Eigen::Index i = j; i < count; ++i) to[i] = from[free_[static_cast<std::size_t>(i)]];
+    to[count] = rest_[free_[static_cast<std::size_t>(j)]];
+    std::fill_n(to + count + 1, block - 1, 0.0);
+    for (Eigen::Index i = j; i <= count; i += block) {
+      Block sum = Eigen::Map<const Block>(to + i);
+      const double* share = part_.data() + j;
+      const double* rows = part_.data() + i;
+      for (Eigen::Index k = j; k > 0; --k, share += stride, rows += stride) sum -= *share * Eigen::Map<const Block>(rows);
+      Eigen::Map<Block>(to + i) = sum;
+    }
+    const double inverse = 1 / std::sqrt(to[j]);
+    for (Eigen::Index i = j + 1; i <= count; i += 1) to[i] *= inverse;
+    to[j] = inverse;
+    found_[j] = to[count];
+  }
+  factored_ = free_;
+}
+
+// With the factor that is there.
+void BoundedSystem::find_forward() {
+  const auto count = static_cast<Eigen::Index>(free_.size());
+  for (Eigen::Index j = 0; j < count; ++j) found_[j] = rest_[free_[static_cast<std::size_t>(j)]];
+  for (Eigen::Index j = 0; j < count; ++j) {
+    found_[j] *= column(j)[j];
+    const Eigen::Index below = count - j - 1;
+    found_.segment(j + 1, below).noalias() -= found_[j] * Eigen::Map<const Eigen::VectorXd>(column(j) + j + 1, below);
   }
 }
 
-// Cholesky's factor in place, and with it the solution. The systems are small: what Eigen does to be fast with large ones takes longer.
-void BoundedSystem::solve_part() {
+void BoundedSystem::find_backward() {
   const auto count = static_cast<Eigen::Index>(free_.size());
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const Eigen::Index below = count - j - 1;
-    auto column = part_.col(j).segment(j + 1, below);
-    const double inverse = 1 / std::sqrt(part_(j, j));
-    part_(j, j) = inverse;
-    column *= inverse;
-    found_[j] *= inverse;
-    found_.segment(j + 1, below).noalias() -= found_[j] * column;
-    for (Eigen::Index k = j + 1; k < count; ++k)
-      part_.col(k).segment(k, count - k).noalias() -= part_(k, j) * part_.col(j).segment(k, count - k);
-  }
   for (Eigen::Index j = count - 1; j >= 0; --j) {
     const Eigen::Index below = count - j - 1;
-    found_[j] = (found_[j] - part_.col(j).segment(j + 1, below).dot(found_.segment(j + 1, below))) * part_(j, j);
+    const Eigen::Map<const Eigen::VectorXd> factor(column(j) + j + 1, below);
+    found_[j] = (found_[j] - factor.dot(found_.segment(j + 1, below))) * column(j)[j];
   }
 }
 
@@ -75,8 +101,9 @@ void BoundedSystem::solve_free() {
   }
   if (!has_moved) return;
   solved_ = bounds;
-  gather_free();
-  solve_part();
+  find_rest();
+  free_ == factored_ ? find_forward() : factor_free();
+  find_backward();
   for (std::size_t i = 0; i < free_.size(); ++i) x[free_[i]] = found_[static_cast<Eigen::Index>(i)];
 }
 

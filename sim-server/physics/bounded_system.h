@@ -23,15 +23,20 @@ struct BoundedSystem {
   bool solve();
 
  private:
-  void gather_free();
-  void solve_part();
+  void find_rest();
+  void factor_free();
+  void find_forward();
+  void find_backward();
   void solve_free();
   std::size_t turn_wrong(bool one_at_a_time);
+  double* column(Eigen::Index free) { return part_.data() + free * stride_; }
 
-  std::vector<Bound> solved_;  // for which `x` is right, with the values of the bounds
-  // Of the free rows; storage is kept.
-  std::vector<Eigen::Index> free_;
-  Eigen::MatrixXd part_;
+  std::vector<Bound> solved_;                  // for which `x` is right, with the values of the bounds
+  std::vector<Eigen::Index> free_, factored_;  // rows; those that `part_` is the factor of
+  // Storage is kept. Of the free rows: Cholesky's factor, with 1 / the diagonal, and below it a row with the right side, then zeros, which
+  // whole blocks of rows are computed with.
+  Eigen::VectorXd part_;
+  Eigen::Index stride_ = 0;
   Eigen::VectorXd found_, rest_;
 };
 
