@@ -10,6 +10,7 @@
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/guarded_transport.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/sequences.h"
 #include "core/component_argument.h"
 #include "core/config_keys.h"
 #include "core/key_limits.h"
@@ -28,17 +29,10 @@ constexpr std::chrono::seconds creation_timeout{10};
 constexpr std::chrono::seconds deletion_timeout{2};  // of one slave
 constexpr std::chrono::seconds modules_timeout{30};  // each module is read in a process of its own
 
-template <class Sequence, class Element>
-void append(Sequence& sequence, const Element& element) {
-  const auto length = sequence.length();
-  sequence.length(length + 1);
-  sequence[length] = element;
-}
-
 // The reference is nil when the component has just been finalized.
 void append_component(RTC::RTCList& list, const RTC::Managed& component) {
   RTC::RTObject_var reference = component.reference();
-  if (!CORBA::is_nil(reference)) append(list, reference);
+  if (!CORBA::is_nil(reference)) corba::append(list, reference);
 }
 
 RTM::ModuleProfileList_var to_profiles(const std::vector<coil::Properties>& modules) {
@@ -195,7 +189,7 @@ void ManagerServant::append_from_slaves(List& list, Ask ask) {
     }
   });
   for (auto& theirs : answers) {
-    for (CORBA::ULong i = 0; theirs && i < (*theirs)->length(); ++i) append(list, (*theirs)[i]);
+    for (CORBA::ULong i = 0; theirs && i < (*theirs)->length(); ++i) corba::append(list, (*theirs)[i]);
   }
 }
 
@@ -292,7 +286,7 @@ RTC::ComponentProfileList* ManagerServant::get_component_profiles() {
   RTC::ComponentProfileList_var list = new RTC::ComponentProfileList;
   for (const auto& component : manager_.impl_->held_components()) {
     RTC::ComponentProfile_var profile = component->profile();
-    append(list.inout(), profile.in());
+    corba::append(list.inout(), profile.in());
   }
   append_from_slaves(list.inout(), [](RTM::Manager_ptr slave) { return RTC::ComponentProfileList_var(slave->get_component_profiles()); });
   return list._retn();

@@ -14,32 +14,6 @@ namespace {
 
 constexpr std::size_t followers_of_share = 16;
 
-// The iface itself, or a joint of it: arm::joints::elbow is of arm::joints.
-bool is_of(std::string_view name, std::string_view iface_name) {
-  return name == iface_name || (name.starts_with(iface_name) && name.substr(iface_name.size()).starts_with("::"));
-}
-
-// The truth stands beside what robots have, under the same names.
-bool is_named(Device& device, std::string_view iface_name) {
-  const auto type = device.iface().type();
-  return is_of(iface_name, device.iface().name()) && type != shm::IfaceType::truth &&
-         (device.iface().name() == iface_name || type == shm::IfaceType::joints);
-}
-
-base::Error no_iface(const FaultOrder& fault) {
-  return base::Error{"fault " + std::string(shm::row_of(fault.kind).name) + ": the world has no iface " + fault.iface};
-}
-
-// The device, or what stands before it from now on.
-FaultyDevice& with_faults(std::unique_ptr<Device>& device, std::uint64_t seed) {
-  auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
-  if (faulty != nullptr) return *faulty;
-  auto made = std::make_unique<FaultyDevice>(std::move(device), seed);
-  faulty = made.get();
-  device = std::move(made);
-  return *faulty;
-}
-
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options)
@@ -69,9 +43,7 @@ base::Result<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<con
     if (!s->physics_->exists(id)) continue;
     if (auto made = s->make_devices_of(id, dropped); !made) return made.error();
   }
-  for (const FaultOrder& fault : options.faults) {
-    if (!s->can_have_faults(fault.iface)) return no_iface(fault);
-  }
+  if (auto checked = s->check_faults(); !checked) return checked.error();
   s->sort_devices();
   s->standing_ = standing_wrenches_of(*s->world_, dropped);
   for (ModelId id = 0; id < s->initial_models_; ++id) {
@@ -105,10 +77,7 @@ base::Result<void> Simulation::make_devices_of(ModelId model, std::vector<std::s
   if (!made) return made.error();
   for (auto& device : *made) {
     device->iface().set_resets(resets_);
-    for (const FaultOrder& fault : options_.faults) {
-      if (!is_named(*device, fault.iface)) continue;
-      if (const auto added = with_faults(device, options_.seed).add(fault); !added) return added;
-    }
+    if (const auto added = add_first_faults(device); !added) return added;
     devices_.push_back(std::move(device));
   }
   for (const JointHold& hold : joint_holds_of(*physics_, model, left_out)) holds_.push_back(hold);
@@ -306,57 +275,6 @@ base::Result<void> Simulation::reset(std::vector<std::string>& notes) {
     device->iface().set_resets(resets_);
   }
   return restore_faults();
-}
-
-// Those of the options, whatever has been added and ended since.
-base::Result<void> Simulation::restore_faults() {
-  for (auto& device : devices_) {
-    auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
-    if (faulty == nullptr) continue;
-    faulty->end([](const FaultOrder&) { return true; });
-    for (const FaultOrder& fault : options_.faults) {
-      if (!is_named(*device, fault.iface)) continue;
-      if (const auto added = faulty->add(fault); !added) return added;
-    }
-  }
-  return {};
-}
-
-bool Simulation::can_have_faults(std::string_view name) const {
-  return std::ranges::any_of(devices_, [&](const auto& device) { return is_named(*device, name); });
-}
-
-base::Result<void> Simulation::add_fault(const FaultOrder& fault) {
-  const auto place = std::ranges::find_if(devices_, [&](const auto& device) { return is_named(*device, fault.iface); });
-  if (place == devices_.end()) return no_iface(fault);
-  FaultyDevice& device = with_faults(*place, options_.seed);
-  sort_devices();  // it may be another one
-  return device.replace(fault, time_);
-}
-
-std::size_t Simulation::end_faults(std::string_view iface_name, std::optional<shm::FaultKind> kind) {
-  std::size_t count = 0;
-  for (const auto& device : devices_) {
-    auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
-    if (faulty == nullptr || !(iface_name.empty() || is_named(*device, iface_name))) continue;
-    count += faulty->end([&](const FaultOrder& order) {
-      const bool is_meant = iface_name.empty() || is_of(order.iface, iface_name);
-      return is_meant && (!kind || order.kind == *kind) && order.until > time_;
-    });
-  }
-  return count;
-}
-
-std::vector<FaultOrder> Simulation::faults() const {
-  std::vector<FaultOrder> faults;
-  for (const auto& device : devices_) {
-    const auto* faulty = dynamic_cast<const FaultyDevice*>(device.get());
-    if (faulty == nullptr) continue;
-    for (const FaultOrder& order : faulty->orders()) {
-      if (order.until > time_) faults.push_back(order);
-    }
-  }
-  return faults;
 }
 
 void Simulation::reset_poses() {

@@ -111,6 +111,8 @@ class Simulation {
   Simulation(std::shared_ptr<const WorldDef> world, shm::Server& shm, const SimulationOptions& options);
   base::Result<void> make_devices_of(ModelId model, std::vector<std::string>& left_out);
   void note_absent_models(std::vector<std::string>& notes, std::vector<std::string>& dropped) const;
+  base::Result<void> check_faults() const;
+  base::Result<void> add_first_faults(std::unique_ptr<Device>& device) const;
   base::Result<void> restore_faults();
   base::Result<ModelId> spawn_whole(const ModelDef& model, std::vector<std::string>& notes);
   void sort_devices();

@@ -13,6 +13,7 @@
 #include "corba/transport/transport.h"
 #include "run/module_files.h"
 #include "run/same_math.h"
+#include "run/stopped_process.h"
 #include "run/time_members.h"
 #include "run/warm_program.h"
 
@@ -84,6 +85,27 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
   auto started = start_program(hooks_.warm, {host_words(settings), environment, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
+  return {};
+}
+
+Result<void> RunHosts::start_all(const Members& all) {
+  Members together;
+  for (const auto* component : all) {
+    const auto parts = base::split_list(component->id, ':');
+    const auto type = parts.size() >= 4 ? parts[3] : component->instance;
+    const bool is_alone = options_.one_process_each || module_kind(type, options_.module_paths) == ModuleKind::python;
+    if (!is_alone) {
+      together.push_back(component);
+    } else if (const auto started = start(Members{component}); !started) {
+      return started;
+    }
+  }
+  const auto count = std::min(together.size(), static_cast<std::size_t>(options_.hosts));
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(i * together.size() / count),
+               end = static_cast<std::ptrdiff_t>((i + 1) * together.size() / count);
+    if (const auto started = start(Members(together.begin() + begin, together.begin() + end)); !started) return started;
+  }
   return {};
 }
 
@@ -267,6 +289,15 @@ std::set<std::string> instances_of(const RunHosts::Members& members) {
   std::set<std::string> instances;
   for (const auto* member : members) instances.insert(member->instance);
   return instances;
+}
+
+std::string who_is_stopped(const std::vector<RunningSystem::Process>& processes) {
+  std::string text;
+  for (const auto& one : processes) {
+    const auto stopped = one.pid > 0 ? stopped_process(one.pid) : std::nullopt;
+    if (stopped) text += one.what + " (pid " + std::to_string(*stopped) + ") is stopped, by a signal or a debugger; ";
+  }
+  return text;
 }
 
 }  // namespace tools

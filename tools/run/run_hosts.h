@@ -29,6 +29,8 @@ class RunHosts {
 
   // Returns before the components are there.
   Result<void> start(const Members& members);
+  // In as many processes as was asked for, except that each component of Python has one of its own: they would share an interpreter.
+  Result<void> start_all(const Members& all);
   // A host of what is none of the system's components. `names`: what is in it, for messages.
   Result<void> start(const std::vector<std::string>& creations, const std::string& names);
   // With SIGKILL. What was in it.
@@ -91,5 +93,7 @@ class RunHosts {
 
 std::string names_of(const RunHosts::Members& members);
 std::set<std::string> instances_of(const RunHosts::Members& members);
+// Whoever is stopped, to be named before those who wait for it: "process of Alien (pid 12) is stopped, by a signal or a debugger; "
+std::string who_is_stopped(const std::vector<RunningSystem::Process>& processes);
 
 }  // namespace tools

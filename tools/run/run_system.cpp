@@ -15,7 +15,6 @@
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
-#include "run/module_files.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -28,7 +27,6 @@
 #include "run/run_simulator.h"
 #include "run/run_wiring.h"
 #include "run/stepping.h"
-#include "run/stopped_process.h"
 #include "system/profile/system_template.h"
 #include "system/reporter.h"
 #include "system/saved_system.h"
@@ -180,17 +178,7 @@ class Run final : public RunningSystem {
 
   Stepping stepping(std::function<void(double)> passed) {
     return {options_.in_real_time, options_.hang_timeout_s, [this] { return check_children(); }, std::move(passed),
-            [this](const std::string& text) { reporter_.warn(who_is_stopped() + text); }};
-  }
-
-  // Whoever is stopped is named before those who wait for it. "process of Alien (pid 12) is stopped, by a signal or a debugger; "
-  std::string who_is_stopped() const {
-    std::string text;
-    for (const auto& one : processes()) {
-      const auto stopped = one.pid > 0 ? stopped_process(one.pid) : std::nullopt;
-      if (stopped) text += one.what + " (pid " + std::to_string(*stopped) + ") is stopped, by a signal or a debugger; ";
-    }
-    return text;
+            [this](const std::string& text) { reporter_.warn(who_is_stopped(processes()) + text); }};
   }
 
   // For the commands of the user, and for whoever looks at a run afterwards.
@@ -249,28 +237,6 @@ class Run final : public RunningSystem {
     return foreign_.empty() ? Result<void>() : hosts_.start(foreign_.creations(simulator_.id()), "the contexts of third-party components");
   }
 
-  // In as many processes as was asked for, except that each component of Python has one of its own: they would share an interpreter.
-  Result<void> start_hosts_of(const RunHosts::Members& all) {
-    RunHosts::Members together;
-    for (const auto* component : all) {
-      const auto parts = base::split_list(component->id, ':');
-      const auto type = parts.size() >= 4 ? parts[3] : component->instance;
-      const bool is_alone = options_.one_process_each || module_kind(type, options_.module_paths) == ModuleKind::python;
-      if (!is_alone) {
-        together.push_back(component);
-      } else if (const auto started = hosts_.start(RunHosts::Members{component}); !started) {
-        return started;
-      }
-    }
-    const auto count = std::min(together.size(), static_cast<std::size_t>(options_.hosts));
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto begin = static_cast<std::ptrdiff_t>(i * together.size() / count),
-                 end = static_cast<std::ptrdiff_t>((i + 1) * together.size() / count);
-      if (const auto started = hosts_.start(RunHosts::Members(together.begin() + begin, together.begin() + end)); !started) return started;
-    }
-    return {};
-  }
-
   Result<void> start_hosts() {
     RunHosts::Members all;
     for (const auto& component : system_.components) {
@@ -278,7 +244,7 @@ class Run final : public RunningSystem {
     }
     if (system_.components.empty()) return fail("system " + options_.system + ": has no components");
     if (const auto started = start_time_host(); !started) return started;
-    if (const auto started = start_hosts_of(all); !started) return started;
+    if (const auto started = hosts_.start_all(all); !started) return started;
     std::vector<std::string> expected = foreign_.proxies();
     for (const auto* component : all) expected.push_back(component->instance);
     if (const auto there = await_components(expected, start_limit()); !there) return there;
@@ -426,7 +392,7 @@ class Run final : public RunningSystem {
       if (!is_stopped_in_a_step_) return stepped;
       const auto now = simulator_.now();
       result_.simulated_s = now ? now->time_s : std::max(last, result_.simulated_s);
-      return fail(who_is_stopped() + stepped.error().message + hosts_.who_is_waited_for(system_) +
+      return fail(who_is_stopped(processes()) + stepped.error().message + hosts_.who_is_waited_for(system_) +
                   foreign_.who_may_be_waited_for(system_, late_participants(simulator_)));
     }
     reporter_.end_progress();

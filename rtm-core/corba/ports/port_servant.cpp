@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "corba/orb/nv_list.h"
 #include "corba/orb/object_names.h"
+#include "corba/orb/sequences.h"
 #include "corba/ports/connector_keys.h"
 #include "corba/ports/farewell.h"
 #include "corba/ports/peer_watch.h"
@@ -18,8 +19,8 @@
 namespace corba {
 namespace {
 
-constexpr std::size_t usual_limit =
-    4096;  // of connections, unless connection_limit says otherwise: each takes memory, and may have a thread
+// Of connections, unless connection_limit says otherwise: each takes memory, and may have a thread.
+constexpr std::size_t usual_limit = 4096;
 
 // For others to let go of a port that dies. They do at once, unless the POA was destroyed before.
 constexpr auto longest_wait = std::chrono::seconds(10);
@@ -42,13 +43,6 @@ bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
   if (!checked) base::log(base::Level::warn, port, "refused: {}", checked.error().message);
   return bool(checked);
-}
-
-template <class T>
-void append(_CORBA_Unbounded_Sequence<T>& sequence, const T& element) {
-  const CORBA::ULong length = sequence.length();
-  sequence.length(length + 1);
-  sequence[length] = element;
 }
 
 }  // namespace
@@ -157,7 +151,7 @@ bool PortServant::add_interface(const std::string& instance, const std::string& 
   added.instance_name = instance.c_str();
   added.type_name = type.c_str();
   added.polarity = polarity;
-  append<RTC::PortInterfaceProfile>(state->interfaces, added);
+  append(state->interfaces, added);
   return true;
 }
 
@@ -192,8 +186,7 @@ RTC::PortProfile PortServant::profile() const {
     profile.owner = RTC::RTObject::_duplicate(state->owner);
     profile.properties = state->properties;
     for (const auto& connection : state->connections) {
-      if (connection.is_established && !connection.is_leaving)
-        append<RTC::ConnectorProfile>(profile.connector_profiles, connection.profile);
+      if (connection.is_established && !connection.is_leaving) append(profile.connector_profiles, connection.profile);
     }
   }
   complete(profile);
@@ -207,7 +200,7 @@ RTC::PortProfile* PortServant::get_port_profile() {
 
 RTC::ConnectorProfileList* PortServant::get_connector_profiles() {
   RTC::ConnectorProfileList_var list = new RTC::ConnectorProfileList();
-  for (const auto& profile : connections()) append<RTC::ConnectorProfile>(list.inout(), profile);
+  for (const auto& profile : connections()) append(list.inout(), profile);
   return list._retn();
 }
 

@@ -10,10 +10,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <iostream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,7 +20,6 @@
 #include "base/command_line.h"
 #include "base/interrupt.h"
 #include "base/output_name.h"
-#include "base/plain_file.h"
 #include "base/text.h"
 #include "channels/views/world_source.h"
 #include "recording/component_source.h"
@@ -35,6 +32,7 @@
 #include "recording/run_clock.h"
 #include "recording/sample_filters.h"
 #include "rtse/command.h"
+#include "rtse/recorder/attachments.h"
 #include "rtse/recorder/recorder_commands.h"
 #include "shm/client.h"
 #include "shm/lockstep.h"
@@ -49,7 +47,6 @@ using tools::Session;
 
 // How long a port waits for the recorder. In lock step time waits with it, so that nothing is lost; in real time a sample is dropped.
 constexpr std::chrono::seconds lockstep_timeout{10};
-constexpr std::size_t largest_world = 64 << 20;  // [octets] that are attached
 constexpr std::chrono::seconds hashes_limit{60};
 
 struct RecordOptions {
@@ -149,54 +146,6 @@ std::vector<tools::ComponentView> chosen_components(const Session& session, cons
   return chosen;
 }
 
-std::string file_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  return text.size() > largest_world ? std::string() : text;
-}
-
-// Why NAME=FILE cannot be attached; empty: it can.
-std::string attachment_problem(const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos) return "expected NAME=FILE";
-  const auto problem = base::file_problem(text.substr(equals + 1));
-  return problem.empty() ? "" : base::in_quotes(text) + ": " + problem;
-}
-
-base::Result<void> attach_files(mcap::Writer& writer, const RecordOptions& options) {
-  for (const std::string& one : options.attached) {
-    const auto equals = one.find('=');
-    std::ifstream in(one.substr(equals + 1), std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(in)), {});
-    if (const auto done = writer.attach({mcap::Time(0), mcap::Time(0), one.substr(0, equals), "application/octet-stream", text}); !done)
-      return done;
-  }
-  return {};
-}
-
-// What makes the run again: the world, its seed, the programs.
-void attach_run(mcap::Writer& writer, const RecordOptions& options, const RunClock& clock) {
-  mcap::Texts run = {{"clock", clock.is_simulated() ? "simulated" : "wall"}, {"version", RTMSIM_VERSION}};
-  auto simulation = shm::Iface::open(static_cast<std::uint32_t>(options.server_id), shm::IfaceType::simulation, "world");
-  if (simulation) {
-    const auto& info = simulation->info<shm::SimulationInfo>();
-    const auto text = [](const auto& field) { return std::string(field, ::strnlen(field, sizeof field)); };
-    run["world"] = text(info.world);
-    run["world_file"] = text(info.file);
-    run["seed"] = std::to_string(info.seed);
-    run["step_ns"] = std::to_string(info.step_ns);
-    run["lockstep"] = info.lockstep != 0 ? "yes" : "no";
-    run["simulator"] = text(info.version);
-    const std::string world = file_text(text(info.file));
-    if (!world.empty()) (void)writer.attach({mcap::Time(0), mcap::Time(0), "world.sdf", "application/xml", world});
-  }
-  for (const auto& note : options.notes) {
-    const auto equals = note.find('=');
-    run[note.substr(0, equals)] = note.substr(equals + 1);
-  }
-  (void)writer.add_metadata({"run", run});
-}
-
 // Of the components that take part in the lock step: with its phase a sample can be sent again in its place.
 std::map<std::string, std::map<std::string, std::string>> lockstep_facts(const RecordOptions& options) {
   std::map<std::string, std::map<std::string, std::string>> facts;
@@ -289,8 +238,8 @@ base::Result<mcap::Writer> new_file(const std::string& path, const RecordOptions
                                                           : mcap::Compression::none;
   auto writer = mcap::Writer::create(path, {.profile = "", .compression = compression});
   if (!writer) return writer.error();
-  attach_run(*writer, options, clock);
-  if (const auto attached = attach_files(*writer, options); !attached) return attached.error();
+  attach_run(*writer, {static_cast<std::uint32_t>(options.server_id), clock.is_simulated(), options.notes});
+  if (const auto attached = attach_files(*writer, options.attached); !attached) return attached.error();
   return writer;
 }
 

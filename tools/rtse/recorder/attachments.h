@@ -1,0 +1,25 @@
+// What a recording holds beside its samples: files, and what makes the run again. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "recording/mcap/mcap.h"
+
+namespace recorder {
+
+// Why NAME=FILE cannot be attached; empty: it can.
+std::string attachment_problem(const std::string& text);
+base::Result<void> attach_files(mcap::Writer& writer, const std::vector<std::string>& files);
+
+struct RunFacts {
+  std::uint32_t server_id = 0;
+  bool is_simulated = false;       // the clock
+  std::vector<std::string> notes;  // KEY=VALUE
+};
+// What makes the run again: the world, its seed, the programs.
+void attach_run(mcap::Writer& writer, const RunFacts& facts);
+
+}  // namespace recorder
