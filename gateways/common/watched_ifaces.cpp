@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "shm/futex.h"
@@ -48,19 +49,16 @@ bool WatchedIfaces::take_news() {
 void WatchedIfaces::sleep(const std::uint32_t& word, std::uint32_t value, std::chrono::nanoseconds time) const {
   if (is_new_) return;
   if (watched_.empty()) return shm::futex_wait(word, value, time);
-  futex_waitv words[max_futexes] = {};
+  std::array<futex_waitv, max_futexes> words;  // what is not used is not filled: this runs in each step
   unsigned count = 0;
   const auto add = [&](const std::uint32_t& one, std::uint32_t expected) {
-    words[count].uaddr = reinterpret_cast<std::uintptr_t>(&one);
-    words[count].val = expected;
-    words[count].flags = FUTEX_32;
-    ++count;
+    words[count++] = {.val = expected, .uaddr = reinterpret_cast<std::uintptr_t>(&one), .flags = FUTEX_32, .__reserved = 0};
   };
   add(word, value);
   if (watched_.size() < max_futexes) {
     for (const Watched& one : watched_) add(one.segment->header().wake_word, one.seen);
     const timespec end = moment_in(time);
-    if (::syscall(SYS_futex_waitv, words, count, 0, &end, CLOCK_MONOTONIC) >= 0) return;
+    if (::syscall(SYS_futex_waitv, words.data(), count, 0, &end, CLOCK_MONOTONIC) >= 0) return;
     if (errno == EAGAIN || errno == EINTR || errno == ETIMEDOUT) return;
   }
   // More than the kernel takes, or a kernel (or its guard) that does not know the call.
