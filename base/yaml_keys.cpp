@@ -1,5 +1,8 @@
 #include "base/yaml_keys.h"
 
+#include <yaml-cpp/depthguard.h>
+
+#include <ios>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,6 +31,21 @@ void expect_unique_keys(const YAML::Node& root) {
       left.push_back(entry.second);
     }
   }
+}
+
+YAML::Node load_file(const std::string& path) {
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAllFromFile(path);
+  } catch (const std::ios_base::failure&) {
+    throw YAML::BadFile(path);
+  } catch (const YAML::DeepRecursion& wrong) {
+    throw YAML::Exception(wrong.mark, "the file is nested too deeply");
+  }
+  if (documents.empty()) return {};
+  if (documents.size() > 1) throw YAML::Exception(documents[1].Mark(), "one document is expected, got " + std::to_string(documents.size()));
+  expect_unique_keys(documents.front());
+  return documents.front();
 }
 
 }  // namespace yaml

@@ -1,11 +1,16 @@
-// Checks of YAML that yaml-cpp does not make, such as duplicate keys. Any thread.
+// What yaml-cpp does not check: duplicate keys, further documents, files that cannot be read to their end. Any thread.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
+
+#include <string>
 
 namespace yaml {
 
 // Throws a YAML::Exception at a key that a map has twice; of two values the second would be lost without a word.
 void expect_unique_keys(const YAML::Node& root);
+
+// The only document of a file; its keys are unique. Throws YAML::Exception, or YAML::BadFile if the file cannot be read.
+YAML::Node load_file(const std::string& path);
 
 }  // namespace yaml

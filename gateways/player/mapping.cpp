@@ -294,8 +294,7 @@ base::Result<std::vector<ConfiguredPort>> read_config(const std::string& path) {
       for (const std::string& note : notes) base::log(base::Level::warn, "player-gateway", "{}", note);
       return ports;
     }
-    const auto root = YAML::LoadFile(path);
-    yaml::expect_unique_keys(root);
+    const auto root = yaml::load_file(path);
     return configured_ports(root);
   } catch (const Wrong& wrong) {
     return base::Error{path + ":" + std::to_string(wrong.mark.line + 1) + ": " + wrong.what};

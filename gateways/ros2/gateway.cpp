@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -15,7 +16,6 @@
 #include "names.h"
 #include "parameters.h"
 #include "robot_topics.h"
-#include "unknown_names.h"
 
 namespace ros2 {
 namespace {
@@ -263,9 +263,23 @@ void Gateway::name_unknown(const Listed& listed) {
   auto lines = lines_of_unknown_names(options_.naming, options_.waits, known);
   if (turns_ && world_.clock() && world_.clock()->iface().info<shm::SimulationInfo>().lockstep == 0)
     lines.push_back("--lockstep: time does not wait, because the simulator was started without --lockstep");
+  std::ranges::move(lines_of_shared_names(used_names()), std::back_inserter(lines));
   for (const auto& line : lines) {
     if (named_.insert(line).second) base::log(base::Level::warn, "ros2-gateway", "{}", line);
   }
+}
+
+UsedNames Gateway::used_names() const {
+  UsedNames used{{}, command_topics(), {}};
+  const auto add = [&](const Node& node) {
+    for (const auto& writer : node.writers()) used.writers[writer->settings().topic.substr(2)].insert(type_of_ros(writer->settings().type));
+  };
+  add(*node_);
+  for (const auto& robot : robots_) {
+    add(robot->node());
+    if (!options_.naming.has_tf_per_robot) used.frame_prefixes[robot->model()] = options_.naming.names_of(robot->model()).frame_prefix;
+  }
+  return used;
 }
 
 void Gateway::send_static_transforms() {
@@ -382,10 +396,10 @@ void Gateway::report_lost(const Writer& writer) {
   if (more == 0) return;
   std::set<std::string> readers;
   for (const Guid& reader : writer.readers()) readers.insert(graph_->node_of(reader));
-  base::log(base::Level::warn, "ros2-gateway",
-            "{}: {} samples were not confirmed in time by every reader ({}). The longest write took {:.2f} ms",
-            writer.settings().topic.substr(2), more, base::join({readers.begin(), readers.end()}, ", "),
-            std::chrono::duration<double, std::milli>(writer.longest_write()).count());
+  base::log(
+      base::Level::warn, "ros2-gateway", "{}: {} samples were not confirmed in time by every reader ({}). The longest write took {:.2f} ms",
+      writer.settings().topic.substr(2), more, readers.empty() ? "they have left" : base::join({readers.begin(), readers.end()}, ", "),
+      std::chrono::duration<double, std::milli>(writer.longest_write()).count());
 }
 
 // Of a count since the last report. A robot that is made again counts from 0.

@@ -19,6 +19,7 @@
 #include "robot.h"
 #include "simulation.h"
 #include "turns.h"
+#include "unknown_names.h"
 #include "waits.h"
 #include "world.h"
 
@@ -59,6 +60,7 @@ class Gateway {
   void arrange(const Listed& listed);
   void lose();
   void name_unknown(const Listed& listed);
+  UsedNames used_names() const;
   void send_static_transforms();
   void take_samples();
   void send_clock(bool is_forced);

@@ -78,8 +78,8 @@ void add_options(base::Command& app, ros2::Options& options, Typed& typed) {
 
 std::chrono::nanoseconds nanoseconds_of(double seconds) { return std::chrono::nanoseconds(std::llround(seconds * 1e9)); }
 
-base::Result<void> complete(ros2::Options& options, const Typed& typed, bool is_domain_typed, bool is_rate_typed) {
-  if (!typed.config.empty()) {
+base::Result<void> complete(ros2::Options& options, const Typed& typed, bool is_config_typed, bool is_domain_typed, bool is_rate_typed) {
+  if (is_config_typed) {
     auto naming = ros2::read_naming(typed.config);
     if (!naming) return naming.error();
     naming->root_robot = options.naming.root_robot;
@@ -136,7 +136,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   const bool is_domain_typed = app.count("--domain") > 0 || std::getenv("ROS_DOMAIN_ID") != nullptr;
-  if (auto done = complete(options, typed, is_domain_typed, app.count("--clock-rate") > 0); !done) return end_with(done.error(), 2);
+  if (auto done = complete(options, typed, app.count("--config") > 0, is_domain_typed, app.count("--clock-rate") > 0); !done)
+    return end_with(done.error(), 2);
   block_end_signals();
   return ros2::supervise([&] {
     try {

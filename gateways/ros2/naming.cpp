@@ -163,9 +163,7 @@ base::Result<Naming> read_naming(const std::string& path) {
   if (const auto problem = base::file_problem(path); !problem.empty())
     return base::Error{"mapping " + base::in_quotes(path) + ": " + problem};
   try {
-    const auto root = YAML::LoadFile(path);
-    yaml::expect_unique_keys(root);
-    return naming_of(root);
+    return naming_of(yaml::load_file(path));
   } catch (const WrongEntry& wrong) {
     return base::Error{path + ":" + std::to_string(std::max(wrong.mark.line, 0) + 1) + ": " + wrong.what};
   } catch (const YAML::BadFile&) {

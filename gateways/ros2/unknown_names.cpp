@@ -30,4 +30,23 @@ std::vector<std::string> lines_of_unknown_names(const Naming& naming, const std:
   return lines;
 }
 
+std::vector<std::string> lines_of_shared_names(const UsedNames& used) {
+  std::vector<std::string> lines;
+  for (const auto& [topic, types] : used.writers) {
+    const bool is_command = std::ranges::find(used.commands, topic) != used.commands.end();
+    if (types.size() < 2 && !is_command) continue;
+    const std::string what = is_command ? "receives commands and sends " : "has several types: ";
+    lines.push_back("--config: topic " + topic + " " + what + base::join({types.begin(), types.end()}, " and ") +
+                    "; give one of them another ros_topic_name");
+  }
+  std::map<std::string, std::string> owners;  // of frames, by prefix
+  for (const auto& [robot, prefix] : used.frame_prefixes) {
+    const auto [owner, is_first] = owners.emplace(prefix, robot);
+    if (!is_first)
+      lines.push_back("--config: robots " + owner->second + " and " + robot + " have the frame_prefix " + base::in_quotes(prefix) +
+                      ", so their frames on /tf are the same; give one of them another one");
+  }
+  return lines;
+}
+
 }  // namespace ros2

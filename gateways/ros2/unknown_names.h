@@ -1,8 +1,10 @@
-// Names in the mapping file and in options that the world does not have: most are misspelled, others belong to models that come later.
+// Names in the mapping file and in options that do not fit the world: those that it does not have (most are misspelled, others belong to
+// models that come later), and those that two of its parts would share.
 // Pure; any thread.
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,5 +21,15 @@ struct KnownNames {
 
 // A line for each name, with the one that was most likely meant.
 std::vector<std::string> lines_of_unknown_names(const Naming& naming, const std::vector<WaitFor>& waits, const KnownNames& known);
+
+// What the gateway uses.
+struct UsedNames {
+  std::map<std::string, std::set<std::string>> writers;  // types that are published, by topic
+  std::vector<std::string> commands;                     // topics
+  std::map<std::string, std::string> frame_prefixes;     // by robot, of frames on one /tf
+};
+
+// A line for each topic of two types, and for each robot that has the frames of another one.
+std::vector<std::string> lines_of_shared_names(const UsedNames& used);
 
 }  // namespace ros2

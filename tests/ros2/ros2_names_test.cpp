@@ -139,6 +139,9 @@ TEST_F(Ros2Mapping, errors_name_the_line_and_what_was_expected) {
   EXPECT_EQ(read_naming("/").error().message, "mapping \"/\": is a folder; a file is expected");
   EXPECT_EQ(read_naming("/nowhere/at/all.yaml").error().message,
             "mapping \"/nowhere/at/all.yaml\": no such file; there is no folder \"/nowhere/at\"");
+  EXPECT_EQ(read_naming("/proc/self/mem").error().message, "mapping \"/proc/self/mem\" cannot be read");
+  EXPECT_EQ(error("domain: 5\n---\ndomain: 6\n"), ":3: one document is expected, got 2");
+  EXPECT_EQ(error(std::string(5000, '[')), ":1: the file is nested too deeply");
 }
 
 TEST(Ros2UnknownNames, names_that_the_world_does_not_have_are_listed) {
@@ -164,6 +167,20 @@ TEST(Ros2UnknownNames, names_that_the_world_has_draw_no_line) {
   naming.topics = {{.iface = "leader::laser"}, {.iface = "leader::laser", .type = "sensor_msgs/msg/LaserScan"}};
   const KnownNames known{{"leader"}, {"leader::laser"}, {"/cmd_vel"}, {{"leader::laser", {"sensor_msgs/msg/LaserScan"}}}};
   EXPECT_EQ(lines_of_unknown_names(naming, {{"cmd_vel", milliseconds(50)}}, known), std::vector<std::string>());
+}
+
+TEST(Ros2UnknownNames, a_topic_has_one_type_and_a_frame_one_robot) {
+  const std::map<std::string, std::set<std::string>> writers = {{"/clock", {"rosgraph_msgs/msg/Clock", "sensor_msgs/msg/LaserScan"}},
+                                                                {"/r/cmd_vel", {"sensor_msgs/msg/Imu"}},
+                                                                {"/scan", {"sensor_msgs/msg/LaserScan"}}};
+  EXPECT_EQ(
+      lines_of_shared_names({writers, {"/r/cmd_vel"}, {{"a", "x/"}, {"b", ""}, {"c", "x/"}}}),
+      (std::vector<std::string>{
+          "--config: topic /clock has several types: rosgraph_msgs/msg/Clock and sensor_msgs/msg/LaserScan; give one of them another "
+          "ros_topic_name",
+          "--config: topic /r/cmd_vel receives commands and sends sensor_msgs/msg/Imu; give one of them another ros_topic_name",
+          "--config: robots a and c have the frame_prefix \"x/\", so their frames on /tf are the same; give one of them another one"}));
+  EXPECT_EQ(lines_of_shared_names({{{"/scan", {"sensor_msgs/msg/LaserScan"}}}, {"/r/cmd_vel"}, {{"a", ""}}}), std::vector<std::string>());
 }
 
 }  // namespace

@@ -140,8 +140,7 @@ class YamlReader {
   explicit YamlReader(std::string file) : file_(std::move(file)) {}
 
   Result<NewComponent> read() {
-    const auto root = YAML::LoadFile(file_);
-    yaml::expect_unique_keys(root);
+    const auto root = yaml::load_file(file_);
     only(root, {"name", "description", "version", "vendor", "category", "rate", "in_ports", "out_ports", "parameters", "services",
                 "idl_files", "actions"});
     NewComponent component;
