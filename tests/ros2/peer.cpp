@@ -1,14 +1,15 @@
 // A participant of Cyclone DDS that reads and writes any type as bytes: the peer of another make for tests of ros2-gateway. It knows
 // nothing of our encoders. Commands come by standard input, events go to standard output; a line each.
 //
-//   reader NAME TOPIC TYPE reliable|best_effort volatile|transient USER_DATA   -> "sample NAME WRITER_GUID HEX" for each, with the CDR head
-//   writer NAME TOPIC TYPE reliable|best_effort volatile|transient USER_DATA   -> "writer NAME GUID"
+//   reader NAME TOPIC TYPE reliable|best_effort DURABILITY USER_DATA   -> "sample NAME WRITER_GUID HEX" for each, with the CDR head
+//   writer NAME TOPIC TYPE reliable|best_effort DURABILITY USER_DATA   -> "writer NAME GUID"
 //   put NAME HEX
 //   matched NAME                                                               -> "matched NAME COUNT"
 //   peers                                                                      -> "peer writer|reader TOPIC TYPE GUID USER_DATA", then
 //   "end"
 //
-// A USER_DATA of "-" is none. The participant has the user data of its second argument; the first one is the domain.
+// DURABILITY is volatile or transient, or a policy of a volatile endpoint: deadline, lease or manual (of liveliness), exclusive. A
+// USER_DATA of "-" is none. The participant has the user data of its second argument; the first one is the domain.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
@@ -171,6 +172,10 @@ dds_qos_t* make_qos(const std::string& reliability, const std::string& durabilit
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, reliability == "reliable" ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_SECS(1));
   dds_qset_durability(qos, durability == "transient" ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  if (durability == "deadline") dds_qset_deadline(qos, DDS_MSECS(100));
+  if (durability == "lease") dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_SECS(1));
+  if (durability == "manual") dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY);
+  if (durability == "exclusive") dds_qset_ownership(qos, DDS_OWNERSHIP_EXCLUSIVE);
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1000);
   dds_qset_writer_data_lifecycle(qos, false);
   if (user_data != "-") dds_qset_userdata(qos, user_data.data(), user_data.size());

@@ -100,4 +100,22 @@ def families():
             await_("the report", lambda: "Nodes of both cannot share a domain" in rig.log(rig.process))
 
 
+# A subscriber that can never receive a topic of ours has a line in the log, with the policy. So has a publisher of commands.
+def policies():
+    with Rig() as rig:
+        rig.sim(two)
+        rig.gateway("--distro", "jazzy", robots=2)
+        peer = rig.peer()
+        for policy, words in (("deadline", "a deadline"), ("lease", "a lease of liveliness"), ("manual", "manual liveliness"), ("exclusive", "exclusive ownership")):
+            peer.reader(policy, "rt/leader/scan", wire.type_on_wire("sensor_msgs/LaserScan"), durability=policy)
+            await_(policy, lambda: f"/leader/scan has the default QoS, but {words} is requested by a reader" in rig.log(rig.process))
+            assert not peer.samples[policy]
+        peer.writer("command", "rt/leader/cmd_vel", wire.type_on_wire("geometry_msgs/Twist"), durability="exclusive")
+        await_("the writer", lambda: "/leader/cmd_vel has the default QoS, but exclusive ownership is offered by a writer" in rig.log(rig.process))
+        # What is offered beyond the default fits.
+        peer.writer("strict", "rt/leader/cmd_vel", wire.type_on_wire("geometry_msgs/Twist"), durability="deadline")
+        peer.await_matched("strict")
+        assert "deadline is offered" not in rig.log(rig.process)
+
+
 globals()[case]()

@@ -262,6 +262,17 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   rtps::RTPSReader* reader_ = nullptr;
 };
 
+// Policies beside reliability and durability; ours have the defaults of DDS. A reader that requests more is not matched.
+std::string special_of(const eprosima::fastrtps::ReaderQos& qos) {
+  if (qos.m_deadline.period < eprosima::fastrtps::c_TimeInfinite) return "a deadline";
+  if (qos.m_liveliness.kind != dds::AUTOMATIC_LIVELINESS_QOS) return "manual liveliness";
+  if (qos.m_liveliness.lease_duration < eprosima::fastrtps::c_TimeInfinite) return "a lease of liveliness";
+  return qos.m_ownership.kind != dds::SHARED_OWNERSHIP_QOS ? "exclusive ownership" : "";
+}
+std::string special_of(const eprosima::fastrtps::WriterQos& qos) {
+  return qos.m_ownership.kind != dds::SHARED_OWNERSHIP_QOS ? "exclusive ownership" : "";
+}
+
 // ---- the participant ----
 
 class LogLines final : public dds::LogConsumer {
@@ -400,7 +411,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
     const auto& data = info.m_qos.m_userData;
     inbox_.put(Peer{guid, is_writer, is_gone, info.topicName().to_string(), info.typeName().to_string(),
                     std::string(data.begin(), data.end()), info.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
-                    info.m_qos.m_durability.kind != dds::VOLATILE_DURABILITY_QOS});
+                    info.m_qos.m_durability.kind != dds::VOLATILE_DURABILITY_QOS, special_of(info.m_qos)});
   }
   void onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
     put_peer(info.info, false, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);

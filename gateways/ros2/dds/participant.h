@@ -65,6 +65,7 @@ struct Peer {
   bool is_gone = false;
   std::string topic, type, user_data;
   bool is_reliable = false, is_transient = false;
+  std::string special{};  // what it requests or offers that endpoints of ours never fit: "a deadline"; empty for none
 };
 
 // What relates a reply of a service to its request, in the form of rmw_fastrtps.
