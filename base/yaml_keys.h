@@ -1,4 +1,4 @@
-// What yaml-cpp does not check: duplicate keys, further documents, files that cannot be read to their end. Any thread.
+// Reads YAML, and checks what yaml-cpp does not: duplicate keys, further documents, files with a read error. Any thread.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
