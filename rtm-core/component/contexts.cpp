@@ -98,8 +98,7 @@ base::Guarded<std::vector<ExecutionContextBase*>, base::Rank::objects>& left_con
 
 // What the context asks of others on the way (detach_context) is its own affair; these calls end in time.
 void leaveRemoteContext(ExecutionContext_ptr reference, RTObject_ptr self, const LastCalls& calls) {
-  const CORBA::Object_var own = corba::copy_with_timeout(reference, calls.timeout());
-  const ExecutionContext_var context = ExecutionContext::_unchecked_narrow(own);
+  const ExecutionContext_var context = corba::copy_as<ExecutionContext>(reference, calls.timeout());
   const LifeCycleState state = context->get_component_state(self);
   corba::set_call_timeout(context, calls.timeout());
   switch (state) {

@@ -325,8 +325,8 @@ struct AmongTheSilent : ComponentTest {
     const CORBA::Object_var silent = object("IDL:omg.org/RTC/ExecutionContextService:1.0");
     return RTC::ExecutionContext::_unchecked_narrow(silent);
   }
-  SDOPackage::Organization_ptr organization() {
-    const CORBA::Object_var silent = object("IDL:org.omg/SDOPackage/Organization:1.0");
+  SDOPackage::Organization_ptr organization(const char* type = "IDL:org.omg/SDOPackage/Organization:1.0") {
+    const CORBA::Object_var silent = object(type);
     return SDOPackage::Organization::_unchecked_narrow(silent);
   }
   support::Silence silence;
@@ -359,6 +359,17 @@ TEST_F(AmongTheSilent, a_component_leaves_in_time) {
   EXPECT_EQ(probe->exit(), RTC::RTC_OK);
   EXPECT_LT(std::chrono::steady_clock::now() - began, 12s) << "half of what all of them take, one after the other";
   EXPECT_EQ(probe->count("onFinalize"), 1);
+}
+
+// The ORB narrows such a reference to a further one, with the call timeout of the process.
+TEST_F(AmongTheSilent, a_component_leaves_in_time_when_references_name_another_type) {
+  probe->getProperties()["exec_cxt.callback_timeout"] = "0.2";
+  probe->initialize();
+  SDOPackage::Configuration_var configuration = probe->get_configuration();
+  configuration->add_organization(SDOPackage::Organization_var(organization("IDL:omg.org/RTC/PortService:1.0")));
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(probe->exit(), RTC::RTC_OK);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 10s) << "the call timeout of the process";
 }
 
 TEST_F(ComponentContextTest, leaves_foreign_ones_when_it_exits) {

@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "corba/members/action_call.h"
 #include "corba/orb/call_timeout.h"
-#include "corba/orb/orb.h"
 #include "corba/orb/return_code.h"
 #include "corba/ports/peer_watch.h"
 #include "rtm/idl/SDOPackageStub.h"
@@ -50,8 +49,7 @@ CORBA::Object_ptr copy_with_timeout(CORBA::Object_ptr object, std::chrono::milli
 }
 
 RTC::LightweightRTObject_ptr RemoteParticipant::with_timeout(RTC::LightweightRTObject_ptr component, std::chrono::milliseconds timeout) {
-  CORBA::Object_var own = copy_with_timeout(component, timeout);
-  return RTC::LightweightRTObject::_unchecked_narrow(own);
+  return copy_as<RTC::LightweightRTObject>(component, timeout);
 }
 
 void MemberTimeout::set(std::chrono::nanoseconds limit) {

@@ -21,6 +21,7 @@
 #include "base/guarded.h"
 #include "base/result.h"
 #include "corba/members/member_watch.h"
+#include "corba/orb/orb.h"
 #include "core/execution_context.h"
 #include "rtm/idl/RTCStub.h"
 
@@ -34,6 +35,15 @@ inline constexpr std::string_view threw_mark = ": component of another process t
 
 // A reference of its own to the same object, whose calls end after `timeout` and throw CORBA system exceptions; nil for nil.
 CORBA::Object_ptr copy_with_timeout(CORBA::Object_ptr object, std::chrono::milliseconds timeout);
+// The same as a reference to an `Interface`, unchecked. If the object's reference names another type, the ORB narrows to a further
+// reference, which has no timeout of its own.
+template <class Interface>
+typename Interface::_ptr_type copy_as(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
+  const CORBA::Object_var own = copy_with_timeout(object, timeout);
+  typename Interface::_var_type narrowed = Interface::_unchecked_narrow(own);
+  if (!CORBA::is_nil(narrowed)) set_call_timeout(narrowed, timeout);
+  return narrowed._retn();
+}
 
 // How long members of other processes may take for one callback. Any thread, at any time.
 class MemberTimeout {

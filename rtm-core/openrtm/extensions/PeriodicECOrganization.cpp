@@ -79,13 +79,11 @@ class MemberSearch {
 
  private:
   void look_into(SDO_ptr component) {
-    CORBA::Object_var asked = corba::copy_with_timeout(component, answer_time);
-    SDO_var sdo = SDO::_unchecked_narrow(asked);
+    const SDO_var sdo = corba::copy_as<SDO>(component, answer_time);
     OrganizationList_var organizations = sdo->get_owned_organizations();
     for (CORBA::ULong i = 0; i < organizations->length() && !is_found_ && !is_late(); ++i) {
-      asked = corba::copy_with_timeout(organizations[i], answer_time);
-      if (CORBA::is_nil(asked)) continue;
-      Organization_var organization = Organization::_unchecked_narrow(asked);
+      const Organization_var organization = corba::copy_as<Organization>(organizations[i], answer_time);
+      if (CORBA::is_nil(organization)) continue;
       CORBA::String_var id = organization->get_organization_id();
       is_found_ = id.in() == wanted_;
       if (is_found_ || !seen_.insert(id.in()).second) continue;

@@ -228,8 +228,7 @@ void RTObject_impl::leaveOrganizations(std::chrono::steady_clock::time_point dea
   for (const SDOPackage::Organization_var& organization : organizations) {
     if (calls.are_over()) return;
     try {
-      const CORBA::Object_var own = corba::copy_with_timeout(organization, calls.timeout());
-      const SDOPackage::Organization_var target = SDOPackage::Organization::_unchecked_narrow(own);
+      const SDOPackage::Organization_var target = corba::copy_as<SDOPackage::Organization>(organization, calls.timeout());
       target->remove_member(getInstanceName());
     } catch (const CORBA::Exception& exception) {
       RTC_DEBUG(("an organization does not let the component go: %s", corba::to_text(exception).c_str()));
