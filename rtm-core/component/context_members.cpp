@@ -13,6 +13,7 @@
 #include "corba/orb/orb.h"
 #include "corba/orb/return_code.h"
 #include "core/key_limits.h"
+#include "core/refusal_log.h"
 
 namespace RTC {
 
@@ -193,7 +194,9 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   const Joining joining(impl_->shared, comp);
   if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
   if (impl_->context.members().size() >= rt::entry_limits.members) {
-    RTC_ERROR(("a further component is refused: the context has %zu, the most that may be", rt::entry_limits.members));
+    rt::log_refusal(
+        rtclog, RTC::Logger::RTL_ERROR,
+        "a further component is refused: the context has " + std::to_string(rt::entry_limits.members) + ", the most that may be");
     return RTC::RTC_ERROR;
   }
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
@@ -218,7 +221,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
         participant = std::make_shared<corba::RemoteParticipant>(comp, member.handle, impl_->member_timeout, impl_->member_watch());
     }
   } catch (const CORBA::Exception& exception) {
-    RTC_ERROR(("a component that is to join does not answer: %s", corba::to_text(exception).c_str()));
+    rt::log_refusal(rtclog, RTC::Logger::RTL_ERROR, "a component that is to join does not answer: " + corba::to_text(exception));
     if (member.handle >= 0) Impl::detach(member, rtclog);
     return RTC::RTC_ERROR;
   }

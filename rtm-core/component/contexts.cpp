@@ -366,7 +366,9 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     }
   }
   if (id < 0) {
-    RTC_ERROR(("a further execution context is refused: the component participates in %zu, the maximum", most_memberships));
+    rt::log_refusal(
+        rtclog, Logger::RTL_ERROR,
+        "a further execution context is refused: the component participates in " + std::to_string(most_memberships) + ", the maximum");
     return -1;
   }
   chooseClock();

@@ -86,7 +86,8 @@ bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
       return true;
     }
   }
-  RTC_ERROR(("a further organization is refused: the component is in %zu, the most that may be", most_memberships));
+  rt::log_refusal(rtclog, Logger::RTL_ERROR,
+                  "a further organization is refused: the component is in " + std::to_string(most_memberships) + ", the most that may be");
   return false;
 }
 

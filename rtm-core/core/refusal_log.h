@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/guarded.h"
+#include "base/log.h"
 
 namespace rt {
 
@@ -16,17 +18,34 @@ class RefusalLog {
   explicit RefusalLog(unsigned burst = 1) : burst_(burst) {}
 
   // The number of refusals that were left out before this one; nothing: this one is left out.
-  std::optional<std::uint64_t> next(std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now());
+  std::optional<std::uint64_t> next(std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) {
+    return state_.lock()->next(burst_, now);
+  }
   // The end of a line: how many were left out before it; empty for none.
   static std::string words_for(std::uint64_t left_out);
 
- private:
+  // One thread at a time.
   struct State {
     std::chrono::steady_clock::time_point paid_until = std::chrono::steady_clock::time_point::min();  // each line is worth a second
     std::uint64_t left_out = 0;
+    std::optional<std::uint64_t> next(unsigned burst, std::chrono::steady_clock::time_point now);
   };
+
+ private:
   unsigned burst_;
   base::Guarded<State, base::Rank::callbacks> state_;
 };
+
+// Of the objects of the process, by name: ten lines at once for each. What is added to the line; nothing: the line is left out.
+std::optional<std::string> refusal_line_end(std::string_view name);
+
+// A line about a call that was refused, or that another process made fail, within that limit.
+void log_refusal(base::Level level, std::string_view name, std::string_view message);
+// The same by the logger of a component, port or context (RTC::Logger).
+template <class Logger>
+void log_refusal(const Logger& logger, int level, const std::string& message) {
+  if (!logger.isValid(level)) return;
+  if (const auto end = refusal_line_end(logger.getName())) logger.write(level, message + *end);
+}
 
 }  // namespace rt

@@ -68,14 +68,14 @@ ReturnCode_t DataPortCore::connect(const PortBase& owner, std::shared_ptr<Connec
   if (settings.marshaling != "cdr" && settings.interface != rt::Interface::direct) {
     plan.codec = make_codec(serializers_, settings.marshaling, connector->profile().properties);
     if (!plan.codec) {
-      RTC_WARN_STR("connection refused: no serializer can be made for dataport.marshaling_type " << base::in_quotes(settings.marshaling));
+      log_refused_connection(rtclog, "no serializer can be made for dataport.marshaling_type " + base::in_quotes(settings.marshaling));
       return RTC_ERROR;
     }
   }
   if (settings.interface == rt::Interface::foreign) plan.carrier = make_author_carrier(settings, connector);
   const rt::Refusal refusal = is_provider ? port_->provide(std::move(plan), profile) : port_->consume(std::move(plan), profile);
   if (refusal.code != rt::ReturnCode::ok) {
-    RTC_WARN_STR("connection refused: " << refusal.reason);
+    log_refused_connection(rtclog, refusal.reason);
     return static_cast<ReturnCode_t>(refusal.code);
   }
   for (const auto& connected : port_->connected()) {

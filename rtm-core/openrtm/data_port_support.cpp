@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "corba/orb/nv_list.h"
 #include "corba/ports/connector_keys.h"
+#include "core/refusal_log.h"
 #include "manager/transport_modules.h"
 #include "openrtm/interface_plugins.h"
 #include "rtm/CORBA_SeqUtil.h"
@@ -136,24 +137,28 @@ bool converts(const ConnectorProfile& profile, const std::string& own) {
 
 }  // namespace
 
+void log_refused_connection(const Logger& rtclog, const std::string& why) {
+  rt::log_refusal(rtclog, Logger::RTL_WARN, "connection refused: " + why);
+}
+
 ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSettingsOutcome& outcome, rt::Side side, const Carries& own,
                               Logger& rtclog) {
-  for (const auto& warning : outcome.warnings) RTC_WARN_STR(warning);
+  for (const auto& warning : outcome.warnings) rt::log_refusal(rtclog, Logger::RTL_WARN, warning);
   if (outcome.refusal.code != rt::ReturnCode::ok) {
-    RTC_WARN_STR("connection refused: " + outcome.refusal.reason);
+    log_refused_connection(rtclog, outcome.refusal.reason);
     return static_cast<ReturnCode_t>(outcome.refusal.code);
   }
   const std::string& marshaling = outcome.settings.marshaling;
   const bool is_known = std::ranges::find(own.marshalings, marshaling) != own.marshalings.end();
   if (!is_known && outcome.settings.interface == rt::Interface::foreign &&
       marshaling == options_of_author_interface(outcome.settings.foreign_interface, side).getProperty("marshaling_type")) {
-    RTC_WARN_STR("connection refused: interface_type " + outcome.settings.foreign_interface + " has no encoding of " + own.type_id +
-                 "; dataport.marshaling_type may name one of " + base::join(own.marshalings, ", "));
+    log_refused_connection(rtclog, "interface_type " + outcome.settings.foreign_interface + " has no encoding of " + own.type_id +
+                                       "; dataport.marshaling_type may name one of " + base::join(own.marshalings, ", "));
     return RTC_ERROR;
   }
   if (!is_known) {
-    RTC_WARN_STR("connection refused: dataport.marshaling_type must be " + base::join(own.marshalings, " or ") + " for a " + own.type_id +
-                 ", got " + base::in_quotes(marshaling));
+    log_refused_connection(rtclog, "dataport.marshaling_type must be " + base::join(own.marshalings, " or ") + " for a " + own.type_id +
+                                       ", got " + base::in_quotes(marshaling));
     return RTC_ERROR;
   }
   const bool is_in = side == rt::Side::in;
@@ -165,7 +170,7 @@ ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSett
     const auto other = corba::find_text(profile.properties, key);
     const bool is_own = std::string_view(key) == (is_in ? "dataport.inport.data_type" : "dataport.outport.data_type");
     if (!other || is_own || any_type_fits || rt::are_compatible_types(*other, own.type_id)) continue;
-    RTC_WARN_STR("connection refused: " + std::string(key) + " is " + base::in_quotes(*other) + ", this port has " + own.type_id);
+    log_refused_connection(rtclog, std::string(key) + " is " + base::in_quotes(*other) + ", this port has " + own.type_id);
     return BAD_PARAMETER;
   }
   corba::set_text(profile.properties, is_in ? "dataport.inport.data_type" : "dataport.outport.data_type", own.type_id);

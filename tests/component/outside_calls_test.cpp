@@ -72,4 +72,12 @@ TEST(OutsideCalls, a_log_with_a_burst_has_so_many_lines_at_once_and_again_after_
   EXPECT_EQ(lines(100s), 2);
 }
 
+TEST(OutsideCalls, each_object_has_lines_about_refusals_of_its_own) {
+  int lines = 0;
+  for (int i = 0; i < 1000; ++i) lines += rt::refusal_line_end("a.port") ? 1 : 0;
+  EXPECT_GE(lines, 10);
+  EXPECT_LT(lines, 500) << "ten, and one per second";
+  EXPECT_EQ(rt::refusal_line_end("another.port"), "");
+}
+
 }  // namespace

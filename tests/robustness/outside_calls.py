@@ -126,6 +126,19 @@ class Client(threading.Thread):
         assert self.component.detach_context(handle) == "RTC_OK"
 
 
+def refused_again_and_again(component):
+    """Calls that fail, each of which would be a line."""
+    orb = Orb()
+    orb.kept = threading.local()
+    nobody = Ior.make("IDL:omg.org/RTC/RTObject:1.0", "127.0.0.1", orb.listener.getsockname()[1], b"nobody", 2)
+    contexts, ports = ([Remote(idl, orb, one.ior, name) for one in found] for found, name in (
+        (component.get_owned_contexts(), "RTC::ExecutionContextService"), (component.get_ports(), "RTC::PortService")))
+    bad = idl.struct("RTC::ConnectorProfile", name="bad", connector_id="", ports=[None], properties=[])
+    for _ in range(500):
+        contexts[0].add_component(nobody)
+        assert not ports or ports[0].connect(bad)[0] == "BAD_PARAMETER"
+
+
 def attack(kind, chance):
     host = Host(options.bin_dir, options.lib_dir, kind)
     manager = Remote(idl, Orb(), Ior.make("IDL:RTM/Manager:1.0", "127.0.0.1", host.port, b"manager", 2), "RTM::Manager")
@@ -149,6 +162,11 @@ def attack(kind, chance):
         for answer, count in thread.answers.items():
             answers[answer] = answers.get(answer, 0) + count
     check(set(answers) <= {"RTC_OK", "RTC_ERROR", "PRECONDITION_NOT_MET"}, f"{kind}: {answers}", host)
+    before = host.text().count("\n")
+    began = time.monotonic()
+    refused_again_and_again(Remote(idl, Orb(), components[0].ior, "OpenRTM::DataFlowComponent"))
+    lines, allowed = host.text().count("\n") - before, 60 + 4 * (time.monotonic() - began)
+    check(lines < allowed, f"{kind}: {lines} lines about refused calls, expected at most {allowed:.0f}", host)
     # The components' own lines about a simulator that is not there count as well.
     check(len(host.text()) < 1 << 20, f"{kind}: {len(host.text())} bytes of log", host)
     ended = host.end()

@@ -15,6 +15,7 @@
 #include "corba/ports/peer_watch.h"
 #include "corba/transport/transport.h"
 #include "core/key_limits.h"
+#include "core/refusal_log.h"
 
 namespace corba {
 namespace {
@@ -41,7 +42,7 @@ base::Result<void> check_profile(const RTC::ConnectorProfile& profile) {
 
 bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
-  if (!checked) base::log(base::Level::warn, port, "refused: {}", checked.error().message);
+  if (!checked) rt::log_refusal(base::Level::warn, port, "refused: " + checked.error().message);
   return bool(checked);
 }
 
@@ -251,8 +252,8 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
     // What the others have set up is of no use if one has refused; a port that knew a given id before keeps its connection.
     if (code != RTC::RTC_OK && (is_id_ours || code != RTC::PRECONDITION_NOT_MET)) break_up(profile);
   } catch (const CORBA::Exception& e) {
-    base::log(base::Level::warn, port_name(), "the first port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
-              e._name());
+    rt::log_refusal(base::Level::warn, port_name(),
+                    "the first port of connection " + base::in_quotes(profile.name.in()) + " does not answer: " + e._name());
     break_up(profile, is_time_out(e));
   }
   return code;
@@ -310,8 +311,8 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_
   const auto terms = read_terms(profile);
   RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);
   if (code == RTC::RTC_ERROR)
-    base::log(base::Level::warn, port_name(), "connection {} is refused: the port has as many as connection_limit allows",
-              base::in_quotes(profile.name.in()));
+    rt::log_refusal(base::Level::warn, port_name(),
+                    "connection " + base::in_quotes(profile.name.in()) + " is refused: the port has as many as connection_limit allows");
   if (code != RTC::RTC_OK) return code;
 
   const std::string id = profile.connector_id.in();
@@ -387,8 +388,8 @@ PortServant::Next PortServant::join_next(RTC::ConnectorProfile& profile, int sel
                 chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length() - (starts_the_chain ? 1 : 0)));
     return {port->notify_connect(profile)};
   } catch (const CORBA::Exception& e) {
-    base::log(base::Level::warn, port_name(), "the next port of connection {} does not answer: {}", base::in_quotes(profile.name.in()),
-              e._name());
+    rt::log_refusal(base::Level::warn, port_name(),
+                    "the next port of connection " + base::in_quotes(profile.name.in()) + " does not answer: " + e._name());
     return {RTC::RTC_ERROR, is_time_out(e)};
   }
 }

@@ -26,7 +26,8 @@ ReturnCode_t OutPortBase::prepare(ConnectorProfile& profile, const detail::PortT
   detail::share_port_properties(profile, m_properties);
   const std::size_t most = static_cast<const detail::DataPortTerms&>(terms).outcome.settings.fan_out;
   if (core_->port().count() >= most) {
-    RTC_WARN_STR("connection refused: the port has " << most << " connections already, as many as dataport.fan_out allows");
+    detail::log_refused_connection(rtclog,
+                                   "the port has " + std::to_string(most) + " connections already, as many as dataport.fan_out allows");
     return RTC::RTC_ERROR;
   }
   return DataPortBase::prepare(profile, terms);

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/orb/asker.h"
+#include "core/refusal_log.h"
 
 namespace RTC {
 
@@ -173,8 +174,9 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   }
   if (known) return known->reinit(profile);
   if (is_full) {
-    base::log(base::Level::error, impl_->component.getInstanceNameString(),
-              "SDO service {} is refused: there are {} already, the most that may be", base::in_quotes(id), most_consumers);
+    rt::log_refusal(base::Level::error, impl_->component.getInstanceNameString(),
+                    "SDO service " + base::in_quotes(id) + " is refused: there are " + std::to_string(most_consumers) +
+                        " already, the most that may be");
     return false;
   }
   if (!is_enabled(enabled, type)) return false;
