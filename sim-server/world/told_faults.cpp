@@ -2,6 +2,7 @@
 
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "base/guarded.h"
 #include "reader/protocol.h"
@@ -20,9 +21,12 @@ base::Guarded<std::set<State>, base::Rank::objects>& told() {
 
 bool is_first_fault(const std::string& path) {
   const FileStamp now = stamp_of(path);
+  State state{path, now.inode, now.changed_ns};
   auto states = told().lock();
+  if (states->contains(state)) return false;
   if (states->size() >= most_stamps) states->clear();
-  return states->emplace(path, now.inode, now.changed_ns).second;
+  states->insert(std::move(state));
+  return true;
 }
 
 }  // namespace sim

@@ -279,6 +279,16 @@ TEST(AssetReader, the_first_fault_of_a_file_is_told_until_it_changes) {
   EXPECT_FALSE(is_first_fault(path));
 }
 
+// Physics and rays miss the same file one after the other.
+TEST(AssetReader, a_fault_is_told_once_however_many_there_were_before) {
+  const WorldFiles files;
+  for (int i = 0; i < 10000; ++i) {
+    const auto path = (files.folder() / ("none" + std::to_string(i))).string();
+    EXPECT_TRUE(is_first_fault(path));
+    EXPECT_FALSE(is_first_fault(path)) << i;
+  }
+}
+
 TEST(AssetReader, a_face_without_corners_is_left_out) {
   const WorldFiles files;
   const MeshShape shape{files.write("a.ply", ply("0")), "", false, {1, 1, 1}};
