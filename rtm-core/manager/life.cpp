@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "corba/orb/guarded_transport.h"
 #include "core/connector_settings.h"
 #include "core/name_format.h"
 #include "manager/manager_impl.h"
@@ -321,7 +322,13 @@ bool ManagerImpl::activate_all() {
 }
 
 void ManagerImpl::report(const std::string& error) {
-  RTC_ERROR(("%s", error.c_str()));
+  std::string end;
+  if (corba::has_caller()) {
+    const auto left_out = refusals.next();
+    if (!left_out) return;
+    end = rt::RefusalLog::words_for(*left_out);
+  }
+  RTC_ERROR(("%s%s", error.c_str(), end.c_str()));
   const auto outputs = list("logger.file_name");
   const bool is_logged_there = flag("logger.enable", true) && std::find(outputs.begin(), outputs.end(), "stderr") != outputs.end();
   if (state.lock()->activating && !is_logged_there) std::cerr << program << ": " << error << std::endl;

@@ -416,6 +416,8 @@ void remember_callers() {
   pass_on_asker();
 }
 
+bool has_caller() { return address_of_caller.front() != '\0'; }
+
 std::string caller() {
   const std::string address = address_of_caller.data();
   if (address.empty()) return "this process";
