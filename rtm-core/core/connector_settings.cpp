@@ -153,11 +153,17 @@ void read_subscription(const Reader& reader, ConnectorSettings& settings) {
   reader.word<PushPolicy>("publisher.push_policy", settings.publisher.policy,
                           {{"all", PushPolicy::all}, {"fifo", PushPolicy::fifo}, {"skip", PushPolicy::skip}, {"new", PushPolicy::newest}});
   reader.count("publisher.skip_count", settings.publisher.skip_count, 0, longest_buffer);
-  if (settings.subscription != Subscription::periodic || settings.dataflow != Dataflow::push) return;
-  const std::string_view rate_key = reader.text("publisher.push_rate").empty() ? "push_rate" : "publisher.push_rate";
-  const auto rate = base::parse_number(reader.text(rate_key));
+  const bool is_old_name = reader.text("publisher.push_rate").empty() && !reader.text("push_rate").empty();
+  const std::string_view rate_key = is_old_name ? "push_rate" : "publisher.push_rate";
+  const std::string_view rate_text = reader.text(rate_key);
+  const auto rate = base::parse_number(rate_text);
+  if (settings.subscription != Subscription::periodic || settings.dataflow != Dataflow::push) {
+    // Nothing is sent at that rate; tools write 0 there.
+    if (!rate_text.empty() && !(rate && *rate >= 0)) reader.warn(rate_key, rate_text, "a rate [Hz]");
+    return;
+  }
   if (!rate || *rate <= 0 || *rate > fastest_push_rate || *rate < 1e-6) {
-    return reader.refuse(ReturnCode::bad_parameter, "publisher.push_rate", "a rate above 0 [Hz] for periodic subscriptions");
+    return reader.refuse(ReturnCode::bad_parameter, rate_key, "a rate above 0 [Hz] for periodic subscriptions");
   }
   settings.publisher.period = std::chrono::nanoseconds(std::llround(1e9 / *rate));
 }

@@ -83,6 +83,17 @@ TEST(ConnectorSettings, io_mode_names_the_subscription) {
 TEST(ConnectorSettings, push_rate_has_an_old_name) {
   const auto outcome = read({{"dataport.subscription_type", "periodic"}, {"dataport.push_rate", "10"}});
   EXPECT_EQ(outcome.settings.publisher.period, std::chrono::milliseconds(100));
+  EXPECT_EQ(read({{"dataport.subscription_type", "periodic"}, {"dataport.push_rate", "fast"}}).refusal.reason,
+            "dataport.push_rate must be a rate above 0 [Hz] for periodic subscriptions, got \"fast\"");
+}
+
+TEST(ConnectorSettings, a_push_rate_that_is_not_used_is_a_number_all_the_same) {
+  EXPECT_EQ(read({{"dataport.subscription_type", "new"}, {"dataport.push_rate", "0"}}).warnings, std::vector<std::string>{});
+  for (const char* key : {"publisher.push_rate", "push_rate"}) {
+    const auto outcome = read({{"dataport.subscription_type", "new"}, {std::string("dataport.") + key, "nan"}});
+    EXPECT_EQ(outcome.refusal.code, ReturnCode::ok);
+    EXPECT_EQ(outcome.warnings, std::vector<std::string>{std::string("dataport.") + key + " must be a rate [Hz], got \"nan\""});
+  }
 }
 
 TEST(ConnectorSettings, sizes_have_units) {

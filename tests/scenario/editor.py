@@ -128,9 +128,10 @@ def misunderstood_values():
     ports = ("SourceAll0:long", "SinkAll0:long")
     for value, allowed in (("publisher.push_policy=nope", "one of all, fifo, skip, new"), ("buffer.length=abc", "an integer from 1"), ("buffer.length=0", "an integer from 1"),
                            ("inport.buffer.write.full_policy=drop", "one of overwrite, do_nothing, block"), ("buffer.read.timeout=-1", "seconds"),
-                           ("sync_readwrite=perhaps", "YES or NO"), ("subscription_type=periodic", "a rate above 0 [Hz]"), ("io_mode=often", "flush, new or periodic")):
+                           ("sync_readwrite=perhaps", "YES or NO"), ("subscription_type=periodic", "a rate above 0 [Hz]"), ("io_mode=often", "flush, new or periodic"),
+                           ("serializer.cdr.endian=middle", "a list of little and big"), ("push_rate=often", "a rate [Hz]")):
         key, given = value.split("=")
-        line = refused("con", *ports, "-p", value, code=1 if key in ("subscription_type", "io_mode") else 2, says=allowed).stderr
+        line = refused("con", *ports, "-p", value, code=1 if key in ("subscription_type", "io_mode", "serializer.cdr.endian") else 2, says=allowed).stderr
         assert line.count("\n") == 1 and (f'got "{given}"' in line or given == "periodic"), line
     for key, meant in (("subscripton_type", "subscription_type"), ("inport.bufer.length", "buffer.length")):
         refused("con", *ports, "-p", f"{key}=new", code=2, says=f'property "{key}": ports of this runtime do not read it; did you mean {meant}?')

@@ -178,6 +178,7 @@ Result<void> connect_ports(const std::vector<const PortView*>& ports, const std:
     const auto reason = corba::refusal_of_values(properties);
     meaning = reason.empty() ? "a property has a value that a port does not take" : reason;
   }
+  if (code == RTC::UNSUPPORTED) meaning = corba::refusal_of_values(properties);
   if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
   return check(what, code, meaning);
 }
