@@ -263,3 +263,28 @@ def test_the_manager_of_an_object_adapter_holds_and_lets_go(shop):
     manager.deactivate()
     assert manager.get_state() == manager.INACTIVE
     own.destroy(True, True)
+
+
+# Nobody has called activate() of the root POA's manager in this process.
+HELD = """
+import sys
+import Shop, RTC
+from omniORB import CORBA
+from counter import Counter_i
+orb = CORBA.ORB_init(sys.argv)
+reference = orb.string_to_object(orb.object_to_string(Counter_i()._this()))
+print(reference._narrow(RTC.RTObject), reference._is_a("IDL:Shop/Counter:1.0"), reference._non_existent(), flush=True)
+try:
+    reference._narrow(Shop.Counter).list()
+except CORBA.TIMEOUT as problem:
+    print(problem)
+"""
+
+
+def test_calls_of_a_local_servant_wait_for_its_poa_manager_with_a_limit(shop):
+    done = subprocess.run([python, "-B", "-c", HELD, "-ORBpoaHoldRequestTimeout", "200"], cwd=shop, timeout=60, capture_output=True, text=True)
+    assert done.stdout.splitlines()[0] == "None True False", done
+    assert "nobody has called activate() of its POAManager" in done.stdout
+    # Without the option the limit is that of calls to other processes.
+    done = subprocess.run([python, "-B", "-c", HELD], cwd=shop, timeout=60, capture_output=True, text=True)
+    assert "nobody has called activate() of its POAManager" in done.stdout

@@ -315,7 +315,8 @@ void set_python_exception(const CORBA::SystemException& problem) {
   PyObject* const cls = of_module("omniORB.CORBA", problem._name());
   if (!cls || !codes) return;
   const auto completed = static_cast<Py_ssize_t>(problem.completed());
-  const char* why = problem.NP_minorString();
+  const bool is_held = problem.minor() == omni::TIMEOUT_CallTimedOutOnServer && CORBA::TIMEOUT::_downcast(&problem);
+  const char* why = is_held ? "TIMEOUT_CallTimedOutOnServer: nobody has called activate() of its POAManager" : problem.NP_minorString();
   const Ref made(PyObject_CallFunction(cls, "IOs", problem.minor(), PyTuple_GET_ITEM(codes, completed < 3 ? completed : 0), why));
   if (made) PyErr_SetObject(cls, made.get());
 }

@@ -47,11 +47,21 @@ std::vector<std::string> orb_init(const std::vector<std::string>& words) {
   return rest;
 }
 
+// Of servants of Python in this process without a call, which would wait until their adapter is active.
+bool is_a(const ObjRef& self, const std::string& id) {
+  const py::object servant = local_servant(self);
+  return servant.is_none() ? asked([&] { return bool(self.object->_is_a(id.c_str())); }) : py::cast<bool>(servant.attr("_is_a")(id));
+}
+
+bool non_existent(const ObjRef& self) {
+  return local_servant(self).is_none() && asked([&] { return bool(self.object->_non_existent()); });
+}
+
 void add_references(py::module_& module) {
   py::class_<ObjRef>(module, "ObjRef")
       .def("invoke", &invoke)
-      .def("is_a", [](const ObjRef& self, const std::string& id) { return asked([&] { return bool(self.object->_is_a(id.c_str())); }); })
-      .def("non_existent", [](const ObjRef& self) { return asked([&] { return bool(self.object->_non_existent()); }); })
+      .def("is_a", &is_a)
+      .def("non_existent", &non_existent)
       .def("is_equivalent",
            [](const ObjRef& self, const ObjRef& other) { return asked([&] { return bool(self.object->_is_equivalent(other.object)); }); })
       .def("hash", [](const ObjRef& self, CORBA::ULong most) { return asked([&] { return self.object->_hash(most); }); })
