@@ -1,4 +1,6 @@
 # Small helpers of the flat namespace, in the forms of 1.x and 2.x.
+import importlib
+import io
 import subprocess
 import sys
 import threading
@@ -228,3 +230,45 @@ def test_corba_id_is_the_repository_id_of_a_class_or_a_value():
 def test_no_wait_of_a_manager_of_csp_ports_is_without_end(name):
     with pytest.raises(TypeError):
         getattr(OpenRTM_aist.CSPManager(), name)(None)
+
+
+def test_properties_have_the_attributes_and_the_forms_of_the_original():
+    text = io.StringIO("a.b: 1\n# c\n\nlong : x, \\\n  y\n! d\nc.d = 2")
+    properties = OpenRTM_aist.Properties()
+    properties.load(text)
+    properties.setDefault("e", "3")
+    assert [properties.getProperty(one) for one in ("a.b", "long", "c.d", "e")] == ["1", "x, y", "2", "3"]
+    node = properties.getNode("a").leaf[0]
+    assert (node.name, node.value, node.default_value, node.root.name, properties.root) == ("b", "1", "", "a", None)
+    assert node.getRoot().getName() == "a" and properties.getRoot() is None
+    properties.setProperty("e")
+    assert properties.getNode("e").value == "3", "the default has become the value"
+    shown = io.StringIO()
+    properties.list(shown)
+    assert shown.getvalue() == str(properties)
+
+
+def test_parameters_of_a_url_come_after_its_question_mark():
+    for text in ("X?a=1&b=2&c", "a=1&b=2&c"):
+        assert OpenRTM_aist.urlparam2map(text) == {"a": "1", "b": "2", "c": ""}
+
+
+def test_a_time_stamp_that_is_none_is_made():
+    datum = RTC.TimedLong(*[None] * int((len(RTC._d_TimedLong) - 4) / 2))
+    OpenRTM_aist.setTimestamp(datum)
+    assert datum.tm.sec > 0
+
+
+def test_files_of_the_original_are_imported_by_their_names():
+    code = """
+import OpenRTM_aist.Manager, OpenRTM_aist.NVUtil
+from OpenRTM_aist.CorbaNaming import *
+from OpenRTM_aist.DataFlowComponentBase import DataFlowComponentBase as Base
+import CosNaming as same
+assert CosNaming is same and CosNaming.nobject and CORBA.ORB_init
+assert Base is OpenRTM_aist.DataFlowComponentBase and isinstance(OpenRTM_aist.Manager, type)
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    for name in ("OpenRTM_aist.NoSuchFile", "OpenRTM_aist.RTC.X"):
+        with pytest.raises(ImportError):
+            importlib.import_module(name)

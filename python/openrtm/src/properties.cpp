@@ -34,6 +34,17 @@ std::string shown(const Properties& properties) {
   return out.str();
 }
 
+py::list leaves(const Properties& self) {
+  py::list list;
+  for (auto* one : self.node->getLeaf()) list.append(Properties{self.owner, one});
+  return list;
+}
+
+py::object parent(const Properties& self) { return wrapped(self, const_cast<coil::Properties*>(self.node->getRoot())); }
+std::string name(const Properties& self) { return self.node->getName(); }
+std::string value(const Properties& self) { return self.node->getValue(); }
+std::string default_value(const Properties& self) { return self.node->getDefaultValue(); }
+
 }  // namespace
 
 void add_properties(py::module_& module) {
@@ -48,8 +59,13 @@ void add_properties(py::module_& module) {
             return self.node->getProperty(key, text_of(otherwise));
           },
           py::arg("key"), py::arg("default") = py::none())
-      .def("setProperty",
-           [](Properties& self, const std::string& key, py::object value) { return self.node->setProperty(key, text_of(value)); })
+      // Without a value the default becomes one.
+      .def(
+          "setProperty",
+          [](Properties& self, const std::string& key, py::object value) {
+            return self.node->setProperty(key, value.is_none() ? self.node->getProperty(key) : text_of(value));
+          },
+          py::arg("key"), py::arg("value") = py::none())
       .def("getDefault", [](const Properties& self, const std::string& key) { return self.node->getDefault(key); })
       .def("setDefault",
            [](Properties& self, const std::string& key, py::object value) { return self.node->setDefault(key, text_of(value)); })
@@ -71,15 +87,16 @@ void add_properties(py::module_& module) {
              std::shared_ptr<coil::Properties> removed(self.node->removeNode(name));
              return removed ? py::cast(Properties{removed, removed.get()}) : py::object(py::none());
            })
-      .def("getLeaf",
-           [](Properties& self) {
-             py::list list;
-             for (auto* one : self.node->getLeaf()) list.append(Properties{self.owner, one});
-             return list;
-           })
-      .def("getName", [](const Properties& self) { return std::string(self.node->getName()); })
-      .def("getValue", [](const Properties& self) { return std::string(self.node->getValue()); })
-      .def("getDefaultValue", [](const Properties& self) { return std::string(self.node->getDefaultValue()); })
+      .def("getLeaf", &leaves)
+      .def("getRoot", &parent)
+      .def("getName", &name)
+      .def("getValue", &value)
+      .def("getDefaultValue", &default_value)
+      .def_property_readonly("leaf", &leaves)
+      .def_property_readonly("root", &parent)
+      .def_property_readonly("name", &name)
+      .def_property_readonly("value", &value)
+      .def_property_readonly("default_value", &default_value)
       .def("propertyNames", [](const Properties& self) { return self.node->propertyNames(); })
       .def("size", [](const Properties& self) { return self.node->size(); })
       .def("clear", [](Properties& self) { self.node->clear(); })
@@ -96,10 +113,14 @@ void add_properties(py::module_& module) {
       .def("load",
            [](Properties& self, py::object lines) {
              std::string text;
-             for (const auto& line : lines) text += text_of(line) + "\n";
+             for (const auto& line : lines) {
+               text += text_of(line);
+               if (!text.ends_with('\n')) text += '\n';
+             }
              std::istringstream in(text);
              self.node->load(in);
            })
+      .def("list", [](const Properties& self, py::object out) { out.attr("write")(shown(self)); })
       .def("store",
            [](Properties& self, py::object out, const std::string& header) {
              std::ostringstream text;

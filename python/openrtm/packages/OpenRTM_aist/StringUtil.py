@@ -171,7 +171,7 @@ def toArgv(args):
 
 def urlparam2map(text):
     result = {}
-    for part in text.split("&"):
+    for part in text.partition("?")[2 if "?" in text else 0].split("&"):
         key, is_pair, value = part.partition("=")
         if key.strip():
             result[key.strip()] = value.strip() if is_pair else ""

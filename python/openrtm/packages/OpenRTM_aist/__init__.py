@@ -63,6 +63,28 @@ del _name
 __all__ = sorted({_name for _name in globals() if not _name.startswith("_")} | set(_LATER))
 
 
+class _File(type(_sys)):
+    """A file of the original, which has one for each class: OpenRTM_aist.X, with the modules that come along with it."""
+
+    def __init__(self, name):
+        super().__init__("OpenRTM_aist." + name)
+        self.__all__ = [name, *self._modules]
+
+    _modules = ("OpenRTM_aist", "CORBA", "CosNaming", "RTC", "sys", "time")
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return _omniORB._import(name) if name in self._modules else getattr(_sys.modules["OpenRTM_aist"], name)
+
+
+# Found there by `import`, which does not put them in the place of the classes.
+for _name in __all__:
+    if _name[0].isupper() and not isinstance(globals().get(_name), type(_sys)) and _LATER.get(_name, ("", _name))[1]:
+        _sys.modules.setdefault("OpenRTM_aist." + _name, _File(_name))
+del _name
+
+
 def __getattr__(name):
     if name in _LATER:
         file, inner = _LATER[name]

@@ -281,7 +281,10 @@ OutPortBase = OutPort
 
 def setTimestamp(data):
     """Write the time of the clock in force: simulated time in simulated contexts."""
-    data.tm.sec, data.tm.nsec = _core.current_time()
+    tm = data.tm
+    if tm is None:  # the templates of 1.x begin with None in all members
+        tm = data.tm = RTC.Time(0, 0)
+    tm.sec, tm.nsec = _core.current_time()
 
 
 # --- service ports
