@@ -4,7 +4,8 @@
 //
 // Refused (MARSHAL) are value types, unions, fixed-point numbers, types that hold themselves, and more than eight anys in each other. Anys
 // in interfaces of components' own are read by omniORB alone.
-#include <omniORB4/CORBA.h>
+#include "any_check.h"
+
 #include <omniORB4/minorCode.h>
 
 #include <cstdint>
@@ -32,9 +33,9 @@ struct Type {
 
 bool is_text(std::uint32_t kind) { return kind == CORBA::tk_string || kind == CORBA::tk_wstring; }
 
-bool has_parameters(std::uint32_t kind) {
-  return kind == CORBA::tk_objref || kind == CORBA::tk_struct || kind == CORBA::tk_enum || kind == CORBA::tk_alias ||
-         kind == CORBA::tk_sequence || kind == CORBA::tk_array;
+bool has_parameters(std::uint32_t kind, bool with_unions) {
+  return (with_unions && kind == CORBA::tk_union) || kind == CORBA::tk_objref || kind == CORBA::tk_struct || kind == CORBA::tk_enum ||
+         kind == CORBA::tk_alias || kind == CORBA::tk_sequence || kind == CORBA::tk_array;
 }
 
 bool is_basic(std::uint32_t kind) {
@@ -63,10 +64,35 @@ bool is_basic(std::uint32_t kind) {
   OMNIORB_THROW(MARSHAL, _OMNI_NS(MARSHAL_InvalidTypeCodeKind), static_cast<CORBA::CompletionStatus>(stream.completion()));
 }
 
+// Of a value of a discriminator; 0 if that cannot be one.
+std::size_t label_size(const Type& type) {
+  switch (type.kind) {
+    case CORBA::tk_boolean:
+    case CORBA::tk_char:
+    case CORBA::tk_octet:
+      return 1;
+    case CORBA::tk_short:
+    case CORBA::tk_ushort:
+      return 2;
+    case CORBA::tk_long:
+    case CORBA::tk_ulong:
+    case CORBA::tk_enum:
+      return 4;
+    case CORBA::tk_longlong:
+    case CORBA::tk_ulonglong:
+      return 8;
+    case CORBA::tk_alias:
+      return label_size(type.members.front());
+    default:
+      return 0;
+  }
+}
+
 // The parameters of a type code, an encapsulation: CORBA 3.1 part 2, 9.3.5.
 class Encapsulation {
  public:
-  Encapsulation(cdrStream& whole, std::span<const CORBA::Octet> octets) : whole_(whole), octets_(octets) {
+  Encapsulation(cdrStream& whole, std::span<const CORBA::Octet> octets, bool with_unions)
+      : whole_(whole), octets_(octets), with_unions_(with_unions) {
     if (octets.empty()) refuse(whole);
     is_swapped_ = (octets[0] != 0) != (omni::myByteOrder != 0);
     at_ = 1;
@@ -89,16 +115,16 @@ class Encapsulation {
     Type type{number()};
     if (is_text(type.kind))
       type.count = number();
-    else if (has_parameters(type.kind))
-      parameters(type, whole_, take(number()), depth);
+    else if (has_parameters(type.kind, with_unions_))
+      parameters(type, whole_, take(number()), depth, with_unions_);
     else if (!is_basic(type.kind))
       refuse(whole_);
     return type;
   }
 
   // Reads what follows the kind.
-  static void parameters(Type& type, cdrStream& whole, std::span<const CORBA::Octet> octets, int depth) {
-    Encapsulation in(whole, octets);
+  static void parameters(Type& type, cdrStream& whole, std::span<const CORBA::Octet> octets, int depth, bool with_unions) {
+    Encapsulation in(whole, octets, with_unions);
     if (type.kind != CORBA::tk_sequence && type.kind != CORBA::tk_array) {
       in.skip_text();  // repository id
       in.skip_text();  // name
@@ -113,6 +139,9 @@ class Encapsulation {
         }
         break;
       }
+      case CORBA::tk_union:
+        in.cases(type, depth);
+        break;
       case CORBA::tk_enum:
         type.count = in.number();
         for (std::uint32_t i = 0; i < type.count; ++i) in.skip_text();
@@ -134,6 +163,19 @@ class Encapsulation {
  private:
   Type element(int depth) { return type(depth + 1); }
 
+  // Of a union: the discriminator's type, the number of the default case, and the cases with their labels.
+  void cases(Type& type, int depth) {
+    const std::size_t size = label_size(element(depth));
+    const std::uint32_t chosen = number(), count = number();
+    if (size == 0 || count == 0 || (chosen < 0xfffffffeU && chosen >= count)) refuse(whole_);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      at_ = (at_ + size - 1) & ~(size - 1);
+      take(size);
+      skip_text();
+      type.members.push_back(element(depth));
+    }
+  }
+
   std::span<const CORBA::Octet> take(std::size_t size) {
     if (at_ > octets_.size() || size > octets_.size() - at_) refuse(whole_);
     const auto taken = octets_.subspan(at_, size);
@@ -143,6 +185,7 @@ class Encapsulation {
 
   cdrStream& whole_;
   const std::span<const CORBA::Octet> octets_;
+  const bool with_unions_;
   bool is_swapped_ = false;
   std::size_t at_ = 0;
 };
@@ -150,7 +193,7 @@ class Encapsulation {
 // Everything that is read is also written.
 class CheckedCopy {
  public:
-  CheckedCopy(cdrStream& from, cdrStream& to) : from_(from), to_(to) {}
+  CheckedCopy(cdrStream& from, cdrStream& to, bool with_unions) : from_(from), to_(to), with_unions_(with_unions) {}
 
   void any(int level) {
     if (level > most_levels) refuse(from_);
@@ -158,28 +201,28 @@ class CheckedCopy {
     if (type.kind != CORBA::tk_null && type.kind != CORBA::tk_void) value(type, level);
   }
 
- private:
-  std::uint32_t number() {
-    const CORBA::ULong value = from_.unmarshalULong();
-    to_.marshalULong(value);
-    return value;
-  }
-
   Type type_code() {
     Type type{number()};
     if (is_text(type.kind)) {
       type.count = number();
-    } else if (has_parameters(type.kind)) {
+    } else if (has_parameters(type.kind, with_unions_)) {
       const std::uint32_t size = number();
       if (size > longest_type_code) refuse(from_);
       std::vector<CORBA::Octet> octets(size);
       from_.get_octet_array(octets.data(), static_cast<int>(size));
       to_.put_octet_array(octets.data(), static_cast<int>(size));
-      Encapsulation::parameters(type, from_, octets, 1);
+      Encapsulation::parameters(type, from_, octets, 1, with_unions_);
     } else if (type.kind != CORBA::tk_null && type.kind != CORBA::tk_void && !is_basic(type.kind)) {
       refuse(from_);
     }
     return type;
+  }
+
+ private:
+  std::uint32_t number() {
+    const CORBA::ULong value = from_.unmarshalULong();
+    to_.marshalULong(value);
+    return value;
   }
 
   void value(const Type& type, int level) {
@@ -249,12 +292,15 @@ class CheckedCopy {
 
   cdrStream& from_;
   cdrStream& to_;
+  const bool with_unions_;
 };
 
 }  // namespace
 
 void checked_any(CORBA::Any* any, cdrStream& stream) {
   cdrMemoryStream copy;
-  CheckedCopy(stream, copy).any(1);
+  CheckedCopy(stream, copy, false).any(1);
   omniorb_any(any, copy);
 }
+
+void copy_checked_type_code(cdrStream& from, cdrStream& to) { CheckedCopy(from, to, true).type_code(); }

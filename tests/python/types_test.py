@@ -1,6 +1,9 @@
 # Values of Python in the encoding of the wire: every data type of the product, the laxer inputs, and what is refused.
 import json
 import pathlib
+import random
+import struct
+import sys
 
 import numpy
 import omniORB
@@ -162,3 +165,60 @@ def test_an_unknown_name_says_that_it_is_not_there():
     for module, name in ((OpenRTM_aist, "NoSuchThing"), (CORBA, "NoSuchThing")):
         with pytest.raises(AttributeError, match="not part of this implementation"):
             getattr(module, name)
+
+
+def test_the_types_of_values_in_anys_are_not_kept_for_each_value():
+    for value in ("text", [1, 2], {"a": 1}, [["a"]]):
+        octets = omniORB.cdrMarshal(CORBA.TC_any, any_.to_any(value), True)
+        first, second = (omniORB.cdrUnmarshal(CORBA.TC_any, octets, True) for _ in range(2))
+        assert any_.from_any(first) == any_.from_any(second) == value
+        count = sys.getrefcount(second.typecode()._d)  # outside of the assertion, which holds what it looks at
+        assert count == 2, "the attribute and the argument"
+
+
+# Peers can send them: each is an exception, not the end of the process.
+@pytest.mark.parametrize("octets", [struct.pack("<I", 11) * 100000 + bytes(4), struct.pack("<III", 19, 0xffffffff, 1), struct.pack("<II", 29, 0),
+                                    struct.pack("<II", 0xffffffff, 0xfffffffc), struct.pack("<IIIIc", 18, 0, 0xffffffff, 0, b"x")])
+def test_hostile_anys_are_refused(octets):
+    with pytest.raises((RecursionError, CORBA.MARSHAL)):
+        omniORB.cdrUnmarshal(CORBA.TC_any, octets, True)
+
+
+def test_type_codes_with_wrong_octets_are_values_or_exceptions():
+    chance = random.Random(7)
+    numbers = [struct.pack("<I", one) for one in (0, 1, 2, 11, *range(13, 23), 27, 29, 30, 33, 0x7fffffff, 0x80000000, 0xfffffff0, 0xffffffff)]
+    codes = [omniORB.cdrMarshal(CORBA.TC_TypeCode, getattr(RTC, "_tc_" + name), True)
+             for name in ("TimedLong", "CameraImage", "ReturnCode_t", "ComponentProfile", "RTObject", "TimedWString")]
+    for _ in range(4000):
+        octets = bytearray(chance.choice(codes))
+        for _ in range(chance.randrange(1, 4)):
+            at = chance.randrange(len(octets) - 3) & ~3
+            octets[at:at + 4] = chance.choice(numbers)
+            octets[chance.randrange(len(octets))] = chance.randrange(256)
+        for kind, rest in ((CORBA.TC_TypeCode, b""), (CORBA.TC_any, b"\1" * 64)):
+            try:
+                omniORB.cdrUnmarshal(kind, bytes(octets) + rest, True)
+            except (CORBA.MARSHAL, TypeError, ValueError):
+                pass
+
+
+def test_values_inside_themselves_are_refused():
+    circle = CORBA.Any(CORBA.TC_any, None)
+    circle._v = circle
+    with pytest.raises(RecursionError):
+        omniORB.cdrMarshal(CORBA.TC_any, circle, True)
+    nested = 3
+    for _ in range(100000):
+        nested = (19, nested, 0)
+    with pytest.raises((RecursionError, TypeError)):
+        omniORB.cdrMarshal(nested, [], True)
+
+
+def test_what_is_no_sequence_is_no_sequence_of_idl():
+    def endless():
+        while True:
+            yield 1
+
+    for value in (endless(), iter([1]), {1, 2}, range(1 << 40)):
+        with pytest.raises(CORBA.BAD_PARAM, match=r"data: expected sequence<long>, got"):
+            omniORB.cdrMarshal(RTC._tc_TimedLongSeq, RTC.TimedLongSeq(stamp, value), True)

@@ -163,7 +163,8 @@ py::object invoke(const ObjRef& self, const std::string& name, const py::object&
   } catch (py::error_already_set& error) {
     if (!call.problem().empty()) {
       static PyObject* const bad = of_module("omniORB.CORBA", "BAD_PARAM");
-      const Ref made(PyObject_CallFunction(bad, "iOs", 0, Py_None, (name + ": " + call.problem()).c_str()));
+      static PyObject* const no = of_module("omniORB.CORBA", "COMPLETED_NO");
+      const Ref made(PyObject_CallFunction(bad, "iOs", 0, no, (name + ": " + call.problem()).c_str()));
       PyErr_SetObject(bad, made.get());
       throw py::error_already_set();
     }

@@ -4,6 +4,7 @@
 
 #include "coder.h"
 #include "gil.h"
+#include "idl/any_check.h"
 #include "references.h"
 #include "streams.h"
 
@@ -69,6 +70,8 @@ PyObject* read_sequence(Reader& from, const Type& type) {
     default:
       break;
   }
+  const Nesting nesting;
+  if (!nesting) throw PythonFailed{};
   from.expect(count, 1);
   Ref list(checked(PyList_New(static_cast<Py_ssize_t>(count))));
   for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +113,9 @@ PyObject* read_union(Reader& from, const Type& type) {
 
 PyObject* read_typecode(cdrStream& stream, Ref& descriptor) {
   static PyObject* const cls = of_module("omniORB.tcInternal", "TypeCode");
-  const CORBA::TypeCode_var code = CORBA::TypeCode::unmarshalTypeCode(stream);
+  cdrMemoryStream checked_code;
+  copy_checked_type_code(stream, checked_code);
+  const CORBA::TypeCode_var code = CORBA::TypeCode::unmarshalTypeCode(checked_code);
   descriptor = Ref(checked(descriptor_of(code)));
   if (!cls) throw PythonFailed{};
   return checked(PyObject_CallOneArg(cls, descriptor.get()));
@@ -137,6 +142,8 @@ PyObject* read_with_stream(Reader& from, const Type& type) {
     }
     case CORBA::tk_any: {
       static PyObject* const cls = of_module("omniORB.CORBA", "Any");
+      const Nesting nesting;
+      if (!nesting) throw PythonFailed{};
       Ref descriptor;
       const Ref code(read_typecode(stream, descriptor));
       const Type* inner = type_of(descriptor.get());

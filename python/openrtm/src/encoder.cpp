@@ -12,6 +12,9 @@
 namespace python {
 namespace {
 
+// No message may be as long.
+constexpr Py_ssize_t most_elements = Py_ssize_t{1} << 28;
+
 TextCoding chosen_coding = TextCoding::automatic;
 
 std::string described(PyObject* value) {
@@ -247,10 +250,14 @@ void write_sequence(Writer& to, const Type& type, PyObject* value) {
     }
     if (PyBytes_Check(value)) refuse(type, value);
     // Other arrays by their elements.
+    if (const Py_ssize_t size = PySequence_Check(value) ? PySequence_Size(value) : -1; size < 0 || size > most_elements)
+      refuse(type, value);
     list = Ref(PyObject_HasAttrString(value, "tolist") ? PyObject_CallMethod(value, "tolist", nullptr) : PySequence_List(value));
     if (!list || !PyList_Check(list.get())) refuse(type, value);
     value = list.get();
   }
+  const Nesting nesting;
+  if (!nesting) throw PythonFailed{};
   const Py_ssize_t count = PySequence_Fast_GET_SIZE(value);
   write_head(to, type, static_cast<std::size_t>(count));
   for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(value); ++i) {
@@ -314,6 +321,8 @@ void write_union(Writer& to, const Type& type, PyObject* value) {
 
 template <class Writer>
 void write_any(Writer& to, const Type& type, PyObject* value) {
+  const Nesting nesting;
+  if (!nesting) throw PythonFailed{};
   const Ref code(PyObject_GetAttrString(value, "_t"));
   const Ref content(PyObject_GetAttrString(value, "_v"));
   const Ref descriptor(code ? PyObject_GetAttrString(code.get(), "_d") : nullptr);

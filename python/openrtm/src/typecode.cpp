@@ -1,5 +1,5 @@
 // Type codes of the ORB from compiled types, and back.
-#include <map>
+#include <cstring>
 
 #include "coder.h"
 #include "gil.h"
@@ -137,6 +137,9 @@ class Codes {
   std::vector<const Type*> around_;
 };
 
+// Of a type that comes from the wire, where it may have any octets.
+PyObject* text(const char* octets) { return PyUnicode_DecodeUTF8(octets, static_cast<Py_ssize_t>(std::strlen(octets)), "replace"); }
+
 PyObject* by_stubs(const char* id) {
   PyObject* const found = id && *id ? registered("typeMapping", id) : nullptr;
   Py_XINCREF(found);
@@ -149,19 +152,19 @@ PyObject* members_of(CORBA::TypeCode_ptr code, bool is_exception) {
   const Ref names(PyTuple_New(count));
   const Ref tuple(PyTuple_New(4 + 2 * static_cast<Py_ssize_t>(count)));
   for (CORBA::ULong i = 0; i < count; ++i) {
-    PyTuple_SET_ITEM(names.get(), i, PyUnicode_FromString(code->member_name(i)));
+    PyTuple_SET_ITEM(names.get(), i, text(code->member_name(i)));
     const CORBA::TypeCode_var member = code->member_type(i);
     PyObject* const descriptor = descriptor_of(member);
     if (!descriptor) return nullptr;
-    PyTuple_SET_ITEM(tuple.get(), 4 + 2 * i, PyUnicode_FromString(code->member_name(i)));
+    PyTuple_SET_ITEM(tuple.get(), 4 + 2 * i, text(code->member_name(i)));
     PyTuple_SET_ITEM(tuple.get(), 5 + 2 * i, descriptor);
   }
   PyObject* const made = make_class ? PyObject_CallOneArg(make_class, names.get()) : nullptr;
   if (!made) return nullptr;
   PyTuple_SET_ITEM(tuple.get(), 0, PyLong_FromLong(is_exception ? CORBA::tk_except : CORBA::tk_struct));
   PyTuple_SET_ITEM(tuple.get(), 1, made);
-  PyTuple_SET_ITEM(tuple.get(), 2, PyUnicode_FromString(code->id()));
-  PyTuple_SET_ITEM(tuple.get(), 3, PyUnicode_FromString(code->name()));
+  PyTuple_SET_ITEM(tuple.get(), 2, text(code->id()));
+  PyTuple_SET_ITEM(tuple.get(), 3, text(code->name()));
   return Py_NewRef(tuple.get());
 }
 
@@ -189,7 +192,7 @@ PyObject* descriptor_of(CORBA::TypeCode_ptr code) {
       }
     case CORBA::tk_objref:
       if (PyObject* known = by_stubs(code->id())) return known;
-      return Py_BuildValue("(iss)", static_cast<int>(kind), code->id(), code->name());
+      return Py_BuildValue("(iNN)", static_cast<int>(kind), text(code->id()), text(code->name()));
     case CORBA::tk_struct:
     case CORBA::tk_except:
       if (PyObject* known = by_stubs(code->id())) return known;

@@ -1,6 +1,9 @@
 #include "types.h"
 
+#include <map>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "gil.h"
 
@@ -141,6 +144,58 @@ bool fill(Type& type, PyObject* descriptor) {
   }
 }
 
+// Of stubs; the others may be made anew for each any.
+bool is_registered(PyObject* descriptor) {
+  if (PyTuple_GET_SIZE(descriptor) < 3) return false;
+  const bool has_class = PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 2)) && !PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 1));
+  PyObject* const id = PyTuple_GET_ITEM(descriptor, has_class ? 2 : 1);
+  return PyUnicode_Check(id) && registered("typeMapping", id) == descriptor;
+}
+
+// Types with the same parts are one: else each value in an any would leave its type behind.
+const Type* with_parts(PyObject* descriptor, CORBA::TCKind kind) {
+  using Parts =
+      std::tuple<CORBA::TCKind, const Type*, std::uint32_t, PyObject*, std::string, std::vector<std::pair<PyObject*, const Type*>>>;
+  static auto& known = *new std::map<Parts, const Type*>;
+  constexpr std::size_t most = 10'000;  // peers may invent them
+  Type type;
+  type.kind = kind;
+  const bool is_good = fill(type, descriptor);
+  std::vector<std::pair<PyObject*, const Type*>> members;
+  for (const Member& member : type.members) members.emplace_back(member.name, member.type);
+  const Type* found = nullptr;
+  if (is_good) {
+    Parts parts{kind, type.element, type.bound, type.maker, type.id, members};
+    if (const auto at = known.find(parts); at != known.end()) {
+      found = at->second;
+    } else if (known.size() < most) {
+      type.descriptor = Py_NewRef(descriptor);
+      for (const Member& member : type.members) Py_INCREF(member.name);
+      found = known[std::move(parts)] = new Type(std::move(type));
+    } else {
+      PyErr_SetString(PyExc_TypeError, "too many types that no stubs have");
+    }
+  }
+  for (const auto& member : members) Py_DECREF(member.first);
+  return found ? found : wrong(descriptor);
+}
+
+bool has_parts_only(CORBA::TCKind kind, PyObject* descriptor) {
+  switch (kind) {
+    case CORBA::tk_string:
+    case CORBA::tk_wstring:
+    case CORBA::tk_sequence:
+    case CORBA::tk_array:
+      return true;
+    case CORBA::tk_struct:
+    case CORBA::tk_except:
+    case CORBA::tk_objref:
+      return !is_registered(descriptor);
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 PyObject* of_module(const char* module, const char* name) {
@@ -180,6 +235,9 @@ const Type* type_of(PyObject* descriptor) {
     PyObject* const target = id ? registered("typeMapping", id) : nullptr;
     return target && target != descriptor ? type_of(target) : wrong(descriptor);
   }
+  const Nesting nesting;
+  if (!nesting) return nullptr;
+  if (has_parts_only(static_cast<CORBA::TCKind>(kind), descriptor)) return with_parts(descriptor, static_cast<CORBA::TCKind>(kind));
   auto* type = new Type;
   type->kind = static_cast<CORBA::TCKind>(kind);
   type->descriptor = descriptor;

@@ -32,6 +32,22 @@ struct Type {
   bool is_plain = false;  // decoded by tp_new and attributes
 };
 
+// A type or a value inside another one, with the interpreter's lock. False when there are more of them than calls of Python may nest: its
+// RecursionError is set.
+class Nesting {
+ public:
+  Nesting() : is_entered_(Py_EnterRecursiveCall(" in a value of IDL") == 0) {}
+  ~Nesting() {
+    if (is_entered_) Py_LeaveRecursiveCall();
+  }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+  explicit operator bool() const { return is_entered_; }
+
+ private:
+  const bool is_entered_;
+};
+
 // The type of a descriptor; nullptr with a Python exception.
 const Type* type_of(PyObject* descriptor);
 // Without aliases. Any thread.

@@ -75,7 +75,15 @@ def _sequence(data):
     return tcInternal.TypeCode((tcInternal.tv_sequence, tcInternal.tv_any, 0)), [CORBA.Any(code, value) for code, value in pairs]
 
 
+_structs = {}  # by the names of their members
+
+
 def _anonymous_struct(names):
+    if names in _structs:
+        return _structs[names]
+    if len(_structs) > 1000:  # peers may invent them
+        _structs.clear()
+
     class Struct(StructBase):
         _NP_RepositoryId = ""
 
@@ -85,7 +93,7 @@ def _anonymous_struct(names):
 
         def _members(self):
             return names
-    return Struct
+    return _structs.setdefault(names, Struct)
 
 
 def from_any(data, keep_structs=False):
