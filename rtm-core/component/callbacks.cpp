@@ -144,15 +144,19 @@ ReturnCode_t RTObject_impl::Callbacks::in_turn(const char* name, Refusal refusal
   std::optional<base::ScopedClock> clock;
   if (const auto* of_caller = corba::clock_of_caller()) clock.emplace(base::current_clock_or(*of_caller));
   ReturnCode_t code = RTC_ERROR;
+  std::string thrown;
   try {
     code = function();
   } catch (const CORBA::Exception& exception) {
-    RTC_ERROR(("%s threw %s", name, corba::to_text(exception).c_str()));
+    thrown = std::string(name) + " threw " + corba::to_text(exception);
   } catch (const std::exception& exception) {
-    RTC_ERROR(("%s threw: %s", name, exception.what()));
+    thrown = std::string(name) + " threw: " + exception.what();
   } catch (...) {
-    RTC_ERROR(("%s threw something that is no std::exception", name));
+    thrown = std::string(name) + " threw something that is no std::exception";
   }
+  // Not in each cycle of the error state.
+  if (thrown != component_.impl_->last_thrown && !thrown.empty()) RTC_ERROR(("%s", thrown.c_str()));
+  component_.impl_->last_thrown = std::move(thrown);
   if (is_outside_) done();
   return code;
 }

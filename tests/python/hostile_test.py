@@ -332,3 +332,29 @@ def test_bad_values_that_differ_are_logged_a_few_at_once(system, tmp_path):  # n
     assert "data: expected long, got float 0.0" in lines[0] and 8 < len(lines) < 100, lines
     assert "other lines before this one are not in the log) a RTC/TimedLong" in lines[-1] and "got str 'last'" in lines[-1]
     ends(process, system)
+
+
+def test_what_on_error_raises_in_each_cycle_is_logged_once(system, tmp_path):  # noqa: F811
+    file = written(tmp_path, "Erring", """
+    def onActivated(self, ec_id):
+        self._cycles = 0
+        return RTC.RTC_OK
+
+    def onExecute(self, ec_id):
+        raise ValueError("in onExecute")
+
+    def onError(self, ec_id):
+        self._cycles += 1
+        if self._cycles == 20:
+            print("cycles", self._cycles, flush=True)
+        raise ValueError("in onError")
+""")
+    process = program(system, file, folder=tmp_path)
+    seen(system, "Erring0")
+    for count in (1, 2):
+        system.try_rtse("act", "Erring0")
+        await_("cycles", lambda: system.log(process).count("cycles 20") == count)
+        log = system.log(process)
+        assert log.count("onError threw: ValueError: in onError") == log.count("onExecute threw: ValueError: in onExecute") == count
+        system.rtse("reset", "Erring0")
+    ends(process, system)
