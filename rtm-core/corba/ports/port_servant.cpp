@@ -40,6 +40,8 @@ base::Result<void> check_profile(const RTC::ConnectorProfile& profile) {
   return check_keys("connection: property", profile.properties);
 }
 
+std::string named(const RTC::ConnectorProfile& profile) { return "connection " + base::in_quotes(profile.name.in()); }
+
 bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
   if (!checked) rt::log_refusal(base::Level::warn, port, "refused: " + checked.error().message);
@@ -252,8 +254,7 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
     // What the others have set up is of no use if one has refused; a port that knew a given id before keeps its connection.
     if (code != RTC::RTC_OK && (is_id_ours || code != RTC::PRECONDITION_NOT_MET)) break_up(profile);
   } catch (const CORBA::Exception& e) {
-    rt::log_refusal(base::Level::warn, port_name(),
-                    "the first port of connection " + base::in_quotes(profile.name.in()) + " does not answer: " + e._name());
+    rt::log_refusal(base::Level::warn, port_name(), "the first port of " + named(profile) + " does not answer: " + e._name());
     break_up(profile, is_time_out(e));
   }
   return code;
@@ -311,8 +312,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_
   const auto terms = read_terms(profile);
   RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);
   if (code == RTC::RTC_ERROR)
-    rt::log_refusal(base::Level::warn, port_name(),
-                    "connection " + base::in_quotes(profile.name.in()) + " is refused: the port has as many as connection_limit allows");
+    rt::log_refusal(base::Level::warn, port_name(), named(profile) + " is refused: the port has as many as connection_limit allows");
   if (code != RTC::RTC_OK) return code;
 
   const std::string id = profile.connector_id.in();
@@ -333,8 +333,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_
       is_next_silent = next.is_silent;
       is_next_told = code != RTC::PRECONDITION_NOT_MET;
       if (id != profile.connector_id.in() || profile.ports.length() != ports.length()) {
-        base::log(base::Level::warn, port_name(), "the next port of connection {} answers with another id or other ports",
-                  base::in_quotes(profile.name.in()));
+        rt::log_refusal(base::Level::warn, port_name(), "the next port of " + named(profile) + " answers with another id or other ports");
         code = RTC::RTC_ERROR;
       }
       if (code == RTC::RTC_OK && !is_good(profile, port_name())) code = RTC::BAD_PARAMETER;
@@ -388,8 +387,7 @@ PortServant::Next PortServant::join_next(RTC::ConnectorProfile& profile, int sel
                 chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length() - (starts_the_chain ? 1 : 0)));
     return {port->notify_connect(profile)};
   } catch (const CORBA::Exception& e) {
-    rt::log_refusal(base::Level::warn, port_name(),
-                    "the next port of connection " + base::in_quotes(profile.name.in()) + " does not answer: " + e._name());
+    rt::log_refusal(base::Level::warn, port_name(), "the next port of " + named(profile) + " does not answer: " + e._name());
     return {RTC::RTC_ERROR, is_time_out(e)};
   }
 }
