@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-// One layer: a folder, the parts of the project whose headers it may include ("stubs" are the headers made from idl/, and its own), and the libraries of
-// others. Standard headers and those of the operating system are everybody's.
+// One layer: a folder, the parts of the project whose headers it may include ("stubs" are the headers made from idl/, and its own), and the
+// libraries of others. Standard headers and those of the operating system are everybody's.
 struct Layer {
   std::string folder;
   Names may_include;

@@ -216,14 +216,14 @@ Result<const Entry*> NamingTree::find(const Address& address) const {
   if (found.empty()) {
     std::vector<std::string> ids;
     for (const auto* object : objects()) names.push_back(object->name()), ids.push_back(object->id);
-    const auto meant = base::suggestion(split_kind(address.segments.back()).first, ids);
+    const auto similar = base::suggestion(split_kind(address.segments.back()).first, ids);
     constexpr std::size_t most = 12;
     if (names.size() > most) {
       names.resize(most);
       names.emplace_back("...");
     }
     return Error{"path " + address.text() + ": no such name" +
-                 (names.empty() ? ", name server " + server() + " is empty" : "; there are " + base::join(names, ", ") + meant)};
+                 (names.empty() ? ", name server " + server() + " is empty" : "; there are " + base::join(names, ", ") + similar)};
   }
   for (const auto* entry : found) names.push_back(entry->path());
   return Error{"path " + address.text() + ": names several things: " + base::join(names, ", ")};
