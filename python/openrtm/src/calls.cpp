@@ -317,7 +317,7 @@ void set_python_exception(const CORBA::SystemException& problem) {
   if (!cls || !codes) return;
   const auto completed = static_cast<Py_ssize_t>(problem.completed());
   const bool is_held = problem.minor() == omni::TIMEOUT_CallTimedOutOnServer && CORBA::TIMEOUT::_downcast(&problem);
-  const char* why = is_held ? "TIMEOUT_CallTimedOutOnServer: nobody has called activate() of its POAManager" : problem.NP_minorString();
+  const char* why = is_held ? "TIMEOUT_CallTimedOutOnServer: its POAManager is not active; call its activate()" : problem.NP_minorString();
   const Ref made(PyObject_CallFunction(cls, "IOs", problem.minor(), PyTuple_GET_ITEM(codes, completed < 3 ? completed : 0), why));
   if (made) PyErr_SetObject(cls, made.get());
 }

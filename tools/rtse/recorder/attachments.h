@@ -1,4 +1,4 @@
-// What a recording holds beside its samples: files, and what makes the run again. Any thread.
+// Attaches to a recording what it holds beside its samples: files, and what makes the run again. Any thread.
 #pragma once
 
 #include <cstdint>
