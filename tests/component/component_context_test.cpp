@@ -275,13 +275,13 @@ TEST_F(ComponentContextTest, a_rate_of_zero_is_as_fast_as_possible) {
 // What a component keeps in thread_local variables, a device handle for instance, must not be gone.
 TEST_F(ComponentContextTest, goes_on_with_the_same_thread_after_stop_and_start) {
   ASSERT_EQ(probe->initialize(), RTC::RTC_OK);
-  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
   std::mutex mutex;
   std::set<std::thread::id> threads;
   probe->during = [&](const std::string& callback) {
     const std::lock_guard lock(mutex);
     if (callback == "onExecute") threads.insert(std::this_thread::get_id());
   };
+  ASSERT_EQ(probe->activate(0), RTC::RTC_OK);
   const RTC::ExecutionContext_var context = first_context(*probe);
   for (int round = 0; round < 3; ++round) {
     EXPECT_TRUE(probe->wait_for("onExecute", probe->count("onExecute") + 3));
