@@ -265,7 +265,7 @@ def test_the_manager_of_an_object_adapter_holds_and_lets_go(shop):
     own.destroy(True, True)
 
 
-# Nobody has called activate() of the root POA's manager in this process.
+# The manager of the root POA is not active in this process.
 HELD = """
 import sys
 import Shop, RTC

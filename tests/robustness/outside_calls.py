@@ -130,13 +130,13 @@ def refused_again_and_again(manager, component):
     """Calls that fail, each of which would be a line."""
     orb = Orb()
     orb.kept = threading.local()
-    nobody = Ior.make("IDL:omg.org/RTC/RTObject:1.0", "127.0.0.1", orb.listener.getsockname()[1], b"nobody", 2)
+    silent = Ior.make("IDL:omg.org/RTC/RTObject:1.0", "127.0.0.1", orb.listener.getsockname()[1], b"silent", 2)
     contexts, ports = ([Remote(idl, orb, one.ior, name) for one in found] for found, name in (
         (component.get_owned_contexts(), "RTC::ExecutionContextService"), (component.get_ports(), "RTC::PortService")))
     bad = idl.struct("RTC::ConnectorProfile", name="bad", connector_id="", ports=[None], properties=[])
     for _ in range(500):
-        contexts[0].add_component(nobody)
-        assert manager.create_component("Nobody") is None
+        contexts[0].add_component(silent)
+        assert manager.create_component("NoSuchType") is None
         assert not ports or ports[0].connect(bad)[0] == "BAD_PARAMETER"
 
 

@@ -144,7 +144,7 @@ bool fill(Type& type, PyObject* descriptor) {
   }
 }
 
-// Of stubs; the others may be made anew for each any.
+// Stubs register their descriptors; all others may be made anew for each any.
 bool is_registered(PyObject* descriptor) {
   if (PyTuple_GET_SIZE(descriptor) < 3) return false;
   const bool has_class = PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 2)) && !PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 1));
