@@ -32,7 +32,7 @@ async function end_by(signal, status) {
   const ended = new Promise((resolve) => child.once('close', resolve));
   await until('a flow or the end', () => said.includes('\nok ') || said.startsWith('ok ') || child.exitCode !== null);
   if (child.exitCode === 77) {
-    console.log('skipped: no chromium (scripts/setup installs it)');
+    console.log('skipped: no chromium-headless-shell (scripts/setup installs it)');
     process.exit(77);
   }
   check(marked().length > 3, 'a system runs');
