@@ -1,5 +1,5 @@
-// Kinematics of a chain of joints: the pose of its tip, and joint positions for a pose by damped least squares. The same question has the
-// same answer: no random seeds, no time limit. Units: m, rad. Values; any thread.
+// Kinematics of a chain of joints: the pose of its tip, and joint positions for a pose by damped least squares. Equal arguments give equal
+// results: no random numbers, no time limit. Units: m, rad. Values; any thread.
 #pragma once
 
 #include <shm/iface_types.h>

@@ -1,9 +1,8 @@
-// An arm whose tip goes to poses: on a straight line where the joints can, else through joint space. A new pose on the way is taken from
-// there, without a stop, so poses can be streamed. Poses are those of the tip in the frame that carries the first joint. Units: m, rad, s.
-// One thread at a time.
+// An arm whose tip moves to poses: on a straight line if the joints allow it, otherwise through joint space. A new pose replaces the
+// current one without a stop, so poses can be streamed. Poses are those of the tip in the frame that carries the first joint. Units: m,
+// rad, s. One thread at a time.
 //
-// States: held by brakes -> standing -> on a line, on a way of the joints, or coming to rest -> standing. An arm that is blocked, and one
-// that is held, forgets its goal.
+// States: braked -> at rest -> on a line, on a path of the joints, or stopping -> at rest. A blocked or braked arm discards its goal.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,8 @@
-// State of a JARA manipulator, without the wire: servo, alarms, settings, and a queue of motions that simulated time moves on. Its answers
-// are those of the JARA text. Units: rad or m, s. One thread at a time: the component keeps a lock around it.
+// State of a JARA manipulator, independent of CORBA: servo, alarms, settings, and a queue of motions, which advance with simulated time.
+// Return codes are those of the JARA specification. Units: rad or m, s. One thread at a time: the component keeps a lock around it.
 //
-// States: servo off -> standing -> moving -> paused or stopping -> standing. An alarm or servo off drops the queue from every state.
-// A motion is planned on a copy (planning()), without the lock; add() fails when the queue was dropped in the meantime.
+// States: servo off -> at rest -> moving -> paused or stopping -> at rest. An alarm or servo off discards the queue from every state. A
+// motion is planned on a copy (planning()), without the lock. add() fails if the queue was discarded in the meantime.
 #pragma once
 
 #include <cstdint>

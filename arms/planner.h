@@ -1,5 +1,5 @@
 // Plans the motions of an arm: joint space, straight lines and arcs, within the limits of its settings. Units: rad or m for joints, m, s.
-// Errors are replies with the return codes of the JARA text. Values; any thread.
+// Errors are replies with the return codes of the JARA specification. Values; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

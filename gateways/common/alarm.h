@@ -1,4 +1,4 @@
-// Tells an event loop that ifaces have published: a thread sleeps on their futexes and makes a file descriptor readable. The public
+// Notifies an event loop when ifaces have published: a thread sleeps on their futexes and makes a file descriptor readable. The public
 // functions belong to one thread at a time.
 #pragma once
 

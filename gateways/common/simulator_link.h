@@ -1,5 +1,5 @@
-// The simulator that a gateway serves: found when it starts, lost when it ends, listed again when models or ifaces come or go. A gateway
-// derives what it reads of the list. One thread at a time.
+// The connection of a gateway to its simulator. It is made when the simulator starts, and lost when the simulator exits. When models or
+// ifaces are added or deleted, it lists them again. A gateway derives a class that reads the list. One thread at a time.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// An iface that one or several devices of a gateway show. Works (and lets the sensor work) only while somebody reads. One thread at a time.
+// An iface that one or several devices of a gateway show. It subscribes, which switches the sensor on, only while a client reads. One
+// thread at a time.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// camera: pictures as they come, or as JPEG. One thread at a time.
+// camera: images as the iface has them, or as JPEG. One thread at a time.
 #pragma once
 
 #include <array>

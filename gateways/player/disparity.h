@@ -1,8 +1,9 @@
-// Stereo vision of two cameras side by side: which cameras are a pair, and the disparities of a pair of images. Pure; any thread.
+// Stereo vision of two cameras side by side: finds the pairs of cameras, and the disparities of a pair of images. Pure; any thread.
 //
-// The method is block matching: the 9 x 9 pixels around a pixel of the left image are compared with those of each place of the same row of
-// the right image, up to a quarter of the width away; the least sum of absolute differences of grey wins, refined by the parabola through
-// its neighbours. A pixel has no disparity where another place is almost as good, as on walls of one colour, or where no place is good.
+// The method is block matching: the 9 x 9 pixels around a pixel of the left image are compared with those around each position of the same
+// row of the right image, up to a quarter of the width away. The least sum of absolute differences of grey wins, refined by the parabola
+// through its neighbours. A pixel has no disparity if another position matches almost as well, as on walls of one colour, or if no position
+// matches well.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Access control: accepts the account of this process and root on this machine; others with the key, if there is one; every client if the
-// gateway is open. Values; one thread at a time.
+// Access control. Accepts the account of this process and root on this machine, other clients with the key if one is set, and every client
+// if the gateway is open. Values; one thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// localize, rfid and wifi: what a robot finds out about its surroundings without a scan. One thread at a time.
+// localize, rfid and wifi: estimates of a robot's surroundings without a scan. One thread at a time.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // The gateway: ports, clients and the simulator in one event loop. One thread.
 //
-// Three threads help it: alarm.h sleeps on the futexes of all subscribed ifaces, and two of errands.h send requests to the simulator, one
-// of them those whose replies are work, as maps. So samples are not polled, and a simulator that hangs does not delay a client.
+// Three more threads: that of alarm.h sleeps on the futexes of all subscribed ifaces. Two of errands.h send requests to the simulator, one
+// of them those with expensive replies, such as maps. So samples are not polled, and a hanging simulator does not delay a client.
 #pragma once
 
 #include <sys/epoll.h>

@@ -1,5 +1,5 @@
-// graphics2d and graphics3d: what clients draw, as a model without shapes that collide, so that pictures and studio show it and nothing
-// else does. One thread at a time.
+// graphics2d and graphics3d: drawings of clients, as a model without collision shapes, so that only images and the studio show it. One
+// thread at a time.
 #pragma once
 
 #include <Eigen/Geometry>

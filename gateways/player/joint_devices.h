@@ -1,7 +1,6 @@
-// actarray, gripper and ptz, and the base of limb (limb_device.h): joints of a joints iface. The device commands through a handle of its
-// own, so that devices of one iface do not take each other's commands back. Its joints brake when the client that commanded them last lets
-// go of the device or vanishes. What cannot be obeyed (Player's commands have no answer) is a line in the log, once for each line. One
-// thread at a time.
+// actarray, gripper and ptz, and the base of limb (limb_device.h): joints of a joints iface. Each device commands through its own handle,
+// so devices of one iface do not withdraw each other's commands. Joints brake when the client that commanded them last releases the device
+// or disconnects. Player's commands have no reply, so a command that cannot be executed is logged, each line once. One thread at a time.
 #pragma once
 
 #include <array>

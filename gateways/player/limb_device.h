@@ -1,4 +1,4 @@
-// limb: the tip of a chain of joints goes to poses. The state and its motions are those of arms/limb.h, as in RTCLimb. One thread at a
+// limb: moves the tip of a chain of joints to poses. The state and its motions are those of arms/limb.h, as in RTCLimb. One thread at a
 // time.
 #pragma once
 

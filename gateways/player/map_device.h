@@ -1,4 +1,4 @@
-// map and vectormap: what is static in the world, as an occupancy grid in tiles and as lines. They have no data. One thread at a time.
+// map and vectormap: the static part of the world, as an occupancy grid in tiles and as lines. They publish no data. One thread at a time.
 #pragma once
 
 #include <array>

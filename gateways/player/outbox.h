@@ -1,9 +1,9 @@
 // The queue of messages to one client, and the rules by which a newer sample replaces an older one: PUSH, PULL and the replace rules of the
 // client. No sockets. One thread at a time.
 //
-// Answers go out at once. Data waits: in PULL until the client asks, in PUSH until what was sent before has left. The newest sample of a
-// device and subtype replaces the one before, unless a rule of the client says that all are kept; then the oldest gives way without a word
-// when too many wait, since clients die of the message that says how many were lost.
+// Replies are sent at once. Data wait: in PULL until the client requests them, in PUSH until earlier data have been sent. The newest sample
+// of a device and subtype replaces the one before, unless a rule of the client keeps all. Then, if too many wait, the oldest is dropped
+// without a message, because clients crash on the message that has the number of lost samples.
 #pragma once
 
 #include <cstdint>

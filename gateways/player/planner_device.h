@@ -1,4 +1,4 @@
-// planner: drives a robot to places of the world, past what is static. One thread at a time.
+// planner: drives a robot to poses in the world, around static obstacles. One thread at a time.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// pointcloud3d: clouds of scanners with several layers, and what depth cameras see. One thread at a time.
+// pointcloud3d: point clouds of multi-layer scanners and of depth cameras. One thread at a time.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// laser, sonar and ranger (of either): ranges out, settings asked for. One thread at a time.
+// laser, sonar and ranger (of either): send ranges, and report settings on request. One thread at a time.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// For how long a simulator has been there, and for how much of that it was paused, as far as the gateway could see it: from when it was met
-// on, and before if it has never run. One thread at a time.
+// Real time since the start of a simulator, and the part of it in which the simulator was paused, as the gateway observed it: from its
+// first connection on, and before that if the simulator had never run. One thread at a time.
 #pragma once
 
 #include <chrono>

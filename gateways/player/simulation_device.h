@@ -1,4 +1,4 @@
-// simulation: poses of models by name, properties of time, pause and reset. Has no data. One thread at a time.
+// simulation: poses of models by name, properties of time, pause and reset. It publishes no data. One thread at a time.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
-// Wakes the event loop, which sleeps on a futex together with the ifaces that it shows: so a step of the simulator wakes one thread, not
-// two. A thread rings for file descriptors: at each edge, as epoll has it. ring() belongs to any thread, the rest to one at a time.
+// Wakes the event loop, which sleeps on a futex together with the ifaces that it shows, so that a step of the simulator wakes one thread
+// instead of two. A thread of its own waits for file descriptors by edge-triggered epoll, and rings for them. ring() belongs to any thread,
+// the rest to one at a time.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // Commands for one robot: velocities and joints, from topics to ifaces. One thread at a time.
 //
-// The newest command of any client and topic counts. It ends after a time without another one, in simulated time; then the
-// robot stops. Values that are no numbers are refused and counted.
+// The newest command of any client and topic counts. If no further command arrives within a timeout of simulated time, the robot stops.
+// Commands with NaN or infinite values are rejected and counted.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
-// The graph of ROS 2: which nodes this participant has, told to others, and which nodes others have.
+// The graph of ROS 2: announces the nodes of this participant, and reads those of other participants.
 //
-// Humble and its successors have gids of different size, and a message of the wrong size can end a process of Humble. So nothing is told
-// before the family of the domain is known: set, or seen in the endpoints of a peer. One thread at a time.
+// Humble and its successors have gids of different size, and a message of the wrong size can end a process of Humble. So no node is
+// announced before the distribution of the domain is known: from an option, or from the endpoints of a peer. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,8 +1,8 @@
-// The node of ROS 2 that the ports of this process share, with its participant of DDS. Made with the first topic; it stays until the
+// The node of ROS 2 that the ports of this process share, with its participant of DDS. Created with the first topic; it exists until the
 // process ends. Any thread.
 //
-// A thread of its own takes what DDS has received. It calls the receivers after it has released the participant, so a receiver may write
-// and may end its own topic. Errors: DDS has no room, or cannot use the network.
+// Its thread receives the samples of DDS. It calls the receivers after it has released the participant, so a receiver may write and may end
+// its own topic. Errors: DDS is out of resources, or cannot use the network.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The gateway's place in the lock step. The event loop sleeps here between ticks, so a tick wakes one thread. After the simulator has
-// ended, or dropped the gateway, it joins again. interrupt() belongs to any thread, the rest to one at a time.
+// The gateway as a lock-step participant. The event loop sleeps here between ticks, so a tick wakes one thread. If the simulator exits, or
+// drops the gateway, the gateway joins again. interrupt() belongs to any thread, the rest to one at a time.
 #pragma once
 
 #include <chrono>

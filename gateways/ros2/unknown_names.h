@@ -1,6 +1,5 @@
-// Names in the mapping file and in options that do not fit the world: those that it does not have (most are misspelled, others belong to
-// models that come later), and those that two of its parts would share.
-// Pure; any thread.
+// Checks the names of the mapping file and of options against the world. Reports names that the world does not have (most are misspelled,
+// others belong to models that are added later), and names that two parts share. Pure; any thread.
 #pragma once
 
 #include <map>

@@ -1,8 +1,8 @@
 // Commands that a tick waits for (--wait-for cmd_vel=20Hz). Pure but for the clock that it is given; one thread at a time.
 //
-// A tick waits for a topic at each multiple of its period but 0, at the first tick at or after it. A command with a stamp must carry the
-// time of the tick; one without a stamp must come after the tick's clock was sent. Other commands of such a topic do not count, so that
-// the moment at which they come changes nothing. At time 0 the timers of ROS do not run yet, and a stamp of 0 is none.
+// A tick waits for a topic at each multiple of its period except 0, at the first tick at or after it. A command with a stamp must carry the
+// time of the tick; one without a stamp must arrive after the tick's clock was sent. Other commands of such a topic do not count, so their
+// time of arrival has no effect. Time 0 is excluded: the timers of ROS do not run yet, and a stamp of 0 means no stamp.
 #pragma once
 
 #include <chrono>

@@ -1,10 +1,10 @@
-// A line to a simulator, as Python sees it: requests, time and steps.
+// The connection of Python to a simulator: requests, time and steps.
 //
 // Errors: the exceptions of errors.h. Waits: each has a timeout; while it waits, the GIL is released, and Python's signal handlers run ten
 // times a second, so Ctrl-C raises KeyboardInterrupt. It pauses the simulator: no further step is made. A request with a text (spawn) is
 // answered, or times out, before.
 // Threads: with the GIL. A second thread that calls while a first one waits gets an Error.
-// Fork: the child's copy does nothing when it is destroyed, so the parent's line stays open.
+// Fork: the child's copy does nothing when it is destroyed, so the parent's connection stays open.
 #pragma once
 
 #include <pybind11/pybind11.h>

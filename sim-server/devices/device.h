@@ -1,6 +1,6 @@
 // The interface of all devices to the server's loop, and the parts of the world that a device may use. The loop calls, in this order and
 // for all devices in the order of the world: before_step, (step), after_step, then for those that are due take_sample, and publish. Devices
-// that publish samples are Sensors (sensor.h), which leaves them little of this to write; cameras draw in their own time. The stepping
+// that publish samples are Sensors (sensor.h), which implements most of these calls; cameras draw in threads of their own. The stepping
 // thread only, but take_sample() of different devices may run in several threads at the same time: it reads the world and changes nothing
 // but its own device. So may before_step() and after_step() of different models.
 #pragma once

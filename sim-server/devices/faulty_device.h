@@ -1,5 +1,5 @@
-// A device with faults that somebody has asked for: stands before the real one, which knows nothing of it. Without faults there is none of
-// these. See device.h for the thread rule.
+// A device with injected faults. It wraps the real device, which is not changed. Devices without faults are not wrapped. See device.h for
+// the thread rule.
 #pragma once
 
 #include <functional>

@@ -1,13 +1,14 @@
-// The world as pictures see it: a scene that follows what comes and goes in the physics, and where everything is. The stepping thread only;
-// what it hands out never changes and any thread may keep it.
+// The world for images: a scene that follows models as they are added and deleted, and their poses. The stepping thread only; its snapshots
+// never change, and any thread may keep them.
 //
-// The files of meshes and images are read with the first picture. They may take as long as thousands of steps, so a thread of its own reads
+// The files of meshes and images are read with the first image. They may take as long as thousands of steps, so a thread of its own reads
 // them (prepare). States of a content, visuals or collisions:
 //   unread    some file of its models has not been read. prepare() -> reading
-//   reading   prepare() answers false. The thread calls on_read's function when it is done -> read
-//   read      prepare() answers true; snapshot() reads no file, until a model comes that brings files -> unread
-// snapshot() is right in each state: it waits for the thread, and reads what is left itself. So time that waits for pictures (lock step)
-// does not depend on how long files take. What cannot be read counts as read. Nothing that the thread reads is seen before it is done.
+//   reading   prepare() returns false. The thread calls on_read's function when it is done -> read
+//   read      prepare() returns true; snapshot() reads no file, until a model is added that brings files -> unread
+// snapshot() is right in each state: it waits for the thread, and reads the remaining files itself. So simulated time that waits for images
+// (lock step) does not depend on how long files take. A file that cannot be read counts as read. Results of the thread are not visible
+// before it is done.
 #pragma once
 
 #include <chrono>

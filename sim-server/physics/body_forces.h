@@ -2,8 +2,8 @@
 // physics/. The stepping thread of the shard.
 //
 // Added mass is not a mass for ODE, whose bodies have one number for all directions. Its force is that of the acceleration which the forces
-// of the last step give a body with both masses. What a change of the forces leaves over, against the momentum of the water, is paid in the
-// next step. So the step is stable however large the added mass is, and the body moves as one of both masses from the second step on.
+// of the last step give a body with both masses. If the forces change, the missing part of the water's momentum is applied in the next
+// step. So the step is stable for any added mass, and the body moves as one of both masses from the second step on.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Turns bodies that nothing touches or holds as Euler's equations say. ODE's gyroscopic torque takes 5 % of the energy of a tumbling plate
-// in ten seconds; here its angular momentum stays, and its energy to 1e-6. Private to physics/; the stepping thread of the shard.
+// Rotates bodies without contacts and joints by Euler's equations. ODE's gyroscopic torque takes 5 % of the energy of a tumbling plate in
+// ten seconds. Here its angular momentum is constant, and its energy to 1e-6. Private to physics/; the stepping thread of the shard.
 #pragma once
 
 #include <vector>

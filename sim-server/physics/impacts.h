@@ -1,6 +1,6 @@
-// Impacts that go on through several bodies, as in Newton's cradle. ODE's solvers decide all contacts of a step at once: of five equal
-// balls in a row four leave together. Here the impacts of one step happen one after the other, each between two bodies and what joints
-// hold to them, before the step. No impact adds energy. Friction acts in the step, after them.
+// Impacts that propagate through several bodies, as in Newton's cradle. ODE's solvers decide all contacts of a step at once: of five equal
+// balls in a row four leave together. Here the impacts of one step happen one after the other, before the step, each between two bodies and
+// those that joints hold to them. No impact adds energy. Friction acts in the step, after them.
 //
 // Private to physics/; the stepping thread of the shard.
 #pragma once

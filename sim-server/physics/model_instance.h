@@ -1,4 +1,4 @@
-// One model as it lives in an ODE world: its bodies, joints and collision shapes. Private to physics/. One thread at a time.
+// One model in an ODE world: its bodies, joints and collision shapes. Private to physics/. One thread at a time.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Finds the models whose neighbourhoods meet. Private to physics/. One thread at a time.
+// Finds the models whose neighbourhoods overlap. Private to physics/. One thread at a time.
 #pragma once
 
 #include <vector>

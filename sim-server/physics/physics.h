@@ -1,9 +1,9 @@
-// The moving world: bodies, joints and contacts of a WorldDef, stepped by ODE. Nothing of ODE shows here.
+// The moving world: bodies, joints and contacts of a WorldDef, stepped by ODE. No type of ODE is visible here.
 //
-// Models that cannot touch each other within a step are stepped apart, on several cores when there are: every moving model belongs to a
-// shard (one ODE world); models whose neighbourhoods overlap share one and move over when they do not. Shards depend on the world alone,
-// never on the number of threads, so the result does not either.
-// One thread at a time (the stepping thread). Units: m, rad, kg, N, s; world frame unless a comment says otherwise.
+// Models that cannot touch each other within a step are stepped separately, on several cores if available: every moving model belongs to
+// a shard (one ODE world). Models whose neighbourhoods overlap share a shard, and are separated when they no longer overlap. Shards depend
+// on the world alone, never on the number of threads, so the result does not either. One thread at a time (the stepping thread). Units: m,
+// rad, kg, N, s; world frame unless a comment says otherwise.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -6,19 +6,19 @@
 // slip or weld is on it. Balls without friction go along and keep turning as they did; others roll. Everything else of it that touches the
 // ground slides.
 //
-// State                     how it goes on
-// watched                   ODE steps it. After 0.5 s in which each step found it rolling alone, or when it falls asleep alone, it rolls:
-// its
-//                           posture on the ground, the places of its contacts and the rates of its wheels are what ODE has then.
-// rolling                   its bodies are disabled in ODE. Each step puts them where they are and gives them their velocities, so that
-//                           sensors, encoders, contacts and hashes find what they find after a step of ODE.
-// rolling, asleep           its bodies have no velocity; nothing is done until a motor is to turn.
+// State                     transitions
+// watched                   ODE steps it. It rolls after 0.5 s in which each step found it rolling alone, or when it falls asleep alone.
+//                           Its posture on the ground, the places of its contacts and the rates of its wheels are then those of ODE.
+// rolling                   its bodies are disabled in ODE. Each step sets their poses and velocities, so that sensors, encoders,
+//                           contacts and hashes find the same state as after a step of ODE.
+// rolling, asleep           its bodies have no velocity; nothing is done until a motor starts.
 //
-// It rolls alone if the ground, a level plane or the top of a box, is the one thing that it touches, and everything else is further away
-// than both need to stop. It is watched again, at once and from where it is, when that ends; when a wheel would slip or a contact would
-// lift off in the step, which ODE then makes; when somebody puts it somewhere, pushes it, gives it a velocity or another gravity, attaches
-// something to it, or gives a motor a controller; when what never moves is changed, or anything is deleted. What cannot roll stays watched
-// forever, and costs nothing.
+// It rolls alone if the ground, a level plane or the top of a box, is the only object that it touches, and everything else is further away
+// than both need to stop. It is watched again at once, from where it is:
+//   when that ends, or when a wheel would slip or a contact would lift off in the step, which ODE then makes;
+//   when a client sets its pose, velocity or gravity, pushes it, attaches something to it, or gives a motor a controller;
+//   when a static model is changed, or anything is deleted.
+// A model that cannot roll stays watched forever, and costs nothing.
 // The decisions depend on the states of models of the same shard before the step, and on nothing else.
 #pragma once
 

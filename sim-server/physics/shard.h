@@ -1,9 +1,9 @@
-// One ODE world with the models that live in it: finds their contacts and steps them. Private to physics/. Different shards may be
-// stepped by different threads at the same time; they share static shapes, which no thread changes meanwhile.
+// One ODE world with its models: finds their contacts and steps them. Private to physics/. Different shards may be stepped by different
+// threads at the same time; they share static shapes, which no thread changes meanwhile.
 //
 // Moving models are found near each other by boxes of their own instead of ODE's quad-tree space, and models that can meet share a shard.
-// Each group of models that touch is solved exactly, or by ODE's quick step where many moving bodies lie on each other; exactly means by
-// ODE, or by TreeSolver where one of them has many joints. What sleeps costs nothing.
+// Each group of models that touch is solved exactly, or by ODE's quick step if many moving bodies lie on each other. The exact solver is
+// ODE's, or TreeSolver if one of the models has many joints. Sleeping models cost nothing.
 #pragma once
 
 #include <deque>

@@ -1,8 +1,8 @@
-// A triangle mesh that can be asked what is inside of it, where its surface is nearest, and where a line goes through it. Private to
+// Queries on a triangle mesh: whether a point is inside, the nearest point of its surface, and intersections with a line. Private to
 // physics/. Read only after construction; any thread.
 //
-// Sides are told by the normals of faces, edges and corners (each the mean of its faces, weighted by angles), which is right everywhere for
-// a closed surface and near the surface for an open one. A closed surface that is turned inside out is turned back.
+// Inside and outside are determined by the normals of faces, edges and corners (each the mean of its faces, weighted by angles). This is
+// right everywhere for a closed surface, and near the surface for an open one. A closed surface that is turned inside out is turned back.
 #pragma once
 
 #include <Eigen/Core>

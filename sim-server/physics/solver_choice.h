@@ -1,11 +1,11 @@
-// By which solver models that touch each other are stepped: the exact ones as long as their work is worth it, else ODE's iterative one.
-// Estimates from counts and masses alone, so that every machine chooses alike. Pure; any thread.
+// Chooses the solver for models that touch each other: an exact one if its work is acceptable, otherwise ODE's iterative one. Estimates
+// from counts and masses alone, so that every machine chooses alike. Pure; any thread.
 //
-// An exact solution is worth 20 times the work of an iterative one: it holds arms and stands on its feet, where 50 rounds let a hand of ten
-// joints sink by 0.37 m in a second. Beyond that a step costs tens of milliseconds: a humanoid of 75 bodies that lies in the ground.
+// An exact solution is worth 20 times the work of an iterative one: arms and legs hold their position, while 50 iterations let a hand of
+// ten joints sink by 0.37 m in a second. Beyond that a step costs tens of milliseconds: a humanoid of 75 bodies that lies in the ground.
 //
-// A heap is solved exactly, too, when one of its models weighs more than twenty times as much as another: an iteration takes up no more
-// of the load than the lighter one weighs, and 100 t sink through a plate of 1 kg.
+// A heap is solved exactly, too, when one of its models weighs more than twenty times as much as another. An iteration carries no more of
+// the load than the weight of the lighter one, and 100 t sink through a plate of 1 kg.
 #pragma once
 
 #include <algorithm>

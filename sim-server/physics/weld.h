@@ -1,8 +1,8 @@
 // Two bodies of different models that are held together as they were when they were attached, until they are detached. Private to physics/.
 // One thread at a time.
 //
-// The shard makes ODE's joint again when a body is another one (the model has moved to another shard) or gone. Where the tree solver steps
-// the models, it has rows of its own for the weld and switches the joint off. Contacts between the two bodies do not count.
+// The shard creates ODE's joint again when a body was replaced (the model has moved to another shard) or deleted. Where the tree solver
+// steps the models, it has rows of its own for the weld and switches the joint off. Contacts between the two bodies do not count.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,6 +1,6 @@
-// The run whose recording is followed. Its end comes by the standard input: the summary when the recording is whole, nothing if the run was
-// given up. Until then the work on the page gets only a share of one processor, so that it does not slow the run down, or all of one if two
-// are idle. One thread at a time.
+// The run whose recording is followed. Its end is read from standard input: the summary when the recording is complete, nothing if the run
+// was abandoned. Until then the work on the page gets only a share of one processor, so that it does not slow the run down, or all of one
+// if two are idle. One thread at a time.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// A page while it is written: a file without a name where the file system can do that, else one beside it, which takes the page's name when
-// it is whole. A killed process leaves an older page as it is. One thread at a time.
+// A page while it is written: a file without a name if the file system supports that, otherwise one beside the page. It gets the page's
+// name when it is complete. A killed process leaves an older page as it is. One thread at a time.
 #pragma once
 
 #include <cstdint>

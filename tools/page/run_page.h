@@ -1,6 +1,6 @@
 // Writes a recording as one HTML file that shows the run in a browser without a server and without a network: the page of rtm-studio, with
 // the data of the run in it (docs/run-page.md). The file is complete or it is not there, and an older one of its name stays until then.
-// A recording that is still being written is followed: what stands in it is written into the page meanwhile. Memory: one part of the
+// A recording that is still being written is followed: its samples are written into the page meanwhile. Memory: one part of the
 // recording at a time, below 64 MiB with all else. One thread at a time.
 #pragma once
 

@@ -1,5 +1,5 @@
-// A service that hears what a component says of itself (OpenRTM::Logger), attached to it as a service profile: its log, or its events. What
-// comes is taken on threads of the ORB, one call at a time, and none after the end of the object. One thread at a time.
+// Receives the log or the events of a component (OpenRTM::Logger), attached to it as a service profile. Messages arrive on threads of the
+// ORB, one call at a time, and none after the end of the object. One thread at a time.
 #pragma once
 
 #include <functional>

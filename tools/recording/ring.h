@@ -1,6 +1,6 @@
-// The pieces of a ring: what `rtse record --last` writes while it records, so that a kill costs no more than of any recording. "ring.mcap"
-// has the pieces ring-001.mcap, ring-002.mcap, ..., of which the latest two are there; each spans the ring's time, can be read alone, and
-// says in its metadata `ring` what it is. At the end they are put together. Any thread, but one at a time for a ring.
+// The segments of a ring recording, which `rtse record --last` writes, so that a kill loses no more than in other recordings. "ring.mcap"
+// has the segments ring-001.mcap, ring-002.mcap, ..., of which the latest two exist. Each spans the ring's time, can be read alone, and is
+// marked by its metadata `ring`. At the end they are merged. Any thread, but one at a time for a ring.
 #pragma once
 
 #include <chrono>

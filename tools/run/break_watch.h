@@ -1,5 +1,5 @@
-// Looks in every tick whether a condition holds, and makes time stand still when it does. It has a thread of its own, which takes part in
-// the lock step as the last; construct and use it on one thread.
+// Evaluates a condition in every tick, and pauses the simulation when it becomes true. It has a thread of its own, which is the last
+// participant of the lock step; construct and use it on one thread.
 #pragma once
 
 #include <chrono>

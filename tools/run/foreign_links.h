@@ -1,7 +1,7 @@
-// Samples between third-party components of a run. They pass no port of ours, so this subscribes to each such OutPort, as a recorder does:
-// for the hash log, which has them like samples of our OutPorts, and to detect nondeterminism. Left out is what differs in each run and is
-// no data: the stamp of the sender's own clock (if the first member of the type is an RTC::Time, it counts as 0), and the bytes that align
-// members.
+// Samples between third-party components of a run. They pass no port of this runtime, so this subscribes to each such OutPort, as a
+// recorder does: for the hash log, which has them like samples of other OutPorts, and to detect nondeterminism. Values that differ in each
+// run and are not data are left out: the stamp of the sender's own clock (if the first member of the type is an RTC::Time, it counts as 0),
+// and the bytes that align members.
 //
 // A sample belongs to the simulated time in which it comes: its sender waits for the listener, and in lock step time waits for the sender.
 // One thread at a time; samples come on the ORB's threads, and end() returns after the last one.

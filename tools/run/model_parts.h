@@ -1,5 +1,5 @@
-// Links, joints and grippers of the models of a world, and who holds what: from the tree that the simulator tells of (RTMSIM_REQUEST_TREE,
-// sim-server --check --json). Values; any thread.
+// Links, joints and grippers of the models of a world, and the objects that grippers hold: read from the tree of the simulator
+// (RTMSIM_REQUEST_TREE, sim-server --check --json). Values; any thread.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,8 +1,8 @@
 // Repeats the changes that were made to a component while it was recorded: parameters, activation, deactivation, reset. One thread at a
 // time.
 //
-// What took effect in tick t is asked for at the end of the tick before, and the component takes it up where its next tick begins; what
-// happened between two ticks is done while time stands still there.
+// A change that took effect in tick t is requested at the end of the tick before, so the component applies it at the start of its next
+// tick. A change between two ticks is made while the simulation is paused there.
 #pragma once
 
 #include <chrono>

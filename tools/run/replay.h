@@ -1,8 +1,8 @@
-// A component alone, with its recorded inputs: what was sent to it is sent again in the ticks in which it was sent, and what it answers is
-// compared. One thread at a time; it has a thread of its own, which takes part in the lock step.
+// Runs one component with its recorded inputs: each input is sent in the tick in which it was recorded, and the outputs are compared. One
+// thread at a time; it has a thread of its own, which takes part in the lock step.
 //
-// What was sent in tick t by a component of an earlier phase comes before the component's tick t, all else behind it: so it was read in the
-// recorded run, too.
+// Inputs of tick t from components of an earlier phase are sent before the component's tick t, all others after it. So the component reads
+// them in the same tick as in the recorded run.
 #pragma once
 
 #include <cstdint>

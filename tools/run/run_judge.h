@@ -1,5 +1,5 @@
-// The verdict on a run: what was expected, what was seen, and what the two give. In the order of the calls: `read` before anything starts,
-// `look` while the world stands still at the end and every process lives, `run_commands` then, and `judge` last. One thread.
+// The verdict on a run, from its expectations and the measured values. Call in this order: `read` before anything starts, `look` at the
+// end, while the simulation is paused and all processes run, then `run_commands`, and `judge` last. One thread.
 #pragma once
 
 #include <map>

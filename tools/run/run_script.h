@@ -1,8 +1,8 @@
-// Hooks of a run: values before the start, actions between two steps, numbers at the end. One thread at a time; the calls come in the order
-// in which they are written here.
+// Hooks of a run: values before the start, actions between two steps, numbers at the end. One thread at a time; the calls are made in the
+// order in which they are declared here.
 //
-// Actions happen while simulated time stands still and every participant has ended its tick, so runs with the same actions at the same
-// steps are bit-identical.
+// Actions happen while the simulation is paused and every participant has ended its tick, so runs with the same actions at the same steps
+// are bit-identical.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// rtse run: a whole system of processes, started from a profile, run in lock step with a simulated world, judged, and taken down without a
-// trace. One thread at a time.
+// rtse run: a whole system of processes, started from a profile, run in lock step with a simulated world, judged, and ended without
+// remains. One thread at a time.
 #pragma once
 
 #include <sys/types.h>

@@ -1,4 +1,4 @@
-// The same run twice, and whether it was the same. One thread at a time.
+// Runs a system twice and compares the two runs. One thread at a time.
 #pragma once
 
 #include "run/run_system.h"

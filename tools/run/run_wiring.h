@@ -1,5 +1,5 @@
-// The components of a run, wired and active: at the start, and again after the process of some was restarted. Its calls have timeouts. One
-// thread at a time.
+// Connects and activates the components of a run: at the start, and again after a process of components was restarted. Its calls have
+// timeouts. One thread at a time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,4 +1,4 @@
-// When and where an expectation failed that a run did not fulfil. Pure; any thread.
+// Finds the time and the object of an expectation that was not met. Pure; any thread.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Which component publishes which topic and which ones receive it, as foxglove.websocket.v1 has it. Pure; any thread.
+// Maps each topic to the components that publish it and those that receive it, as foxglove.websocket.v1 has it. Pure; any thread.
 #pragma once
 
 #include <string>

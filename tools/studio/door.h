@@ -1,9 +1,9 @@
 // Access control of the studio server: checks the token, the Host and the Origin of a request. Values; any thread.
 //
 // A page of another site that runs in the user's browser can send requests here. It does not know the token; its Origin is not ours; and
-// a name that it has made to lead here (DNS rebinding) is none of our hosts. Each of the three is enough to keep it out, and all are asked.
-// There is no cookie: browsers send one to every port of a host, so a server on another port would get it. The page keeps the token, and
-// sends it with each request.
+// a name that it has made to lead here (DNS rebinding) is not one of our hosts. Each of the three checks is enough to reject it, and all
+// are made. There is no cookie: browsers send one to every port of a host, so a server on another port would get it. The page keeps the
+// token, and sends it with each request.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// The head of an HTTP request as it came, before a parser sees it. What two programs could read in two ways is refused: a proxy or a
-// browser before us might have judged another request than the one that we would answer. Values; any thread.
+// The head of an HTTP request as it was received, before a parser reads it. A head that two programs could read in two ways is rejected: a
+// proxy or a browser before us might have judged another request than the one that we would answer. Values; any thread.
 #pragma once
 
 #include <cstddef>

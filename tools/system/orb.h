@@ -1,4 +1,4 @@
-// The ORB of a tool, and the name server that it speaks to when it is told nothing. One thread at a time.
+// The ORB of a tool, and the name server that it uses by default. One thread at a time.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -1,5 +1,5 @@
-// Checks whether a value fits a parameter of a component, by the types and constraints that its configuration tells (the hidden sets
-// __type__ and __constraints__, as editors of OpenRTM write them). Pure; any thread.
+// Checks whether a value fits a parameter of a component, by the types and constraints in its configuration (the hidden sets __type__ and
+// __constraints__, as editors of OpenRTM write them). Pure; any thread.
 #pragma once
 
 #include <string>

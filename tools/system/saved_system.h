@@ -1,5 +1,5 @@
-// Whole systems: takes a running one down as a profile, and brings a running one to what a profile says. Nothing is printed: what was
-// done and what failed are values. One thread at a time; calls to components are made on several threads.
+// Saves a running system as a profile, and changes a running system to match a profile. It prints nothing: what was done and what failed
+// are values. One thread at a time; calls to components are made on several threads.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Values as people type them at `rtse inject`, led by a type code. Pure; any thread.
+// Reads values as users type them at `rtse inject`, by a type code. Pure; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Samples of any data type of idl/ as text: CDR payload -> JSON and back, led by the type code. Pure; any thread.
+// Converts samples of any data type of idl/ to text and back: CDR payload -> JSON, by the type code. Pure; any thread.
 #pragma once
 
 #include <cstdint>

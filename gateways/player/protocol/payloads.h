@@ -1,5 +1,5 @@
-// Payloads of the interfaces that are served, and the way to bytes and back. Lengths m, angles rad, counter-clockwise positive, x forward.
-// decode gives nothing for bytes that are not exactly the structure. Values; any thread.
+// Payloads of the served interfaces, and their encoding. Lengths m, angles rad, counter-clockwise positive, x forward. decode returns
+// nothing for bytes that are not exactly the structure. Values; any thread.
 #pragma once
 
 #include <cstdint>

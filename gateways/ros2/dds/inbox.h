@@ -1,5 +1,5 @@
-// A queue of what the threads of DDS leave for ours, with an eventfd, or a call, that says that it is not empty. Samples have a limit in
-// number and size; those beyond it are counted. put() belongs to any thread, the rest to one at a time.
+// A queue of samples from the threads of DDS to the event loop, with an eventfd or a callback that signals that it is not empty. It is
+// limited in number and size; samples beyond the limit are counted. put() belongs to any thread, the rest to one at a time.
 #pragma once
 
 #include <errno.h>

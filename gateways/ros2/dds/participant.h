@@ -1,9 +1,8 @@
-// A participant of DDS that writes and reads messages that are encoded already. The only part that includes Fast DDS. One thread at a time:
-// Fast DDS's own threads put what they receive into a queue, and deliver() hands it on.
+// A participant of DDS that writes and reads encoded messages. The only part that includes Fast DDS. One thread at a time: Fast DDS's own
+// threads put received samples into a queue, and deliver() passes them on.
 //
-// Writers keep the last samples. They never wait: a sample that gives way before every reliable reader has confirmed it is counted. A
-// sample that has no reader and will have none is not encoded.
-// Errors name what could not be made.
+// Writers keep the last samples. They never wait: a sample that is replaced before every reliable reader has confirmed it is counted. A
+// sample without a present or future reader is not encoded. Errors name the object that could not be created.
 #pragma once
 
 #include <array>

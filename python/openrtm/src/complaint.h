@@ -1,5 +1,5 @@
-// Log lines about what is wrong again and again, as each sample, call or cycle may be. The same text is logged once until there is another
-// one. Texts that differ are logged eight at once, then one a second. With the interpreter's lock.
+// Limits log lines about errors that repeat, such as one in each sample, call or cycle. An equal text is logged once, until a different one
+// follows. Of different texts, eight are logged at once, then one per second. With the interpreter's lock.
 #pragma once
 
 #include <optional>

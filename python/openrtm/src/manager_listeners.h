@@ -1,5 +1,5 @@
-// Listeners in Python to what the manager does. Each is a function (name of the event, arguments...), called on the thread of the event
-// with the interpreter's lock; what it raises is logged with its traceback. They live as long as the process.
+// Listeners in Python to the actions of the manager. Each is a function (name of the event, arguments...), called on the thread of the
+// event with the interpreter's lock; an exception is logged with its traceback. They exist until the process ends.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,5 +1,5 @@
-// IDL types, compiled from the descriptors of the stubs (tuples, see packages/omniORB). Made and used with the interpreter's lock, except
-// for what is marked; they live as long as the process.
+// IDL types, compiled from the descriptors of the stubs (tuples, see packages/omniORB). Created and used with the interpreter's lock,
+// except where marked; they exist until the process ends.
 #pragma once
 
 #include <Python.h>

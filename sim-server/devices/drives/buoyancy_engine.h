@@ -1,7 +1,7 @@
-// The bladder of an underwater glider (gz-sim's BuoyancyEngine): it lifts its link by the weight of the water that its volume takes the
-// place of, against that of its neutral volume. Without a command it keeps its default volume. It is an iface position3d that follows the
-// vertical part of velocities and goals: the pump fills and empties the bladder as the vertical speed needs. A client that leaves, or
-// commands to stop, lets the vehicle keep its depth. Odometry is the true pose, from its own origin. See device.h for the thread rule.
+// The bladder of an underwater glider (gz-sim's BuoyancyEngine). It lifts its link by the weight of the displaced water, compared with that
+// of its neutral volume. Without a command it keeps its default volume. It is an iface position3d that follows the vertical part of
+// velocities and goals: the pump fills and empties the bladder for the vertical speed. When a client detaches or commands a stop, the
+// vehicle keeps its depth. Odometry is the true pose, from its own origin. See device.h for the thread rule.
 #pragma once
 
 #include "devices/drives/drive.h"

@@ -1,5 +1,5 @@
-// A way over way points, driven at one speed: straight pieces, corners rounded or turned on the spot. Known in advance for all times, so a
-// model that follows it is at the same place in every run. A value; any thread.
+// A path through way points, driven at one speed: straight pieces, with rounded corners or turns on the spot. It is known in advance for
+// all times, so a model that follows it has the same pose in every run. A value; any thread.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
-// Robots on wheels: velocity commands go to the drive train; odometry comes from the wheels' encoders, the truth stands beside it. See
-// device.h for the thread rule.
+// Robots on wheels: velocity commands go to the drive train, and odometry comes from the wheels' encoders. The true pose is published
+// beside it. See device.h for the thread rule.
 #pragma once
 
 #include <array>

@@ -1,11 +1,11 @@
-// Robots that fly (or glide) by velocity commands, such as helicopters. The body follows vx vy vz and the yaw
-// rate in its own, level frame within its limits of acceleration, keeps level and holds its height. Until the first command it falls,
-// unless the file gives it a velocity to begin with. With way points (path.h) it flies along them while no client commands it; a model that
-// has way points and no drive moves everything that it touches. See device.h for the thread rule.
+// Robots that fly (or glide) by velocity commands, such as helicopters. The body follows vx vy vz and the yaw rate in its own, level frame
+// within its limits of acceleration, keeps level and holds its height. Until the first command it falls, unless the file gives it an
+// initial velocity. With way points (path.h) it flies along them while no client commands it; a model with way points and without a drive
+// moves everything that it touches. See device.h for the thread rule.
 //
-// A body with way points is kinematic: its twist in each step leads exactly to the place that the way has for the end of the step. So it
-// pushes others, needs no forces, and is the same in every run. The trajectory plugin of gz-sim, which steers by forces, is read for its
-// way points alone.
+// A body with way points is kinematic: its twist in each step leads exactly to the pose of the path at the end of the step. So it pushes
+// other bodies, needs no forces, and is the same in every run. Of the trajectory plugin of gz-sim, which steers by forces, only the way
+// points are used.
 #pragma once
 
 #include "devices/drives/drive.h"

@@ -1,9 +1,9 @@
 // Propellers of a model: joints that push when they turn. gz-sim's Thruster (in water) and MulticopterMotorModel (in air; its predecessors
 // in Gazebo classic have the same elements). The stepping thread only, one thread for each model.
 //
-// A thruster pushes with the thrust that is asked for, at once, as in gz-sim; its joint follows with its motor or controller. A rotor
-// pushes by the speed of its joint, which follows the speed that is asked for with a time constant; the joint is slower than the rotor by a
-// factor, since a rotor of a few grams turns several radians in a step.
+// A thruster pushes with the commanded thrust at once, as in gz-sim; its joint follows with its motor or controller. A rotor pushes by the
+// speed of its joint, which follows the commanded speed with a time constant. The joint is slower than the rotor by a factor, because a
+// rotor of a few grams turns several radians in a step.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // A multicopter, boat or underwater vehicle, driven by its propellers: an iface position3d whose velocity the vehicle follows as far as its
-// propellers can. Until the first command they stand still, and the vehicle falls or floats. A client that leaves, or commands to stop,
-// lets it hover or stay. Odometry is the true pose, from its own origin. See device.h for the thread rule.
+// propellers can. Until the first command they do not turn, and the vehicle falls or floats. When a client detaches or commands a stop, the
+// vehicle hovers or stays. Odometry is the true pose, from its own origin. See device.h for the thread rule.
 #pragma once
 
 #include "devices/drives/drive.h"

@@ -1,10 +1,10 @@
-// Welds that models hold others by: DetachableJoints, and grippers that fix an object to their palm. Both can be switched on and
-// off by name: MODEL::GRIPPER; MODEL::CHILD_MODEL of a DetachableJoint, which is on from the start. The stepping thread only, between the
-// steps and outside of the devices, since a weld is a matter of two models.
+// Welds that fix other models to a model: DetachableJoints, and grippers that fix an object to their palm. Both are switched on and off by
+// name: MODEL::GRIPPER; MODEL::CHILD_MODEL of a DetachableJoint, which is on from the start. The stepping thread only, between the steps
+// and outside of the devices, since a weld belongs to two models.
 //
-// A gripper that is on looks each 10 ms of simulated time. An object that enough contacts of the fingers touch (GripperDef::contacts), and
-// that does not move against the palm, is attached after GripperDef::attach_checks looks in a row; it is let go after
-// GripperDef::detach_checks looks in a row without a contact.
+// A gripper that is on checks its contacts every 10 ms of simulated time. An object that enough contacts of the fingers touch
+// (GripperDef::contacts), and that does not move against the palm, is attached after GripperDef::attach_checks such checks in a row. It is
+// released after GripperDef::detach_checks checks in a row without a contact.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// Groups the joints of a model as people command them: an array, the fingers of its grippers, a chain to a tip, a pan and a tilt below a
-// camera. Only joints that something drives: whose effort has a limit, or that a controller names. Pure; any thread.
+// Groups the joints of a model as users command them: an array, the fingers of its grippers, a chain to a tip, a pan and a tilt below a
+// camera. Only joints with an actuator: their effort has a limit, or a controller names them. Pure; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Which joints of a model can be commanded, and the gains and limits of their controllers: from the controller plugins of the file and the
-// YAML files beside it, else derived from the masses that each joint moves. Pure; any thread.
+// The joints of a model that can be commanded, and the gains and limits of their controllers: from the controller plugins of the file and
+// the YAML files beside it, otherwise derived from the masses that each joint moves. Pure; any thread.
 #pragma once
 
 #include <string>

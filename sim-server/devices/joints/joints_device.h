@@ -1,9 +1,9 @@
-// The joints of a model that nothing else drives: commands of all clients, each for its own joints, go to controllers in the solver. A
-// joint that no client has commanded is as the file has it. When the client that commands a joint detaches or exits, the joint brakes. See
-// device.h for the thread rule.
+// The joints of a model that no other device drives: commands of all clients, each for its own joints, go to controllers in the solver. A
+// joint that no client has commanded behaves as the file describes. When the client that commands a joint detaches or exits, the joint
+// brakes. See device.h for the thread rule.
 //
 // A joint that turns a propeller takes the speed of the propeller [rad/s] as velocity and its thrust [N] as effort, and has no position to
-// hold; all other orders stop it. While no client commands it, it does as the vehicle asks (vehicle3d.h).
+// hold; all other commands stop it. While no client commands it, the vehicle controls it (vehicle3d.h).
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // Cameras of all kinds: camera, depth, rgbd, multicamera, segmentation, bounding box, thermal. Each camera draws in a thread of its own,
-// with a context of its own, and only while somebody subscribes; ten simulated seconds after the last picture it gives its context back.
-// The frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
+// with a context of its own, and only while a client subscribes. Ten simulated seconds after the last image it releases its context. The
+// frame of time t shows the world at t, and its pose is the camera's at t. See device.h for the thread rule.
 #pragma once
 
 #include <cstdint>

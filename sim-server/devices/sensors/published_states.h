@@ -1,6 +1,6 @@
 // Ifaces of plugins of gz-sim that publish states. OdometryPublisher: type truth, `MODEL::odometry`, the true pose of the model in the
-// world with the plugin's rate, offset and noise. JointStatePublisher: type joints without commands, `MODEL::joint_states`, among others
-// the angles of wheels, which odometry can be made from. The stepping thread only.
+// world with the plugin's rate, offset and noise. JointStatePublisher: type joints without commands, `MODEL::joint_states`, among them
+// the angles of wheels, from which odometry can be computed. The stepping thread only.
 #pragma once
 
 #include "devices/sensors/sensor.h"

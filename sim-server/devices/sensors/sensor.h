@@ -1,5 +1,5 @@
-// Common base of devices that publish samples. It decides when a sample is due, owns the iface and the noise, and handles reads while time
-// stands still, resets and the state hash. A device of its own adds how it measures. See device.h for the thread rule.
+// Common base of devices that publish samples. It decides when a sample is due, owns the iface and the noise, and handles reads of a paused
+// simulation, resets and the state hash. A derived device adds the measurement. See device.h for the thread rule.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Which kind of sensor becomes which device: one row for each kind that stands in a link or joint alone. Cameras and sonars, which make
+// Table of the device for each kind of sensor: one row for each kind that is in a link or joint alone. Cameras and sonars, which make
 // several ifaces of a sensor or one of several, are in camera.h and sonar.h. A maker fails when the iface cannot be made.
 #pragma once
 

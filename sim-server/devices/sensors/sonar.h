@@ -1,5 +1,5 @@
-// Sonars: one or more transducers of a model as one iface, each of which measures the nearest thing in its cone. See device.h for the
-// thread rule.
+// Sonars: one or more transducers of a model as one iface. Each measures the distance of the nearest object in its cone. See device.h for
+// the thread rule.
 #pragma once
 
 #include "devices/sensors/sensor.h"

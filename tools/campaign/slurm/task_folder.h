@@ -2,11 +2,11 @@
 // network file system is sufficient. One thread at a time.
 //
 //   name            of the jobs in the queue, chosen once
-//   key             of the campaign: tasks with other programs, worlds or plans refuse
+//   key             of the campaign: tasks with other programs, worlds or plans exit
 //   N.todo          a line for each task of attempt N: its rows, as "1..10 12"
 //   N.sh            the script that all tasks of attempt N run
 //   parts/N-T       what task T of attempt N has found, one line of JSON for each row
-//   logs/N-T        what it has written to its terminal, when it has
+//   logs/N-T        its terminal output, if there is any
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The models of a simulator with their links and joints: by name, and where they are. Asks the simulator, for at most three seconds. One
-// thread at a time.
+// The models of a simulator with their links and joints: names and poses. Asks the simulator, for at most three seconds. One thread at a
+// time.
 #pragma once
 
 #include <cstdint>

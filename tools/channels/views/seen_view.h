@@ -1,5 +1,5 @@
-// Ifaces that say what is seen, as channels: models of a logical camera, boxes of a bounding box camera, marks of a detector. One thread at
-// a time.
+// Converts ifaces with detections to channels: models of a logical camera, boxes of a bounding box camera, marks of a detector. One thread
+// at a time.
 #pragma once
 
 #include "channels/views/iface_view.h"

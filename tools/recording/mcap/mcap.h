@@ -1,6 +1,6 @@
 // MCAP files (https://mcap.dev/spec, version 0 of the format): one writer, one reader and the repair of files that were cut off.
 // Times are nanoseconds since whatever the file counts from; recordings of rtm-sim count simulated time. An object belongs to one thread
-// at a time. Errors are one line that names the file and the octet.
+// at a time. Errors are one line that names the file and the byte.
 #pragma once
 
 #include <chrono>

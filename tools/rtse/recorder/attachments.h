@@ -1,4 +1,4 @@
-// Attaches to a recording what it holds beside its samples: files, and what makes the run again. Any thread.
+// Attaches files to a recording, and the data that repeat its run. Any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-"""Connect, activate and look at components by their references."""
+"""Connects, activates and inspects components by their references."""
 import OpenRTM_aist
 import RTC
 from omniORB import CORBA, any as _any

@@ -1,4 +1,4 @@
-"""Serializers of authors: how a connection turns values into octets and back. A connection chooses one by dataport.marshaling_type."""
+"""Serializers of authors, which convert the values of a connection to bytes and back. dataport.marshaling_type selects one."""
 import threading
 
 import _openrtm_core as _core
