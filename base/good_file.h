@@ -1,4 +1,4 @@
-// A check of the command line for files of a kind. Any thread.
+// Checks the content of files on the command line. Any thread.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace base {
 
-// A file of which `problem` returns "", not a whole line. As existing_file(): what is wrong with it is a BadFile.
+// Accepts a file for which `problem` returns "". Otherwise the text, a whole line, is thrown as BadFile, as by existing_file().
 inline Check good_file(std::function<std::string(const std::string&)> problem) {
   return {[problem = std::move(problem)](const std::string& file) {
             if (const auto line = problem(file); !line.empty()) throw BadFile{line};

@@ -64,7 +64,7 @@ bool is_basic(std::uint32_t kind) {
   OMNIORB_THROW(MARSHAL, _OMNI_NS(MARSHAL_InvalidTypeCodeKind), static_cast<CORBA::CompletionStatus>(stream.completion()));
 }
 
-// Of a value of a discriminator; 0 if that cannot be one.
+// Bytes of a discriminator's value; 0 if the type cannot be a discriminator.
 std::size_t label_size(const Type& type) {
   switch (type.kind) {
     case CORBA::tk_boolean:
@@ -163,7 +163,7 @@ class Encapsulation {
  private:
   Type element(int depth) { return type(depth + 1); }
 
-  // Of a union: the discriminator's type, the number of the default case, and the cases with their labels.
+  // Reads the parts of a union: the discriminator's type, the number of the default case, and the cases with their labels.
   void cases(Type& type, int depth) {
     const std::size_t size = label_size(element(depth));
     const std::uint32_t chosen = number(), count = number();

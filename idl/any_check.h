@@ -1,4 +1,4 @@
-// The check of type codes for those who read anys themselves, as the module for Python does. Any thread.
+// Checks type codes, for code that decodes anys itself, such as the Python module. Any thread.
 #pragma once
 
 #include <omniORB4/CORBA.h>

@@ -49,7 +49,7 @@ bool WatchedIfaces::take_news() {
 void WatchedIfaces::sleep(const std::uint32_t& word, std::uint32_t value, std::chrono::nanoseconds time) const {
   if (is_new_) return;
   if (watched_.empty()) return shm::futex_wait(word, value, time);
-  std::array<futex_waitv, max_futexes> words;  // what is not used is not filled: this runs in each step
+  std::array<futex_waitv, max_futexes> words;  // unused ones are not initialized, because this runs in each step
   unsigned count = 0;
   const auto add = [&](const std::uint32_t& one, std::uint32_t expected) {
     words[count++] = {.val = expected, .uaddr = reinterpret_cast<std::uintptr_t>(&one), .flags = FUTEX_32, .__reserved = 0};

@@ -1,5 +1,6 @@
 // Fast DDS sets the send timeout of a socket before each packet: a system call that has no effect, because its sockets never block (see
-// participant.cpp), and costs a tenth of what a message of /clock does. The program's definition comes before that of the C library.
+// participant.cpp), and takes a tenth of the time of a message of /clock. The program's definition takes precedence over that of the C
+// library.
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -12,7 +12,7 @@
 
 namespace ros2 {
 
-// What the world has now.
+// Names of the current world.
 struct KnownNames {
   std::vector<std::string> robots, ifaces, command_topics;
   std::map<std::string, std::vector<std::string>> types;  // by iface: "sensor_msgs/msg/LaserScan", ...
@@ -21,10 +21,10 @@ struct KnownNames {
 // A line for each name, with the one that was most likely meant.
 std::vector<std::string> lines_of_unknown_names(const Naming& naming, const std::vector<WaitFor>& waits, const KnownNames& known);
 
-// What the gateway uses.
+// Names that the gateway uses.
 struct UsedNames {
   std::map<std::string, std::set<std::string>> writers;  // types that are published, by topic
-  std::vector<std::string> commands;                     // topics
+  std::vector<std::string> commands;                     // their topics
   std::map<std::string, std::string> frame_prefixes;     // by robot, of frames on one /tf
 };
 

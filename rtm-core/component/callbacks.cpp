@@ -154,7 +154,7 @@ ReturnCode_t RTObject_impl::Callbacks::in_turn(const char* name, Refusal refusal
   } catch (...) {
     thrown = std::string(name) + " threw something that is no std::exception";
   }
-  // Not in each cycle of the error state.
+  // An equal exception is logged once, not in each cycle of the error state.
   if (thrown != component_.impl_->last_thrown && !thrown.empty()) RTC_ERROR(("%s", thrown.c_str()));
   component_.impl_->last_thrown = std::move(thrown);
   if (is_outside_) done();

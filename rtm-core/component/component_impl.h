@@ -87,7 +87,7 @@ struct RTObject_impl::Impl {
   const std::shared_ptr<base::FollowingClock> clock = std::make_shared<base::FollowingClock>();
   std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
   rt::CallbackGate gate;                      // all callbacks pass it
-  std::string last_thrown{};                  // by the last callback; empty if it has returned. Of the thread inside the gate
+  std::string last_thrown{};                  // exception of the last callback; empty if it returned. Only for the thread inside the gate
   rt::RefusalLog refusals;
   base::Guarded<std::thread, base::Rank::tasks> exiter;  // runs exit() when a callback asked for it
 };

@@ -158,7 +158,7 @@ void read_subscription(const Reader& reader, ConnectorSettings& settings) {
   const std::string_view rate_text = reader.text(rate_key);
   const auto rate = base::parse_number(rate_text);
   if (settings.subscription != Subscription::periodic || settings.dataflow != Dataflow::push) {
-    // Nothing is sent at that rate; tools write 0 there.
+    // This connection does not use the rate; tools write 0.
     if (!rate_text.empty() && !(rate && *rate >= 0)) reader.warn(rate_key, rate_text, "a rate [Hz]");
     return;
   }

@@ -12,7 +12,7 @@
 
 namespace rt {
 
-// One line per second, and `burst` at once after so many quiet seconds.
+// Allows one line per second, and `burst` lines at once after `burst` quiet seconds.
 class RefusalLog {
  public:
   explicit RefusalLog(unsigned burst = 1) : burst_(burst) {}
@@ -36,12 +36,12 @@ class RefusalLog {
   base::Guarded<State, base::Rank::callbacks> state_;
 };
 
-// Of the objects of the process, by name: ten lines at once for each. What is added to the line; nothing: the line is left out.
+// The limit of the object with this name in the process: ten lines at once. Returns the end of the line; nothing: the line is left out.
 std::optional<std::string> refusal_line_end(std::string_view name);
 
-// A line about a call that was refused, or that another process made fail, within that limit.
+// Logs a call that was refused, or that failed because of another process, within that limit.
 void log_refusal(base::Level level, std::string_view name, std::string_view message);
-// The same by the logger of a component, port or context (RTC::Logger).
+// The same with the logger of a component, port or context (RTC::Logger).
 template <class Logger>
 void log_refusal(const Logger& logger, int level, const std::string& message) {
   if (!logger.isValid(level)) return;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view header_end = "end_header";
 
-// Of a scalar in a binary file; 0: no type of PLY.
+// Bytes of a scalar in a binary file; 0: not a type of PLY.
 std::uint64_t bytes_of(std::string_view type) {
   for (const auto* name : {"char", "uchar", "int8", "uint8"})
     if (type == name) return 1;
@@ -34,7 +34,7 @@ struct Element {
 
 base::Error damaged(const std::string& why) { return base::Error{"is damaged: " + why}; }
 
-// The element has room in what is left, of which its share is taken.
+// Checks that the element fits into the `left` bytes, and subtracts its size.
 base::Result<void> take(const Element& element, std::uint64_t& left) {
   if (element.least_bytes == 0 && element.count > left)
     return damaged("its header counts " + std::to_string(element.count) + " of " + base::in_quotes(element.name) +
@@ -46,8 +46,8 @@ base::Result<void> take(const Element& element, std::uint64_t& left) {
   return {};
 }
 
-// A list counts no more numbers than the file has bytes: Assimp makes room for them first. A line has the count of each list: Assimp looks
-// for one that is missing in what the line before left behind.
+// Checks that no list declares more numbers than the file has bytes, because Assimp allocates them first. Checks that the line has the
+// count of each list, because Assimp reads a missing count from the rest of the line before.
 base::Result<void> check_line(std::string_view line, const Element& element, std::size_t file_size) {
   constexpr std::string_view space = " \t\r";
   std::size_t at = 0;
@@ -61,7 +61,7 @@ base::Result<void> check_line(std::string_view line, const Element& element, std
     const std::string_view word = next_word();
     if (word.empty()) return damaged("a line of " + base::in_quotes(element.name) + " ends before the count of a list");
     if (!is_list) continue;
-    std::uint32_t count = 0;  // one that does not fit is 0 here
+    std::uint32_t count = 0;  // 0 if the word is not a number in range
     std::from_chars(word.data(), word.data() + word.size(), count);
     if (count > most_invented_corners && count > file_size)
       return damaged("a list of " + base::in_quotes(element.name) + " counts " + std::to_string(count) + " numbers, the file has " +
@@ -74,8 +74,8 @@ base::Result<void> check_line(std::string_view line, const Element& element, std
   return {};
 }
 
-// Of a text, which has a line for each of an element. Lines that begin with no number count for no element: a check that is ahead of
-// Assimp's reads of a later element at most.
+// Checks a text file, which has one line for each item of an element. Lines that do not begin with a number are skipped, so the check can
+// only be ahead of Assimp's position.
 base::Result<void> check_lists(std::string_view content, std::size_t header_size, const std::vector<Element>& elements) {
   std::size_t at = content.find('\n', header_size);
   for (const Element& element : elements) {
@@ -103,12 +103,12 @@ base::Result<void> check_ply(std::string_view content) {
   std::uint64_t left = content.size() - end - header_end.size();
   bool is_text = true;
   Element element;
-  std::size_t properties = 0;  // of it, so far
+  std::size_t properties = 0;  // of the element, so far
   std::vector<Element> elements;
   for (std::size_t at = 0; at < end;) {
     const std::size_t stop = content.find_first_of("\r\n", at);
     std::string line(content.substr(at, stop - at));
-    std::ranges::replace(line, '\t', ' ');  // for Assimp a tab is as good
+    std::ranges::replace(line, '\t', ' ');  // Assimp accepts a tab, too
     const auto words = base::split_list(line, ' ');
     at = stop + 1;
     if (words.size() > 1 && words[0] == "format") is_text = words[1] == "ascii";
@@ -117,7 +117,7 @@ base::Result<void> check_ply(std::string_view content) {
       elements.push_back(element);
       element = {words[1], 0, 0, {}};
       properties = 0;
-      // For Assimp, which does not skip names that it does not know, a count.
+      // Assimp does not skip unknown names, and reads this one as the count.
       if (element.name.front() >= '0' && element.name.front() <= '9')
         return damaged("its header has an element " + base::in_quotes(element.name) + ", expected a name that begins with no digit");
       const auto [rest, fault] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
@@ -131,7 +131,7 @@ base::Result<void> check_ply(std::string_view content) {
         element.is_list.back() = true;
       }
       const std::uint64_t bytes = bytes_of(words[words[1] == "list" ? 2 : 1]);
-      element.least_bytes += is_text ? 2 : bytes;  // in text a digit and what ends it
+      element.least_bytes += is_text ? 2 : bytes;  // in text a digit and its separator
     }
   }
   ++left;  // the last number of a text needs no end

@@ -1,5 +1,5 @@
-// Checks a PLY file before Assimp reads it, which searches for ever for the missing end of a header, and makes room for all that the header
-// and the lists of a text count.
+// Checks a PLY file before Assimp reads it. Assimp searches endlessly for a missing end of the header, and allocates memory for the numbers
+// that the header and the lists of a text file declare.
 // Source: "The PLY Polygon File Format", G. Turk, 1994. Any thread.
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace sim {
 
-// The header has an end, and the file is long enough for the elements that it counts, each as short as its properties allow, and for the
-// lists of a text. The error is one line without the file.
+// Checks that the header has an end, and that the file is long enough for the declared elements (each as short as its properties allow) and
+// for the lists of a text file. The error is one line without the name of the file.
 base::Result<void> check_ply(std::string_view content);
 
 }  // namespace sim

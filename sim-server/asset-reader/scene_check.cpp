@@ -22,7 +22,7 @@ bool has_items(T* const* items, unsigned count) {
   return count == 0 || (items != nullptr && std::all_of(items, items + count, [](const T* item) { return item != nullptr; }));
 }
 
-// A polygon with holes, joined to its edge, has fewer corners than twice its vertices.
+// A polygon whose holes are joined to its outline has fewer corners than twice its vertices.
 bool has_invented_corners(const aiMesh& mesh, const aiFace& face) {
   return face.mNumIndices > most_invented_corners && face.mNumIndices / 2 > mesh.mNumVertices;
 }

@@ -1,4 +1,4 @@
-// Checks what Assimp hands over: importers do not check all indexes of a file, and steps after them, as the code here, read arrays by them.
+// Checks a scene of Assimp. Importers do not check all indexes of a file, but later steps, and the code here, use them as array indexes.
 // One thread at a time.
 #pragma once
 
@@ -10,18 +10,18 @@
 
 namespace sim {
 
-// Indexes of vertices, meshes and bones are in range, and arrays that are counted are there. Nodes nest at most deepest_node deep. No face
-// has more corners than most_invented_corners which its mesh cannot have: Assimp fills a list with zeros that counts more than its file
-// holds, and makes triangles of 65536 corners in 6 s, of this many in 1 s. One line for what does not hold.
+// Checks that indexes of vertices, meshes and bones are in range, that declared arrays exist, and that nodes nest at most deepest_node
+// deep. Rejects a face with more than most_invented_corners corners if its mesh is too small for them: Assimp fills a list that declares
+// more numbers than its file has with zeros. It triangulates 65536 corners in 6 s, and this number in 1 s. The error is one line.
 inline constexpr unsigned deepest_node = 1000;
 inline constexpr unsigned most_invented_corners = 1 << 15;
 base::Result<void> check_scene(const aiScene& scene);
 
-// A triangle has a corner there: not a number, or too far away. The line of its file.
+// The error of a triangle with a corner that is not a number or too far away.
 base::Error lost_corner(const Eigen::Vector3d& at);
 
-// Faces without corners: Assimp takes them for polygons, and the step that makes triangles ends the process over them. For a scene that was
-// checked, before its steps.
+// Removes faces without corners: Assimp takes them for polygons, and its triangulation crashes on them. Call it for a checked scene, before
+// the steps of Assimp.
 void drop_empty_faces(const aiScene& scene);
 
 }  // namespace sim

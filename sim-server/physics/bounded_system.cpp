@@ -32,7 +32,7 @@ Bound better_bound(Bound bound, double x, double left_over, double low, double h
   return (bound == Bound::low ? left_over < -tolerance : left_over > tolerance) ? Bound::free : bound;
 }
 
-// What is left of the right side with what those at bounds do to it.
+// Subtracts the effect of the rows at bounds from the right side.
 void BoundedSystem::find_rest() {
   rest_ = b;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
@@ -40,7 +40,8 @@ void BoundedSystem::find_rest() {
   }
 }
 
-// The systems are small: what Eigen does to be fast with large ones takes longer. A block of a column is finished in registers.
+// Factors the free rows. The systems are small, so Eigen's optimizations for large ones take longer. A block of a column is computed in
+// registers.
 void BoundedSystem::factor_free() {
   using Block = Eigen::Array<double, block, 1>;
   const auto count = static_cast<Eigen::Index>(free_.size());
@@ -66,7 +67,7 @@ void BoundedSystem::factor_free() {
   factored_ = free_;
 }
 
-// With the factor that is there.
+// Forward substitution with the existing factor.
 void BoundedSystem::find_forward() {
   const auto count = static_cast<Eigen::Index>(free_.size());
   for (Eigen::Index j = 0; j < count; ++j) found_[j] = rest_[free_[static_cast<std::size_t>(j)]];
@@ -87,7 +88,7 @@ void BoundedSystem::find_backward() {
 }
 
 void BoundedSystem::solve_free() {
-  bool has_moved = solved_ != bounds;  // a bound, or its value
+  bool has_moved = solved_ != bounds;  // a bound or its value changed
   free_.clear();
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const Bound bound = bounds[static_cast<std::size_t>(i)];
@@ -107,7 +108,7 @@ void BoundedSystem::solve_free() {
   for (std::size_t i = 0; i < free_.size(); ++i) x[free_[i]] = found_[static_cast<Eigen::Index>(i)];
 }
 
-// Returns how many are wrong.
+// Changes the bounds of wrong rows. Returns the number of wrong rows.
 std::size_t BoundedSystem::turn_wrong(bool one_at_a_time) {
   std::size_t wrong = 0;
   for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -14,12 +14,12 @@ struct BoundedSystem {
   Eigen::MatrixXd a;
   Eigen::VectorXd b, low, high;
   Eigen::VectorXd x;
-  std::vector<Bound> bounds;  // to begin with and found
+  std::vector<Bound> bounds;  // the first guess, then the solution
 
   // Everything free and zero.
   void resize(Eigen::Index size);
-  // After resize() and the values; again after other bounds. By block principal pivoting, and one by one where that goes round in circles.
-  // False when that does not end either.
+  // Call it after resize() and setting the values, and again after changes of the bounds. Block principal pivoting, then one row at a time
+  // if that cycles. False if that does not end either.
   bool solve();
 
  private:
@@ -31,16 +31,16 @@ struct BoundedSystem {
   std::size_t turn_wrong(bool one_at_a_time);
   double* column(Eigen::Index free) { return part_.data() + free * stride_; }
 
-  std::vector<Bound> solved_;                  // for which `x` is right, with the values of the bounds
-  std::vector<Eigen::Index> free_, factored_;  // rows; those that `part_` is the factor of
-  // Storage is kept. Of the free rows: Cholesky's factor, with 1 / the diagonal, and below it a row with the right side, then zeros, which
-  // whole blocks of rows are computed with.
+  std::vector<Bound> solved_;                  // bounds for which `x` was computed, with their values
+  std::vector<Eigen::Index> free_, factored_;  // rows; the rows of the factor `part_`
+  // Cholesky factor of the free rows, with 1 / the diagonal. Below it a row with the right side, then zeros that fill the last block of
+  // rows. The storage is reused.
   Eigen::VectorXd part_;
   Eigen::Index stride_ = 0;
   Eigen::VectorXd found_, rest_;
 };
 
-// Where a row that is at `bound` ought to be, with its force and the velocity that it leaves over.
+// The bound to which a row at `bound` should change, for its force x and its remaining velocity.
 Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance);
 
 }  // namespace sim

@@ -125,8 +125,8 @@ class Physics {
   bool can_move(LinkId link) const;
   Eigen::Isometry3d model_pose(ModelId model) const;  // follows the canonical link
   Eigen::Isometry3d link_pose(LinkId link) const;
-  // Around the model's shapes that collide, where they are now, along the axes of its frame; empty without a shape. A plane has an end
-  // along its normal alone, and only if that is along an axis.
+  // The box around the model's collision shapes at their current poses, along the axes of its frame; empty without a shape. A plane is
+  // bounded only along its normal, and only if the normal is along an axis.
   Eigen::AlignedBox3d shape_box(ModelId model) const;
   // Of the link's origin.
   Twist link_twist(LinkId link) const;

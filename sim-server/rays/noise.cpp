@@ -104,7 +104,7 @@ struct Block {
 };
 
 #if defined(__x86_64__)
-// Eight at a time, with the same numbers: only AVX-512 multiplies eight integers of 64 bits at once.
+// Draws eight at a time, with equal results: only AVX-512 multiplies eight integers of 64 bits at once.
 [[gnu::target("avx512f,avx512dq,avx512vl")]] void draw_wide(Block& block, std::uint64_t key, std::uint64_t counter, const Layers& layers) {
   block.draw(key, counter, layers);
 }

@@ -24,8 +24,8 @@ using embree::FlushDenormals;
 using embree::without_dust;
 
 constexpr float none = std::numeric_limits<float>::infinity();
-// If no more moving bodies are in reach of a sensor, each is met in its own frame: no tree has to be built for a scan, and most bodies are
-// out of the way of most packets. With more, a tree over all bodies is built once for all scans of a moment.
+// Up to this number of moving bodies in reach of a sensor, rays are intersected with each body in its own frame: no tree has to be built
+// for a scan, and most packets miss most bodies. With more, a tree over all bodies is built once for all scans of one time.
 constexpr std::size_t few_bodies = 32;
 
 void on_error(void*, RTCError, const char* text) { base::log(base::Level::error, "rays", "embree: {}", text); }

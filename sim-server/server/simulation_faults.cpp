@@ -1,4 +1,4 @@
-// Faults of devices: which can have them, and which are on.
+// Faults of devices: the devices that support faults, and the active faults.
 #include <algorithm>
 
 #include "devices/faulty_device.h"
@@ -7,12 +7,12 @@
 namespace sim {
 namespace {
 
-// The iface itself, or a joint of it: arm::joints::elbow is of arm::joints.
+// True for the iface itself, or a joint of it: arm::joints::elbow is of arm::joints.
 bool is_of(std::string_view name, std::string_view iface_name) {
   return name == iface_name || (name.starts_with(iface_name) && name.substr(iface_name.size()).starts_with("::"));
 }
 
-// The truth stands beside what robots have, under the same names.
+// Ifaces of type truth have the names of other ifaces, and no faults.
 bool is_named(Device& device, std::string_view iface_name) {
   const auto type = device.iface().type();
   return is_of(iface_name, device.iface().name()) && type != shm::IfaceType::truth &&
@@ -23,7 +23,7 @@ base::Error no_iface(const FaultOrder& fault) {
   return base::Error{"fault " + std::string(shm::row_of(fault.kind).name) + ": the world has no iface " + fault.iface};
 }
 
-// The device, or what stands before it from now on.
+// Wraps the device, unless it is wrapped already.
 FaultyDevice& with_faults(std::unique_ptr<Device>& device, std::uint64_t seed) {
   auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
   if (faulty != nullptr) return *faulty;
@@ -35,7 +35,7 @@ FaultyDevice& with_faults(std::unique_ptr<Device>& device, std::uint64_t seed) {
 
 }  // namespace
 
-// Of the options.
+// Checks the faults of the options.
 base::Result<void> Simulation::check_faults() const {
   for (const FaultOrder& fault : options_.faults) {
     if (!can_have_faults(fault.iface)) return no_iface(fault);
@@ -43,7 +43,7 @@ base::Result<void> Simulation::check_faults() const {
   return {};
 }
 
-// Those of the options.
+// Adds the faults of the options.
 base::Result<void> Simulation::add_first_faults(std::unique_ptr<Device>& device) const {
   for (const FaultOrder& fault : options_.faults) {
     if (!is_named(*device, fault.iface)) continue;
@@ -52,7 +52,7 @@ base::Result<void> Simulation::add_first_faults(std::unique_ptr<Device>& device)
   return {};
 }
 
-// Those of the options, whatever has been added and ended since.
+// Restores the faults of the options, and ends all others.
 base::Result<void> Simulation::restore_faults() {
   for (auto& device : devices_) {
     auto* faulty = dynamic_cast<FaultyDevice*>(device.get());
@@ -74,7 +74,7 @@ base::Result<void> Simulation::add_fault(const FaultOrder& fault) {
   const auto place = std::ranges::find_if(devices_, [&](const auto& device) { return is_named(*device, fault.iface); });
   if (place == devices_.end()) return no_iface(fault);
   FaultyDevice& device = with_faults(*place, options_.seed);
-  sort_devices();  // it may be another one
+  sort_devices();  // the device may be a new wrapper
   return device.replace(fault, time_);
 }
 

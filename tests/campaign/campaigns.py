@@ -343,7 +343,7 @@ events:
     command: setsid --wait sh -c '{ LATER; while kill -0 $CALLER; do head -c 100000000 /dev/zero >> $TMPDIR/fill; sleep 0.01; done; } > /dev/null 2>&1 &'
 """
     begin, go_on = "less than 32 MiB left", "less than 1 MiB left"
-    # What fills it has a session of its own before its command returns, so the end of a row does not end it. At once: the row that fills it fails. Later: rows have passed, and the next ones do not begin.
+    # The process that fills the disk has a session of its own before its command returns, so the end of a row does not end it. At once: the row that fills it fails. Later: rows have passed, and the next ones do not begin.
     for size, verb, later, expected in [(16, "sweep", ":", begin), (16, "hunt", ":", begin), (48, "sweep", ":", go_on), (48, "hunt", ":", go_on), (48, "hunt", "sleep 2", go_on)]:
         p = plan(filling.replace("LATER", later), "filling.yaml")
         mount = f"mount -t tmpfs -o size={size}m tmpfs {shlex.quote(str(folder / 'tmp'))} && export CALLER=$$"

@@ -92,7 +92,7 @@ class Peer:
     def put(self, name, kind, value):
         self.say(f"put {name} {wire.encode(kind, value).hex()}")
 
-    # Messages that came so far; each is decoded once, since those who wait ask again and again.
+    # Messages received so far. Each is decoded once, because waiting tests read them repeatedly.
     def messages(self, topic, kind):
         known = self.decoded.setdefault((topic, kind), [])
         known += [wire.decode(kind, data) for data in self.samples[topic][len(known):]]

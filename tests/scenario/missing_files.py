@@ -1,4 +1,4 @@
-# Every program that is given a file which is missing, a folder, unreadable, empty or of another kind says so in one line that names the file, with exit code 2, and leaves
+# Every program reports a file that is missing, a folder, unreadable, empty or of another kind in one line that names the file, with exit code 2, and leaves
 # nothing behind: missing_files.py BIN_DIR SOURCE_DIR. Needs no name server and no simulator.
 import os
 import pathlib
@@ -28,7 +28,7 @@ calls = [
     ["rtm-studio", "FILE"], ["rtm-studio", "FILE", "-w", course], ["rtm-studio", "-w", "FILE"], ["rtm-studio", system, "-w", "FILE"],
     ["rtse-page", "FILE", "-o", "x.html"], ["rtse-page", "FILE", "-o", "x.html", "--other", "FILE"],
 ]
-# rtc.conf may be empty, and lines of it that nobody understands are warnings. Any content can be attached, and IDL is not parsed.
+# rtc.conf may be empty, and lines of it that are not understood are warnings. Any content can be attached, and IDL is not parsed.
 lenient = [["rtcd", "-f", "FILE"], ["ConfigDemoComp", "-f", "FILE"], ["rtse", "record", "-o", "x.mcap", "--all", "--attach", "a=FILE"], ["rtse", "new", "New", "--idl", "FILE"]]
 optional = ("ros2-gateway", "rtm-studio", "rtse-page")  # can be left out of a build
 

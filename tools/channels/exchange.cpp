@@ -13,7 +13,7 @@ namespace channels {
 
 namespace {
 
-constexpr std::size_t smallest_block = 1024;  // [octets]
+constexpr std::size_t smallest_block = 1024;  // [bytes]
 constexpr std::size_t largest_free = 4 << 20;
 constexpr std::size_t most_free = 8;
 

@@ -35,7 +35,7 @@ class PageSamples {
 
   // The samples up to and without `to`, and "images":{TOPIC:[[s, JPEG in base64]]}. Call with growing times.
   base::Result<Part> part_until(std::chrono::nanoseconds to);
-  // The file has grown, and these are its facts now: goes on with the samples from this time on, the end of the last part.
+  // Continues after the file has grown: with its new facts, and the samples from the end of the last part on.
   base::Result<void> go_on(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
   // Chunks of the file that could not be read so far.
   const std::vector<mcap::Reader::BrokenChunk>& broken_chunks() const { return reader_.broken_chunks(); }
@@ -68,7 +68,7 @@ class PageSamples {
   std::map<std::string, std::pair<double, std::string>> images_;  // the newest
   std::map<std::string, std::uint64_t> thinned_, too_large_;      // samples
   std::set<std::string> rounded_;
-  std::unique_ptr<std::pair<mcap::Message, std::string>> ahead_;  // read, and of the next part
+  std::unique_ptr<std::pair<mcap::Message, std::string>> ahead_;  // read already, but belongs to the next part
   bool is_at_end_ = false;
 };
 

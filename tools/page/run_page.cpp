@@ -25,7 +25,7 @@ using base::Result;
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-// Parts are as long as their text has about this size, which bounds the memory.
+// Approximate size of the text of a part, which limits the memory.
 constexpr std::size_t part_size = 3U << 19U;
 constexpr nanoseconds shortest_part = 200ms, longest_part = 10s;
 constexpr nanoseconds pose_step(static_cast<std::int64_t>(studio::recorded_step_s * 1e9));

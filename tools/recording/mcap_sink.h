@@ -56,7 +56,7 @@ class McapSink final : public channels::Sink {
   const NewFile make_;
   std::optional<mcap::Writer> writer_;
   std::size_t files_ = 0;
-  std::uint64_t begun_with_ = 0;  // [octets] of what stands in every file, in this one
+  std::uint64_t begun_with_ = 0;  // [bytes] of what stands in every file, in this one
   std::uint64_t samples_ = 0;     // in the files before
   std::uint64_t resets_ = 0;      // of time, since the first file was begun
   std::optional<channels::Time> first_;

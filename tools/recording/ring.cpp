@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* record_name = "ring";
-constexpr std::size_t most_held = 256 << 20;  // [octets] of latched samples
+constexpr std::size_t most_held = 256 << 20;  // [bytes] of latched samples
 
 std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
   const auto found = texts.find(key);

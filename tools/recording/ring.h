@@ -26,7 +26,7 @@ struct RingPiece {
 std::string numbered_path(const std::string& path, std::size_t number);
 
 mcap::Metadata ring_metadata(const RingPiece& piece);
-// Those of the ring of this name, the oldest first. What only has such a name is none.
+// The segments of the ring of this name, oldest first. Other files with such names are left out.
 std::vector<RingPiece> ring_pieces(const std::string& path);
 // An error when a recorder is writing them.
 base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces);
@@ -50,13 +50,13 @@ struct JoinedRing {
 // latched. The pieces of `ring` stay. Whatever was there under this name is replaced when the new file is whole.
 base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& ring, const std::string& path);
 
-// The reader of a recording. When there are only pieces of it the error says so.
+// The reader of a recording. If only segments of a ring exist, the error names them.
 base::Result<mcap::Reader> open_recording(const std::string& path);
-// For options of the command line: why there is nothing of this name; empty: it is there.
+// For options of the command line: the reason if there is no such recording; empty: it exists.
 std::string check_recording(const std::string& path);
-// Whether the file begins as a recording does.
+// True if the file begins as a recording does.
 bool is_recording(const std::string& path);
-// For options of the command line: why it cannot be a recording; empty: it begins as one.
+// For options of the command line: the reason if the file is not a recording; empty: it begins as one.
 std::string recording_problem(const std::string& path);
 
 }  // namespace recorder

@@ -13,7 +13,7 @@ namespace tools {
 
 namespace {
 
-constexpr std::size_t stamp_size = 8;  // [octets] of an RTC::Time
+constexpr std::size_t stamp_size = 8;  // [bytes] of an RTC::Time
 
 bool begins_with_stamp(CORBA::TypeCode_ptr type) {
   const auto whole = resolved(type);

@@ -29,7 +29,8 @@ class RunHosts {
 
   // Returns before the components are there.
   Result<void> start(const Members& members);
-  // In as many processes as was asked for, except that each component of Python has one of its own: they would share an interpreter.
+  // Starts the requested number of processes. Each component of Python has a process of its own, because otherwise they would share an
+  // interpreter.
   Result<void> start_all(const Members& all);
   // A host of what is none of the system's components. `names`: what is in it, for messages.
   Result<void> start(const std::vector<std::string>& creations, const std::string& names);
@@ -40,31 +41,31 @@ class RunHosts {
 
   // An error that names the components of one that has ended, how, and when.
   Result<void> check();
-  // Members of others of whom the contexts have said since the last time that they have gone.
+  // Third-party members that contexts reported as lost since the last call.
   struct Gone {
     std::string instance;
     std::string said;              // "Alien: component of another process was lost ..."
     std::optional<double> time{};  // [s], simulated: of the tick in which it was called
   };
   std::vector<Gone> gone_members();
-  // Those of `system` for whom ports of ours wait: "; From.out waits for Alien.in". Empty: nobody.
+  // Components of `system` for which ports of our hosts wait: "; From.out waits for Alien.in". Empty: none.
   std::string who_is_waited_for(const SavedSystem& system) const;
-  // Why a member of others came into its error state: "onExecute at 0.2 s: UNKNOWN"; empty: it did not throw.
+  // The exception that brought a third-party member into its error state: "onExecute at 0.2 s: UNKNOWN"; empty: none.
   std::string what_threw(const std::string& instance) const;
-  // Over which nothing more comes, and why: "From.out to Alien.in: the peer throws UNKNOWN".
+  // Connections that no longer deliver, and the reason: "From.out to Alien.in: the peer throws UNKNOWN".
   std::vector<std::string> lost_connections(const SavedSystem& system) const;
   bool has(const std::string& instance) const;
-  // Its host was killed and is not there again.
+  // True if its host was killed and has not been restarted.
   bool is_killed(const std::string& instance) const;
   std::vector<RunningSystem::Process> processes() const;
   std::vector<std::string> logs() const;
-  // ": " and what the log of a component's host tells.
+  // ": " and the reason from the log of a component's host.
   std::string about(const std::string& instance) const;
-  // What the components have to say that should not be missed.
+  // Warnings of the components.
   std::vector<std::string> warnings() const;
   std::string last_words() const;
   void terminate();
-  // All of them, with SIGKILL, where they are our own children. Any thread.
+  // Sends SIGKILL to all hosts that are our own children. Any thread.
   void kill() const;
   void end() { hosts_.clear(); }
 
@@ -93,7 +94,8 @@ class RunHosts {
 
 std::string names_of(const RunHosts::Members& members);
 std::set<std::string> instances_of(const RunHosts::Members& members);
-// Whoever is stopped, to be named before those who wait for it: "process of Alien (pid 12) is stopped, by a signal or a debugger; "
+// The stopped processes, as the beginning of a line about the processes that wait for them: "process of Alien (pid 12) is stopped, by a
+// signal or a debugger; "
 std::string who_is_stopped(const std::vector<RunningSystem::Process>& processes);
 
 }  // namespace tools

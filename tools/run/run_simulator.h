@@ -33,7 +33,7 @@ class RunSimulator {
 
   // An error that says how it ended, when it has started and ended.
   Result<void> check();
-  // Why it has rejected its command line, or a file that it names; empty: it has not.
+  // The reason if the simulator rejected its command line, or a file on it; empty: it did not.
   std::string refusal();
   pid_t pid() const { return process_ ? process_->pid() : 0; }
   // Valid as long as this object; before start() its requests fail.

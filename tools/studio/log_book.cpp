@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_lines = 1000;
 constexpr std::size_t most_at_once = 200;
 constexpr double longest_simulation = 1e9;  // [s] later stamps are of the wall clock
-constexpr std::size_t longest_line = 4000;  // [octets]
+constexpr std::size_t longest_line = 4000;  // [bytes]
 
 const char* level_text(OpenRTM::LogLevel level) {
   switch (level) {

@@ -18,7 +18,7 @@ namespace studio {
 struct StartOptions {
   std::string system;                         // RTSProfile; empty: the simulator alone
   std::string world;                          // SDFormat
-  std::vector<std::string> resource_paths{};  // where else the simulator looks for what the world names; without a system
+  std::vector<std::string> resource_paths{};  // further folders with models of the world; only without a system
 };
 
 // An empty component host with a name server at `name_server`. Ends both with this object.
@@ -26,8 +26,8 @@ base::Result<base::ChildProcess> start_host(const std::string& name_server);
 
 class StartedRun {
  public:
-  // Returns when everything is there, or says why it will not be; `is_rejected`: a file of the options is wrong. Without a system, the
-  // simulator gets this id. `reporter` must live as long as the run.
+  // Returns when all processes are ready, or an Error. `is_rejected`: a file of the options is wrong. Without a system, the simulator gets
+  // this ID. `reporter` must outlive the run.
   static base::Result<std::unique_ptr<StartedRun>> start(CORBA::ORB_ptr orb, const StartOptions& options, std::uint32_t server_id,
                                                          tools::Reporter& reporter, bool& is_rejected);
   virtual ~StartedRun() = default;

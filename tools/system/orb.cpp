@@ -24,7 +24,7 @@ std::string default_server() {
 
 namespace {
 
-constexpr std::size_t longest_sample = std::size_t{256} << 20;  // [octets]
+constexpr std::size_t longest_sample = std::size_t{256} << 20;  // [bytes]
 
 // Tools read no rtc.conf.
 corba::OpenTo open_to_of_environment() {

@@ -262,7 +262,8 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   rtps::RTPSReader* reader_ = nullptr;
 };
 
-// Policies beside reliability and durability; ours have the defaults of DDS. A reader that requests more is not matched.
+// Policies other than reliability and durability. Endpoints of this process have the defaults of DDS, so a reader that requests more does
+// not match.
 std::string special_of(const eprosima::fastrtps::ReaderQos& qos) {
   if (qos.m_deadline.period < eprosima::fastrtps::c_TimeInfinite) return "a deadline";
   if (qos.m_liveliness.kind != dds::AUTOMATIC_LIVELINESS_QOS) return "manual liveliness";

@@ -12,7 +12,7 @@
 namespace python {
 namespace {
 
-// No message may be as long.
+// Longer than any message can be.
 constexpr Py_ssize_t most_elements = Py_ssize_t{1} << 28;
 
 TextCoding chosen_coding = TextCoding::automatic;

@@ -79,7 +79,7 @@ class Factory final : public RTC::FactoryBase {
 // What has been given to the manager lives as long as the process.
 PyObject* init_function = nullptr;
 
-// Nil with manager.corba_servant NO. Taken when the manager starts: the servant itself is gone when the manager has ended.
+// Nil with manager.corba_servant NO. Stored when the manager starts, because the servant is deleted when the manager has ended.
 RTM::Manager_ptr manager_reference = RTM::Manager::_nil();
 
 class Host : public RTC::Manager {

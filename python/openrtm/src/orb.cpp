@@ -47,7 +47,7 @@ std::vector<std::string> orb_init(const std::vector<std::string>& words) {
   return rest;
 }
 
-// Of servants of Python in this process without a call, which would wait until their adapter is active.
+// A Python servant of this process is asked without a CORBA call, which would wait until its adapter is active.
 bool is_a(const ObjRef& self, const std::string& id) {
   const py::object servant = local_servant(self);
   return servant.is_none() ? asked([&] { return bool(self.object->_is_a(id.c_str())); }) : py::cast<bool>(servant.attr("_is_a")(id));

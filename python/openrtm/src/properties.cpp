@@ -59,7 +59,7 @@ void add_properties(py::module_& module) {
             return self.node->getProperty(key, text_of(otherwise));
           },
           py::arg("key"), py::arg("default") = py::none())
-      // Without a value the default becomes one.
+      // Without a value, the default becomes the value.
       .def(
           "setProperty",
           [](Properties& self, const std::string& key, py::object value) {

@@ -137,7 +137,7 @@ class Codes {
   std::vector<const Type*> around_;
 };
 
-// Of a type that comes from the wire, where it may have any octets.
+// A text of a type code from the network, which can contain any bytes.
 PyObject* text(const char* octets) { return PyUnicode_DecodeUTF8(octets, static_cast<Py_ssize_t>(std::strlen(octets)), "replace"); }
 
 PyObject* by_stubs(const char* id) {

@@ -144,7 +144,7 @@ bool fill(Type& type, PyObject* descriptor) {
   }
 }
 
-// Stubs register their descriptors; all others may be made anew for each any.
+// Stubs register their descriptors; all others can be created again for each any.
 bool is_registered(PyObject* descriptor) {
   if (PyTuple_GET_SIZE(descriptor) < 3) return false;
   const bool has_class = PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 2)) && !PyUnicode_Check(PyTuple_GET_ITEM(descriptor, 1));
@@ -152,12 +152,12 @@ bool is_registered(PyObject* descriptor) {
   return PyUnicode_Check(id) && registered("typeMapping", id) == descriptor;
 }
 
-// Types with the same parts are one: else each value in an any would leave its type behind.
+// Types with equal parts are stored once: otherwise each value in an any would add a type.
 const Type* with_parts(PyObject* descriptor, CORBA::TCKind kind) {
   using Parts =
       std::tuple<CORBA::TCKind, const Type*, std::uint32_t, PyObject*, std::string, std::vector<std::pair<PyObject*, const Type*>>>;
   static auto& known = *new std::map<Parts, const Type*>;
-  constexpr std::size_t most = 10'000;  // peers may invent them
+  constexpr std::size_t most = 10'000;  // peers can send any number of types
   Type type;
   type.kind = kind;
   const bool is_good = fill(type, descriptor);

@@ -32,8 +32,8 @@ struct Type {
   bool is_plain = false;  // decoded by tp_new and attributes
 };
 
-// A type or a value inside another one, with the interpreter's lock. False when there are more of them than calls of Python may nest: its
-// RecursionError is set.
+// Counts one level of nested types or values. False if the levels exceed Python's recursion limit; then its RecursionError is set. With the
+// interpreter's lock.
 class Nesting {
  public:
   Nesting() : is_entered_(Py_EnterRecursiveCall(" in a value of IDL") == 0) {}

@@ -39,7 +39,7 @@ void remember_callers();
 // Where the request comes from that runs on this thread: "giop:tcp:127.0.0.1:40000 (account 1000)". "this process" on a thread that has
 // answered none.
 std::string caller();
-// This thread has answered one.
+// True if this thread has answered a request.
 bool has_caller();
 
 }  // namespace corba

@@ -152,7 +152,7 @@ base::Result<std::vector<std::string>> to_arguments(const OrbSettings& settings,
                                   // Ours to processes that are gone are found only when they have been idle for so long [s].
                                   "-ORBoutConScanPeriod", "30", "-ORBclientCallTimeOutPeriod",
                                   std::to_string(settings.call_timeout.count()),
-                                  // Of calls that wait for activate(), those of this process included.
+                                  // The timeout of calls that wait for activate(), those of this process included.
                                   "-ORBpoaHoldRequestTimeout", std::to_string(settings.call_timeout.count())};
   std::vector<std::string> endpoints;
   for (const auto& endpoint : settings.endpoints) {

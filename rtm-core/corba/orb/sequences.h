@@ -1,4 +1,4 @@
-// Sequences of IDL grow by one. Values.
+// Appends to sequences of IDL. Pure; any thread.
 #pragma once
 
 namespace corba {

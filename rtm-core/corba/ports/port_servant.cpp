@@ -20,7 +20,7 @@
 namespace corba {
 namespace {
 
-// Of connections, unless connection_limit says otherwise: each takes memory, and may have a thread.
+// Maximum number of connections without connection_limit: each takes memory, and can have a thread.
 constexpr std::size_t usual_limit = 4096;
 
 // For others to let go of a port that dies. They do at once, unless the POA was destroyed before.

@@ -9,7 +9,7 @@
 
 namespace campaign {
 
-inline constexpr std::uintmax_t room_to_begin = 32U << 20U, room_to_go_on = 1U << 20U;  // [octets]
+inline constexpr std::uintmax_t room_to_begin = 32U << 20U, room_to_go_on = 1U << 20U;  // [bytes]
 
 // The error names the first folder whose disk has less.
 base::Result<void> check_room(const std::vector<std::string>& folders, std::uintmax_t least);

@@ -14,8 +14,8 @@ namespace mcap {
 
 inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
 inline constexpr std::string_view own_library = "rtm-sim";  // in the header of files that our writer made
-inline constexpr std::size_t record_head = 9;               // [octets] opcode and length
-inline constexpr std::size_t message_head = 22;             // [octets] of a message's content before its data
+inline constexpr std::size_t record_head = 9;               // [bytes] opcode and length
+inline constexpr std::size_t message_head = 22;             // [bytes] of a message's content before its data
 inline constexpr std::size_t footer_record = record_head + 20;
 
 enum class Opcode : std::uint8_t {
@@ -114,13 +114,13 @@ class ChannelSet {
 struct ChunkEntry {
   Time first{0};
   Time last{0};
-  std::uint64_t start = 0;                                             // [octets] of its record in the file
-  std::uint64_t length = 0;                                            // [octets] with opcode and length
+  std::uint64_t start = 0;                                             // [bytes] of its record in the file
+  std::uint64_t length = 0;                                            // [bytes] with opcode and length
   std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets;  // by channel; needed only to write the record
-  std::uint64_t index_length = 0;                                      // [octets]
+  std::uint64_t index_length = 0;                                      // [bytes]
   std::string compression;
-  std::uint64_t compressed = 0;    // [octets]
-  std::uint64_t uncompressed = 0;  // [octets]
+  std::uint64_t compressed = 0;    // [bytes]
+  std::uint64_t uncompressed = 0;  // [bytes]
   ChannelSet channels;             // of its messages; empty: not known. Not part of the record
 };
 void put_chunk_index(std::string& out, const ChunkEntry& entry);

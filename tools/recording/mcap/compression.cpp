@@ -17,7 +17,7 @@ namespace {
 // octets make level -5 1.5 times as fast: scans and odometry of a hundred robots at 5.5 GB/s to 0.112 of their size instead of 3.7 GB/s to
 // 0.105, all of an obstacle run at 1.7 GB/s to 0.40 instead of 1.3 to 0.36; lz4 3.0 to 0.120 and 1.2 to 0.37.
 constexpr int zstd_level = -5, zstd_hash_log = 11, zstd_shortest_match = 7;
-constexpr std::size_t first_room = 1 << 20;  // [octets]
+constexpr std::size_t first_room = 1 << 20;  // [bytes]
 
 // Grows as octets really come, so that a length that lies costs nothing.
 void make_room(std::string& out, std::size_t used, std::uint64_t size) {

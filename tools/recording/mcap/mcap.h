@@ -73,7 +73,7 @@ enum class Compression { none, lz4, zstd };
 struct WriterOptions {
   std::string profile{};  // "ros2" or nothing: which conventions its topics keep
   Compression compression = Compression::zstd;
-  std::size_t chunk_size = std::size_t{1} << 20U;  // [octets] a chunk is closed when it has grown to this
+  std::size_t chunk_size = std::size_t{1} << 20U;  // [bytes] a chunk is closed when it has grown to this
 };
 
 // Writes front to back and never reads. What is in closed chunks survives the end of the process; close() adds the summary by which readers
@@ -96,7 +96,7 @@ class Writer final {
   base::Result<void> flush();
   base::Result<void> close();
 
-  // [octets] in the file and in the open chunk, before its compression.
+  // [bytes] in the file and in the open chunk, before its compression.
   std::uint64_t size() const;
   const Statistics& statistics() const;
 
@@ -115,7 +115,7 @@ struct Query {
 // Takes every valid file: with chunks or without, with or without a summary. Memory stays below twice the file or 256 MiB.
 class Reader final {
  public:
-  static constexpr std::uint64_t largest_chunk = 128ull << 20;  // [octets] decompressed
+  static constexpr std::uint64_t largest_chunk = 128ull << 20;  // [bytes] decompressed
 
   // Reads the summary. Without one the whole file is scanned, up to the first record that is not whole: `damage` says where that is.
   static base::Result<Reader> open(const std::string& path);
@@ -134,7 +134,7 @@ class Reader final {
   struct AttachmentEntry {
     std::string name;
     std::string media_type;
-    std::uint64_t size = 0;  // [octets]
+    std::uint64_t size = 0;  // [bytes]
     Time log_time{0};
   };
   std::vector<AttachmentEntry> attachments() const;
@@ -153,7 +153,7 @@ class Reader final {
   };
   Unread unread() const;
 
-  // [octets] of all chunks.
+  // [bytes] of all chunks.
   std::uint64_t uncompressed() const;
   // Channel and time of each message as the indexes of the chunks say, of each chunk in the order of channels and times; no chunk is
   // decompressed. False when they are not whole, or are not of as many messages as the summary says: what was told counts for nothing then.

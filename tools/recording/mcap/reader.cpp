@@ -18,8 +18,8 @@ constexpr std::size_t most_places = 1'500'000;                // of messages in 
 // Where a message is: in a chunk's octets, or in the file.
 struct Place {
   Time time{0};
-  std::uint64_t offset = 0;  // [octets] of the content
-  std::uint64_t length = 0;  // [octets]
+  std::uint64_t offset = 0;  // [bytes] of the content
+  std::uint64_t length = 0;  // [bytes]
 };
 
 // A chunk whose messages are being given; or all messages outside of chunks.

@@ -17,7 +17,7 @@ base::Error at(const File& file, std::uint64_t offset, const std::string& what);
 
 struct RecordHead {
   Opcode opcode{};
-  std::uint64_t length = 0;  // [octets] of its content
+  std::uint64_t length = 0;  // [bytes] of its content
 };
 
 // Nothing when the record does not lie whole before `end`.

@@ -14,7 +14,7 @@ namespace mcap {
 
 namespace {
 
-constexpr std::uint64_t piece_size = 1 << 20;  // [octets]
+constexpr std::uint64_t piece_size = 1 << 20;  // [bytes]
 
 void note(Repair& repair, const base::Error& error) {
   if (!repair.damage) repair.damage = error.message;

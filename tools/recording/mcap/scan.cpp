@@ -137,7 +137,7 @@ bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end
   const Summary& summary = index.summary;
   if (!has_statistics || summary.statistics.chunks != summary.chunks.size()) return false;
   if (summary.statistics.attachments != summary.attachments.size() || summary.statistics.metadata != summary.metadata.size()) return false;
-  std::uint64_t known = header_end;  // [octets] of the data that the summary accounts for
+  std::uint64_t known = header_end;  // [bytes] of the data that the summary accounts for
   std::vector<bool> seen;            // channels, by ID
   for (const ChunkEntry& entry : summary.chunks) {
     known += entry.length + entry.index_length;
@@ -154,7 +154,7 @@ bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end
 }
 
 base::Result<std::uint32_t> crc_of(const File& file, std::uint64_t offset, std::uint64_t size) {
-  constexpr std::uint64_t most_at_once = 1 << 20;  // [octets]
+  constexpr std::uint64_t most_at_once = 1 << 20;  // [bytes]
   std::uint32_t crc = 0;
   std::string octets;
   for (std::uint64_t done = 0; done < size; done += octets.size()) {
@@ -334,7 +334,7 @@ class Scanner {
 
   // Only where it stands, for the index of a repaired file.
   base::Result<void> take_message_index(const RecordHead& head, std::uint64_t offset) {
-    constexpr std::uint64_t index_head = 2 + 4, index_entry = 16;  // [octets]
+    constexpr std::uint64_t index_head = 2 + 4, index_entry = 16;  // [bytes]
     if (in_broken_ == In::unknown) {                               // it was a chunk
       in_broken_ = In::chunk;
       --index_.broken.others;

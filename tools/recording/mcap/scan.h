@@ -14,25 +14,25 @@
 
 namespace mcap {
 
-// A message that stands outside of chunks.
+// A message outside of chunks.
 struct LooseMessage {
   Time time{0};
-  std::uint64_t offset = 0;  // [octets] of its record
-  std::uint64_t length = 0;  // [octets] of its content
+  std::uint64_t offset = 0;  // [bytes] of its record
+  std::uint64_t length = 0;  // [bytes] of its content
 };
 
-// Records that cannot be read, of a file that was walked over.
+// Records of a scanned file that cannot be read.
 struct Broken {
   std::uint64_t chunks = 0;
   std::uint64_t attachments = 0;
   std::uint64_t metadata = 0;
-  std::uint64_t others = 0;    // of a kind that is none of the data
+  std::uint64_t others = 0;    // not part of the data
   std::uint64_t octets = 0;    // of all of them
-  std::uint64_t messages = 0;  // in the chunks, as far as the indexes behind them say
+  std::uint64_t messages = 0;  // in the chunks, according to the indexes behind them
   bool are_counted = true;     // each chunk has an index, so that no message is missing in the number
 };
 
-// Whether an index keeps the offsets of message indexes, which only a repair needs. They take 16 bytes for each channel of each chunk: 200
+// An index can keep the offsets of message indexes, which only a repair needs. They take 16 bytes for each channel of each chunk: 200
 // MB for ten minutes of 2000 channels.
 enum class Offsets { left_out, kept };
 
@@ -42,21 +42,21 @@ struct Index {
   Summary summary;
   std::vector<LooseMessage> loose;  // in the order of the file
   std::optional<std::string> damage;
-  std::uint64_t data_end = 0;  // [octets] where the last whole record of the data ends
-  bool has_data_end = false;   // and a record says so: what follows is no data
+  std::uint64_t data_end = 0;  // [bytes] where the last whole record of the data ends
+  bool has_data_end = false;   // a record marks it: no data follow
   Broken broken;
-  std::uint64_t cut_off = 0;  // [octets] behind the last whole record, where no record says that the data end
+  std::uint64_t cut_off = 0;  // [bytes] behind the last whole record, if no record marks the end of the data
 };
 
-// Schemas and channels together [octets]; more is refused, since every one of them is kept in memory.
+// Maximum of schemas and channels together [bytes]; all of them are kept in memory.
 inline constexpr std::uint64_t most_descriptions = 16ull << 20;
 
-// Without offsets.
+// The index has no offsets.
 base::Result<Index> read_index(const File& file);
-// By the summary alone. Nothing when there is none, or one that does not say enough; `damage` tells what is broken rather than left out.
-// Without offsets.
+// Reads the summary alone. Nothing if there is none, or if it lacks records; `damage` names what is damaged and not only missing. The index
+// has no offsets.
 base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t size, std::optional<std::string>& damage);
-// Walks over all records, whatever the summary says. Chunks are decompressed and checked.
+// Reads all records, and ignores the summary. Chunks are decompressed and checked.
 base::Result<Index> scan(const File& file, Offsets offsets);
 
 }  // namespace mcap

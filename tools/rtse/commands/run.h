@@ -21,7 +21,7 @@ struct Chosen;
 using ReadLike = std::function<base::Result<RunOptions>(Console& console, const std::string& recording)>;
 
 // `run --like RECORDING`, and all options of `run` in place of the recorded ones.
-// `check`: why a file cannot be a recording, as a whole line; empty: it can.
+// `check` returns the reason if a file is not a recording, as a whole line; empty: it is one.
 void add_run_like(base::Command& app, Chosen& chosen, ReadLike read_like, std::function<std::string(const std::string&)> check);
 
 }  // namespace tools

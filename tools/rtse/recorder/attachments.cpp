@@ -11,7 +11,7 @@
 namespace recorder {
 namespace {
 
-constexpr std::size_t largest_world = 64 << 20;  // [octets] that are attached
+constexpr std::size_t largest_world = 64 << 20;  // [bytes] that are attached
 
 std::string file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -10,7 +10,7 @@
 
 namespace recorder {
 
-// Why NAME=FILE cannot be attached; empty: it can.
+// The reason if NAME=FILE cannot be attached; empty: it can.
 std::string attachment_problem(const std::string& text);
 base::Result<void> attach_files(mcap::Writer& writer, const std::vector<std::string>& files);
 
@@ -19,7 +19,7 @@ struct RunFacts {
   bool is_simulated = false;       // the clock
   std::vector<std::string> notes;  // KEY=VALUE
 };
-// What makes the run again: the world, its seed, the programs.
+// Attaches the data that repeat the run: the world, its seed, the programs.
 void attach_run(mcap::Writer& writer, const RunFacts& facts);
 
 }  // namespace recorder

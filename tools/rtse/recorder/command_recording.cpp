@@ -34,7 +34,7 @@ using tools::Session;
 
 // ---- info, ls ----
 
-constexpr std::uint64_t most_read = 2ull << 30;  // [octets] of all samples; of more than that the indexes have to do
+constexpr std::uint64_t most_read = 2ull << 30;  // [bytes] of all samples; of more than that the indexes have to do
 
 // Numbers of the samples of a channel, in any order: files hold samples in an order of their own, and are read in that of their times.
 class SeenNumbers {

@@ -59,12 +59,12 @@ for _name in ("isDataFlowComponent", "isFsmParticipant", "isFsmObject", "isMulti
 del _name
 
 
-# `from OpenRTM_aist import *` takes those that are loaded later, too.
+# `from OpenRTM_aist import *` imports the names that are loaded later, too.
 __all__ = sorted({_name for _name in globals() if not _name.startswith("_")} | set(_LATER))
 
 
 class _File(type(_sys)):
-    """A file of the original, which has one for each class: OpenRTM_aist.X, with the modules that come along with it."""
+    """Stand-in for a file of OpenRTM-aist-Python, which has one for each class: OpenRTM_aist.X, with the modules that it imports."""
 
     def __init__(self, name):
         super().__init__("OpenRTM_aist." + name)
@@ -78,7 +78,7 @@ class _File(type(_sys)):
         return _omniORB._import(name) if name in self._modules else getattr(_sys.modules["OpenRTM_aist"], name)
 
 
-# Found there by `import`, which does not put them in the place of the classes.
+# `import OpenRTM_aist.X` finds these in sys.modules, and does not replace the classes by them.
 for _name in __all__:
     if _name[0].isupper() and not isinstance(globals().get(_name), type(_sys)) and _LATER.get(_name, ("", _name))[1]:
         _sys.modules.setdefault("OpenRTM_aist." + _name, _File(_name))

@@ -98,7 +98,7 @@ class Task:
 
 
 class TimeValue:
-    """A length of time: seconds and microseconds, both of the same sign."""
+    """A duration: seconds and microseconds, both of the same sign."""
 
     def __init__(self, sec=None, usec=None):
         if isinstance(sec, TimeValue):
@@ -233,20 +233,20 @@ class PeriodicTask:
         self.__thread = None
 
     def executionMeasure(self, value):
-        """Whether to measure how long each call takes; it does so from the start."""
+        """Switches the measurement of the duration of each call; it is on from the start."""
         self.__measures_execution = bool(value)
 
     def executionMeasureCount(self, n):
-        """Begins a new measurement that keeps the last n lengths."""
+        """Begins a new measurement that keeps the last n durations."""
         with self.__changed:
             self.__execution = TimeMeasure(max(n, 1))
 
     def periodicMeasure(self, value):
-        """Whether to measure the time from call to call; it does so from the start."""
+        """Switches the measurement of the time between calls; it is on from the start."""
         self.__measures_period = bool(value)
 
     def periodicMeasureCount(self, n):
-        """Begins a new measurement that keeps the last n lengths."""
+        """Begins a new measurement that keeps the last n durations."""
         with self.__changed:
             self.__between = TimeMeasure(max(n, 1))
 

@@ -81,7 +81,7 @@ _structs = {}  # by the names of their members
 def _anonymous_struct(names):
     if names in _structs:
         return _structs[names]
-    if len(_structs) > 1000:  # peers may invent them
+    if len(_structs) > 1000:  # peers can send any number of them
         _structs.clear()
 
     class Struct(StructBase):
