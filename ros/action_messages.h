@@ -1,4 +1,4 @@
-// What each action of ROS 2 has in common (action_msgs), and the action SimulateSteps. Values.
+// Messages that all actions of ROS 2 share (action_msgs), and those of the action SimulateSteps. Values.
 #pragma once
 
 #include <array>

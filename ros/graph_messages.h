@@ -1,5 +1,5 @@
-// What a participant of ROS 2 tells of its nodes. A gid is the GUID of a DDS entity: 16 bytes since Iron; Humble has 24, the last 8 are 0.
-// Values.
+// Messages by which a participant of ROS 2 announces its nodes. A gid is the GUID of a DDS entity: 16 bytes since Iron; Humble has 24, the
+// last 8 are 0. Values.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Which of the plugins that people's models name are known here, whatever the simulator they were written for. Any thread.
+// Kinds of plugins in model files that the simulator supports, from any simulator that they were written for. Any thread.
 #pragma once
 
 #include "world/world_def.h"

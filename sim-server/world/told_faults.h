@@ -1,5 +1,5 @@
-// Which files are known to be missed. Physics, rays and images each miss a file that cannot be read; one line about it is enough. Any
-// thread; no data may be held.
+// Files that have been reported as unreadable. Physics, rays and images each find such a file; one log line about it is enough. Any thread;
+// no data may be held.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Why nothing can listen at an end point, in words of this project: the ORB gives a code and a text for its own developers. It tries to
-// listen there for a moment. Any thread.
+// Finds out why an end point cannot be listened on, because the ORB reports only a code and a text for its own developers. It tries to
+// listen there for a short time. Any thread.
 #pragma once
 
 #include <string>
