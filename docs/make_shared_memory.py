@@ -90,27 +90,27 @@ counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic]
 
 - **Reading a sample.** Sample *n* lies in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
   the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
-- **Waiting.** Read `wake_word`, set `waiting` to 2 wake_word + 1, look at `wake_word` again and sleep on it (futex, shared) if it is the same. With `waiting` 0 the writer makes no system call. A
-  writer that comes late with what you have seen wakes you for nothing, but leaves `waiting` as it is.
+- **Waiting.** Read `wake_word`, set `waiting` to 2 wake_word + 1, read `wake_word` again and sleep on it (futex, shared) if it is the same. With `waiting` 0 the writer makes no system call. A
+  late writer of a sample that you have read already wakes you without need, but does not change `waiting`.
 - **Subscribing.** Take a lease: change `owner` from 0 to (pid << 32) + a number that no other lease of your process has, then write `pid_namespace`, `start_time` and last `flags` with
-  `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the server does not look. A sensor works as long as one lease has the flag; leases of dead processes are taken
-  back. To give a lease back store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
-  switched on while time stands still shows the present at once, where the server would find the lease within a second. Such a sample disturbs nothing that comes later.
-  While time goes on, samples are due at the first step at or after each multiple of the period: a new subscriber changes nothing for the others.
+  `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the simulator does not read the leases. A sensor works as long as one lease has the flag; leases of dead processes are
+  released. To release a lease, store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
+  switched on in a paused simulation then publishes the current state at once; otherwise the simulator finds the lease within a second. Such a sample does not change later samples.
+  While the simulation runs, samples are due at the first step at or after each multiple of the period: a new subscriber changes nothing for the others.
 - **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
 - **Commands** are in the leases: make `command_lock` odd, write the command and the `command_values` doubles behind it, make the lock even; then store (number of commands + 1) << 16 | index
-  of the lease in `command_latest` of the header, which names the one in force. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner dies or lets go, the robot stops. Who takes a lease or gives it back first writes a command of kind 0xffffffff into it
-  in the same way, since the place may still hold one, or half of one, of somebody else; the server does so for the dead.
+  of the lease in `command_latest` of the header, which names the valid command. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner exits or releases the lease, the robot stops. A process that takes or releases a lease first writes a command of kind 0xffffffff into it
+  in the same way, since the lease may still have a command, or half of one, of another process. The simulator does this for processes that exited.
 - **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
-- **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; a living server's name is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
-- The server keeps private copies of every size and index: what a client writes cannot make it read or write elsewhere. A file that is cut short ends no process either: a
+- **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; the name of a running simulator is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
+- The server keeps private copies of every size and index: what a client writes cannot make it read or write elsewhere. A truncated file ends no process either: a
   process that has mapped it continues with zeros of its own (`base/cut_guard.h`), the server logs it, and the iface exists again after its next start.
 
 """
 c_names = dict(re.findall(r"(RTMSIM_\w+) = (\d+)", re.search(r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1)))
 assert sorted(c_names.values(), key=int) == [one["number"] for one in types], "rtmsim_layout.h and iface_types.h have the same types"
 c_names = {number: name for name, number in c_names.items()}
-out += "## Iface types\n\n| value | name | in segment names | what it says | largest count |\n| --- | --- | --- | --- | ---: |\n"
+out += "## Iface types\n\n| value | name | in segment names | meaning | largest count |\n| --- | --- | --- | --- | ---: |\n"
 for one in types:
     unit = " pixels" if one["frames"] else ""
     out += f"| {one['number']} | `{c_names[one['number']]}` | `{one['name']}` | {one['meaning']} | {str(one['most']) + unit if one['most'] else ''} |\n"

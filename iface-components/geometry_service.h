@@ -1,5 +1,5 @@
-// The services of the RT Component interface guidelines that tell where a device is. They answer at once from any thread, also while
-// simulated time stands still: of the iface that was found last, zeros before the first.
+// The services of the RT Component interface guidelines that report the pose of a device. They reply at once from any thread, also while
+// the simulation is paused: with the iface that was found last, and with zeros before the first.
 #pragma once
 
 #include <rtm/idl/InterfaceDataTypesSkel.h>

@@ -1,4 +1,4 @@
-// Limits how often a component logs a failure that each call of a client of the wire can cause. One thread at a time.
+// Limits how often a component logs a failure that each call of a remote client can cause. One thread at a time.
 #pragma once
 
 #include <chrono>

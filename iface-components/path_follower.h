@@ -1,5 +1,5 @@
-// RTC::PathFollower2D and 3D of the interface guidelines: which way point of a path comes next, and what to command for it. Services in any
-// thread; the functions for the drive in its thread alone.
+// RTC::PathFollower2D and 3D of the interface guidelines: selects the next way point of a path, and the command to reach it. Services in
+// any thread; the functions for the drive in its thread alone.
 #pragma once
 
 #include <rtm/ext/PathFollowerSkel.h>

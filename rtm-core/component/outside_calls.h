@@ -12,8 +12,7 @@
 //   on_initialize     created, without a manager, once
 //   on_finalize       never; the runtime calls it when the component ends
 //   on_startup, ...   with the handle that attach_context has given to an execution context of another process, until detach_context.
-//   Handles
-//                     of contexts of this process are not taken: these call the component here.
+//                     Handles of contexts of this process are rejected: these contexts call the component directly.
 //     on_activated      while that context has the component not active
 //     on_execute, on_state_update, on_deactivated   while that context has it active
 //     on_error          while that context has it not active

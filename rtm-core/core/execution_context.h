@@ -1,6 +1,6 @@
-// An execution context without a thread: who takes part, in which state, what is asked for, and the three phases of a cycle.
-// step() and the phases belong to one thread at a time, the stepping thread; with lanes, each lane has one. Members of other processes are
-// called on further threads of its own (Participant::place); a phase ends when all of them have returned. A second thread (contexts of
+// An execution context without a thread: its members, their states, the requested transitions, and the three stages of a cycle.
+// step() and the stages belong to one thread at a time, the stepping thread; with lanes, each lane has one. Members of other processes are
+// called on further threads of its own (Participant::place); a stage ends when all of them have returned. A second thread (contexts of
 // authors have them) may make a member be called twice at the same time, and does no other harm. Everything else may be called from any
 // thread. No lock is held while a participant is called.
 #pragma once

@@ -1,15 +1,15 @@
 // The unread samples of a port: a ring for each connection, each with its own policies, read in order of arrival over all of them. Any
 // thread.
 //
-// What has come is read also after its connection has ended (of closed connections at most 64 samples), so that a tool may connect, put a
+// Samples of a connection that has ended can still be read (of ended connections at most 64 samples), so that a tool may connect, put a
 // value and disconnect.
 //
-// What is unread takes a bounded memory. A channel that has something unread is full when its next sample would lead beyond; the first
-// sample of another one is still taken up to twice as much, in which what was read last counts as well, and refused beyond that.
+// Unread samples take a limited memory. A channel with unread samples is full when its next sample would exceed the limit. The first sample
+// of another channel is accepted up to twice the limit, in which the samples that were read last count as well, and refused beyond that.
 //
-// In lock step (base/tick.h) samples of an odd moment wait aside until a later one: neither what is read nor whether a ring is full depends
-// on who of a phase came first. Moments of readers and writers that are even, or 0, have no such rule. Among samples of one phase those
-// of the channel whose name comes first are read first.
+// In lock step (base/tick.h) samples of an odd phase counter are hidden until a later one: the order of the components of a phase decides
+// neither what is read nor whether a ring is full. Phase counters of readers and writers that are even, or 0, have no such rule. Among
+// samples of one phase those of the channel with the first name are read first.
 #pragma once
 
 #include <chrono>

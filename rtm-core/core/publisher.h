@@ -1,10 +1,9 @@
 // Sends the samples of one connection on a thread of its own: at once (subscription `new`) or periodically. Any
 // thread.
 //
-// What is written in a tick of a lock step (base/tick.h) is sent on the thread of the tick when its callbacks are over, by the same
+// Samples that are written in a tick of a lock step (base/tick.h) are sent on the thread of the tick after its callbacks, by the same
 // policies: with `new` at once, with `periodic` at the ends of those ticks that are the first at or after a multiple of the period in
-// simulated time. A receiver that is full is tried again at the end of the next tick. So what a run does never depends on the publisher's
-// thread.
+// simulated time. A receiver that is full is tried again at the end of the next tick. So a run never depends on the publisher's thread.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 // Hands signals to a thread, so that what they cause need not be async-signal-safe. One watcher per process at a time.
 // A signal that the program handles or ignores itself when the watcher is made is left to it. Another signal of the same number has its
-// default effect: who presses Ctrl-C twice ends the process at once. Within 50 ms it counts as the same one.
+// default effect: a second Ctrl-C ends the process at once. Within 50 ms it counts as the same one.
 #pragma once
 
 #include <functional>

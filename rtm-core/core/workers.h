@@ -1,6 +1,6 @@
-// Drivers of an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on whatever thread comes; a
-// Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their threads are the
-// caller's, except a Crew's.
+// Drivers of an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on the thread of any
+// caller; a Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their
+// threads are the caller's, except a Crew's. Of a context the thread is rtm/ContextThread.h.
 #pragma once
 
 #include <semaphore.h>
@@ -20,7 +20,7 @@
 
 namespace rt {
 
-// Each phase as the owner wants it called, with its clock set. Steps a context.
+// The stages of a cycle, called with the owner's clock. Steps a context.
 class Steps {
  public:
   virtual ~Steps() = default;
@@ -30,7 +30,7 @@ class Steps {
   virtual void execute_and_update() = 0;
 };
 
-// What a thread runs to step a context. run() belongs to the thread; everything else may be called from any thread.
+// The loop of a thread that steps a context. run() belongs to the thread; everything else may be called from any thread.
 class Worker {
  public:
   virtual ~Worker() = default;

@@ -1,6 +1,6 @@
 // Our service contexts: a call to another process carries facts of the tick that makes it. ORBs pass over contexts that they do not know
 // (CORBA 3.3 part 2, 9.3.1). Any thread.
-//   "RTS" 1   the moment of a tick in lock step, with the operations of services (corba/orb/call_watch.h)
+//   "RTS" 1   the phase counter of a tick in lock step, with the operations of services (corba/orb/call_watch.h)
 //   "RTS" 2   the time, with callbacks and with tick() of a context on simulated time: the code that runs there runs in simulated time, too
 //   "RTS" 3   its principal (corba/orb/asker.h), when that is not our own account
 // Each is a number as a CDR encapsulation.

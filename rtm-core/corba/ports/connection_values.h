@@ -1,5 +1,5 @@
 // Checks the settings of a connection before it is made, for tools: a port replaces a value that it does not understand by its default,
-// and tells only its log. Pure; any thread.
+// and reports that only in its log. Pure; any thread.
 #pragma once
 
 #include <map>

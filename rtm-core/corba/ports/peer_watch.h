@@ -8,10 +8,9 @@
 //
 // States of a process:
 //   unknown -> met        it has answered, or has not, but accepts connections
-//   met -> hangs          a question exceeded its timeout (1 s). It is asked in each round all the same, after all others, and for 0.1 s
-//   only
-//                         (0.3 s on other machines): the kernel refuses at once for a process that has exited
-//   met, hangs -> gone    it has refused twice; its connections are dropped
+//   met -> hangs          a request exceeded its timeout (1 s). It is still asked in each round, after all others, for only 0.1 s (0.3 s
+//                         on other machines), because the kernel refuses at once for a process that has exited
+//   met, hangs -> gone    it has refused twice; its connections are removed
 //   hangs -> met          it has answered within the short time
 #pragma once
 
