@@ -52,7 +52,7 @@ void FreeProcessors::look(std::chrono::steady_clock::time_point now, std::size_t
 }
 
 bool FreeProcessors::are_there_for(std::size_t others) const {
-  constexpr double now_and_then = 0.4;  // somebody wants one now and then, and is no reason
+  constexpr double now_and_then = 0.4;  // processors that are wanted now and then do not count
   return wanted_ + static_cast<double>(others) + 1 <= all_ + now_and_then;
 }
 
@@ -64,11 +64,11 @@ nanoseconds SpinLimit::next() const {
 
 void SpinLimit::took(nanoseconds wait) {
   constexpr int weight = 8;
-  usual_ += (std::min(wait, 4 * most_) - usual_) / weight;  // one that took for ever is forgotten as soon as others
+  usual_ += (std::min(wait, 4 * most_) - usual_) / weight;  // a very long wait is forgotten as soon as others
 }
 
 void WakeAhead::began(nanoseconds since, bool is_awake) {
-  constexpr std::uint32_t retry_ticks = 32;  // ticks before it is tried whether later is early enough
+  constexpr std::uint32_t retry_ticks = 32;  // ticks before a later wake-up is tried
   if (since > longest) {
     --steps_;
   } else if (!is_awake) {

@@ -1,5 +1,5 @@
-// Polls a word instead of sleeping, where a processor is free and the answer is expected sooner than a sleep and a wake-up take. Measured
-// waits decide when. One thread at a time.
+// Polls a word instead of sleeping, if a processor is free and the answer is expected sooner than a sleep and a wake-up take. Measured
+// waits decide that. One thread at a time.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 
 namespace shm {
 
-// Between two looks at a word: who is waited for may have been woken on this very processor, and would wait for us.
+// Call it between two reads of a word: the awaited thread may be runnable on this very processor, and would wait for this thread.
 void give_way();
-// Of this process; who spins takes one from the others.
+// Processors that this process can use. A polling thread occupies one.
 std::size_t processors();
 
-// Whether there are processors that nobody else wants. Who spins on a busy machine keeps away those that it waits for; and no processor
-// sleeps there, so that being woken is quick.
+// Estimates the number of idle processors. On a busy machine, polling delays the awaited threads; and processors do not sleep there, so a
+// wake-up is quick.
 class FreeProcessors {
  public:
-  // Of this machine.
+  // Reads the load of this machine.
   FreeProcessors();
   // `file`: as /proc/loadavg.
   FreeProcessors(const char* file, std::size_t all);
@@ -32,7 +32,7 @@ class FreeProcessors {
   bool is_due(std::chrono::steady_clock::time_point now) const { return now >= next_look_ && file_ >= 0; }
   // Counts the threads that want to run, without the caller and those that take part; at most once in a pause.
   void look(std::chrono::steady_clock::time_point now, std::size_t taking_part = 0);
-  // For the caller and so many others.
+  // True if there are free processors for the caller and this number of others.
   bool are_there_for(std::size_t others) const;
 
  private:
@@ -43,31 +43,32 @@ class FreeProcessors {
   std::chrono::steady_clock::time_point next_look_{};
 };
 
-// How long to look before one sleeps. It follows how long the news took the last times: a little longer than they usually do, and not at
-// all when that is long. Who finds the other side slow, or the processors busy, therefore sleeps at once, and looks again when it is quick.
+// The time to poll before a sleep. It follows the last waits: a little longer than usual, and zero if they are long. So a caller sleeps at
+// once while the other side is slow or the processors are busy, and polls again when waits are short.
 class SpinLimit {
  public:
-  // More is not worth a processor.
+  // A longer wait is not worth a processor.
   static constexpr std::chrono::nanoseconds longest = std::chrono::microseconds(400);
 
   explicit SpinLimit(std::chrono::nanoseconds most = longest) : most_(most) {}
 
   std::chrono::nanoseconds next() const;
-  // From the beginning of the wait until the news, asleep or not.
+  // The whole wait, asleep or not.
   void took(std::chrono::nanoseconds wait);
 
  private:
   std::chrono::nanoseconds most_, usual_{0};
 };
 
-// The wait of one of two processes that ask and answer in turn. The other is among those who want to run, so it needs one processor more.
+// The wait of one of two processes that send requests and replies alternately. The other one is runnable, too, so one more processor is
+// needed.
 class TurnWait {
  public:
   TurnWait() = default;
   // See FreeProcessors.
   TurnWait(std::chrono::nanoseconds most, const char* file, std::size_t all) : free_(file, all), limit_(most) {}
 
-  // Looks for the other's turn to end as long as SpinLimit says, at most until the deadline. False: sleep, then call slept().
+  // Polls until is_over(), as long as SpinLimit allows and at most until the deadline. False: sleep, then call slept().
   template <typename IsOver>
   bool look(const IsOver& is_over, std::chrono::steady_clock::time_point deadline) {
     began_ = std::chrono::steady_clock::now();
@@ -91,18 +92,18 @@ class TurnWait {
   bool is_measured_ = false;
 };
 
-// How many steps before its tick a sleeper is woken, so that it is there when the tick begins. It learns from whether the sleeper was.
+// The number of steps before its tick at which a sleeper is woken, so that it is awake when the tick begins. It adapts to earlier ticks.
 class WakeAhead {
  public:
-  // Who is woken without a tick looks so long for one before it sleeps again.
+  // Maximum time for which a woken thread polls for its tick before it sleeps again.
   static constexpr std::chrono::nanoseconds longest = std::chrono::microseconds(150);
   static constexpr std::int64_t most_steps = 100;
 
   // 0: not before the tick.
   std::int64_t steps() const { return steps_; }
-  // A tick begins for one that was woken `since` then.
+  // A tick begins for a sleeper that was woken `since` before it.
   void began(std::chrono::nanoseconds since, bool is_awake);
-  // A tick begins for one that was not.
+  // A tick begins for a sleeper that was not woken before.
   void began();
 
  private:

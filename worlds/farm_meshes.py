@@ -225,7 +225,7 @@ class Joint:
 
 
 def write_collada(path, m, materials, joints, weights_of, length, frames):
-    """The mesh with its skeleton and a round of steps of so many seconds. weights_of(limb, position) gives (joint's name, share) pairs."""
+    """The mesh with its skeleton and a round of steps, in seconds. weights_of(limb, position) gives (joint's name, share) pairs."""
     numbers = lambda values: " ".join(f"{v:.4f}".rstrip("0").rstrip(".") for v in values)
 
     def source(name, values, names, kind="float", array="float_array"):

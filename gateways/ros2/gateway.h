@@ -1,5 +1,5 @@
-// The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, bell.h,
-// common/errands.h and turns.h.
+// The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, bell.h and
+// common/errands.h.
 #pragma once
 
 #include <chrono>

@@ -21,18 +21,18 @@
 
 namespace rt {
 
-// Never used again after a member has left; 0 is nobody.
+// Never used again after a member has left; 0 is no member.
 using MemberId = std::uint64_t;
 
 // What a context calls, and the one place where it is kept who is a member.
 class Participant {
  public:
   virtual ~Participant() = default;
-  // Comes once, before anybody sees it among the members.
+  // Called once, before the member is visible to other threads.
   virtual void joined(MemberId) {}
   // For messages.
   virtual std::string name() const = 0;
-  // Whatever it throws counts as an error and is logged.
+  // Any exception counts as an error and is logged.
   virtual ReturnCode call(Action action) = 0;
   // Where it is called: empty for this process. Members of several other places that stand side by side among the members are called at the
   // same time, each place on a thread of the context's (of 64, if there are more places); those of one place, and all others, one after
@@ -73,11 +73,11 @@ class ExecutionContext {
 
   bool is_running() const;
   bool is_halted() const;
-  // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has succeeded no phase calls
-  // anybody. It waits for a call that runs on another thread; when that does not return in time the answer is error and it runs on.
+  // Call every member's startup (shutdown) action. Fail when it runs (is stopped) already. After stop() has succeeded no stage calls
+  // a member. It waits for a call that runs on another thread; when that does not return in time the answer is error and it runs on.
   ReturnCode start();
   ReturnCode stop(std::chrono::nanoseconds timeout = std::chrono::seconds(60));
-  // Between halt() and resume() no phase begins to call anybody, so that a quiet context stays quiet.
+  // Between halt() and resume() no stage starts a call, so that a quiet context stays quiet.
   void halt();
   void resume();
 
@@ -91,18 +91,18 @@ class ExecutionContext {
   // A new member is inactive and takes part from the next cycle on. A lane that does not exist is the first.
   MemberId add(std::shared_ptr<Participant> participant, std::size_t lane = 0);
   // Waits until the member is not being called on another thread; it is not called again even when the time is over before. Without a call
-  // in progress the participant is given back at once.
+  // in progress the participant is released at once.
   enum class Removal { no_member, left_alone, still_called };
   Removal remove(MemberId id, std::chrono::nanoseconds timeout = std::chrono::seconds(60));
   std::vector<MemberState> members() const;
   // In the order in which they joined.
   std::vector<std::shared_ptr<Participant>> participants() const;
-  // State::created for somebody who is no member.
+  // State::created if it is not a member.
   State state(MemberId id) const;
   State next_state(MemberId id) const;
   bool is_next(State state) const;  // all members will be in that state
 
-  // Asks for a transition, which the next first phase makes: bad_parameter when there is no such member, precondition_not_met when the
+  // Asks for a transition, which the next first stage makes: bad_parameter when there is no such member, precondition_not_met when the
   // state does not allow it or something else is pending.
   ReturnCode request(MemberId id, Event event);
   // Waits for the end of a request: precondition_not_met when it ended in another state than asked for, error when the time is over.
@@ -110,24 +110,24 @@ class ExecutionContext {
   ReturnCode wait(MemberId id, Event event, std::chrono::nanoseconds timeout);
   // As wait(), but error also as soon as the context is stopped, since no transition comes then.
   ReturnCode wait_while_running(MemberId id, Event event, std::chrono::nanoseconds timeout);
-  // Waits until nobody is called on another thread; false when the time is over.
+  // Waits until no member is called on another thread; false after a timeout.
   bool wait_until_quiet(std::chrono::nanoseconds timeout);
-  // Nobody waits for the call that runs now any more: remove() and wait_until_quiet() fail at once as long as it lasts.
+  // No thread waits for the current call any more: remove() and wait_until_quiet() fail at once as long as it lasts.
   void write_off_call();
   // The call that is written off and still runs, as "Arm0 in onExecute".
   std::optional<std::string> stuck_call() const;
 
-  // Called after every request and change of rate, so that a worker wakes up. Set it before anybody else knows the context.
+  // Called after every request and change of rate, so that a worker wakes up. Set it before other threads use the context.
   void on_wake(std::function<void()> wake) { wake_ = std::move(wake); }
-  // Nobody is active, in error or about to change: there is nothing to step.
+  // No member is active, in error or about to change: there is nothing to step.
   bool is_idle() const;
 
-  // The phases: transitions; execute (error); state update. They do nothing while the context is stopped.
+  // The stages: transitions; execute (error); state update. They do nothing while the context is stopped.
   // A cycle is counted at the end of lane 0.
   void transit(std::size_t lane = 0);
   void execute(std::size_t lane = 0);
   void update(std::size_t lane = 0);
-  // The same for one member, for contexts that choose the order themselves; nothing happens when it is none.
+  // The same for one member, for contexts that choose the order themselves; nothing happens if it is not a member.
   void transit_one(MemberId id);
   void execute_one(MemberId id);
   void update_one(MemberId id);
@@ -154,7 +154,7 @@ class ExecutionContext {
     std::optional<Event> pending{};
     bool removed = false;
   };
-  // One after another; at the same time; one after another. A phase keeps the plan it began with.
+  // One after another; at the same time; one after another. A stage keeps the plan it began with.
   using Group = std::vector<std::shared_ptr<Member>>;
   using Stage = std::vector<Group>;
   struct Plan {

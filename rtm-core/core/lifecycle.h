@@ -35,8 +35,8 @@ inline constexpr std::array transitions{
 struct StateActions {
   State state;
   std::optional<Action> enter;         // when it fails in `active`, the component fails in the next cycle
-  std::optional<Action> execute;       // second phase of each cycle
-  std::optional<Action> state_update;  // third phase, unless the second has failed
+  std::optional<Action> execute;       // second stage of each cycle
+  std::optional<Action> state_update;  // third stage, unless the second has failed
 };
 
 inline constexpr std::array state_actions{

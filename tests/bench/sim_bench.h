@@ -1,4 +1,4 @@
-// The parts of sim_bench: what the simulator costs, each number beside its limit. Each part prints its rows. One thread at a time.
+// The parts of sim_bench: the costs of the simulator, each number beside its limit. Each part prints its rows. One thread at a time.
 #pragma once
 
 #include <algorithm>

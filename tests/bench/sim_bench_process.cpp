@@ -52,7 +52,7 @@ class ServerProcess {
 
   static std::uint32_t id() { return 9000 - own_server_id() / 10; }
   pid_t pid() const { return pid_; }
-  // Until it has ended by itself.
+  // Waits until the process has ended by itself.
   void wait() {
     int status = 0;
     wait4(pid_, &status, 0, &usage_);
@@ -62,7 +62,8 @@ class ServerProcess {
   }
   double took() const { return took_; }
   double megabytes() const { return static_cast<double>(usage_.ru_maxrss) / 1024; }
-  // [s], of all threads. In nanoseconds, as the scheduler counts; the ticks of /proc/PID/stat see nothing of what sleeps between them.
+  // Processor time of all threads [s], from the nanoseconds of the scheduler. The ticks of /proc/PID/stat miss threads that sleep between
+  // ticks.
   double processor_time() const {
     double ns = 0;
     for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task")) {
@@ -73,7 +74,7 @@ class ServerProcess {
     }
     return ns * 1e-9;
   }
-  // Its line, once it answers.
+  // The connection for requests, once the simulator answers.
   shm::Requester line() const {
     for (int i = 0; i < 3000; ++i) {
       if (auto requester = shm::Requester::open(id()); requester && requester->ask(shm::StatsRequest{})) return std::move(*requester);
@@ -89,7 +90,7 @@ class ServerProcess {
   rusage usage_{};
 };
 
-// All robots drive and somebody reads all lasers.
+// All robots drive, and a client reads all lasers.
 std::vector<shm::Iface> drive_and_listen() {
   std::vector<shm::Iface> open;
   for (const auto& found : shm::find_segments(ServerProcess::id())) {
@@ -246,7 +247,7 @@ void bench_calls() {
     fields >> share >> seconds >> each >> calls;
   }
   std::filesystem::remove(report);
-  // What there is comes from the wake-ups of the request and of strace itself, and from the heartbeat, ten times a second.
+  // The counted calls are wake-ups of the request and of strace itself, and the heartbeat, ten times a second.
   print(text("system calls of %d steps that published %.0f odometries: %.0f; a publication", count, published, calls), calls / published,
         "calls", Goal::at_most, 0.01);
 }

@@ -76,7 +76,7 @@ WorldDef cave(const std::string& folder) {
 }
 
 // One robot that drives in a circle of 0.6 m and scans in every step, so that each scan is of another place; the bare loop scans from the
-// same places. Server: moving bodies brought up to date, traced, marks set, published to a subscriber.
+// same places. The server updates moving bodies, traces, sets marks, and publishes to a subscriber.
 void bench_rays_in(const char* where, WorldDef world, int beams) {
   const double half_angle = beams == 181 ? std::numbers::pi / 2 : beams == 683 ? 2.0862 : 0.75 * std::numbers::pi;
   TriangleCache triangles;
@@ -120,7 +120,7 @@ void bench_rays_in(const char* where, WorldDef world, int beams) {
         100 * b / a, "%", Goal::at_least, 70);
 }
 
-// A scanner of 16 layers and 1800 columns, with noise, on the robot; the scan that a 10 Hz sensor of a VLP-16 is due.
+// A scanner of 16 layers and 1800 columns, with noise, on the robot: one scan of a VLP-16 at 10 Hz.
 void bench_rings_in(const char* where, WorldDef world, bool is_rolling) {
   SensorDef sensor = laser("lidar", 1800, -std::numbers::pi, std::numbers::pi, 130, at(0.1, 0, 0.4));
   auto& ray = std::get<RayDef>(sensor.data);

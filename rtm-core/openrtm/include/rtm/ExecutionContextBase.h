@@ -1,4 +1,4 @@
-// Base class of execution contexts: membership, life cycle, rate, profile, and the three phases of a cycle. It has no thread: a derived
+// Base class of execution contexts: membership, life cycle, rate, profile, and the three stages of a cycle. It has no thread: a derived
 // class calls invokeWorkerPreDo, Do and PostDo (or invokeWorker) from its own, one at a time. Everything else may be called from any
 // thread. A derived class is also a servant of RTC::ExecutionContextService and answers its operations with the functions here.
 #pragma once

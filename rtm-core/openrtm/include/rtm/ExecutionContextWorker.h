@@ -35,7 +35,7 @@ class ExecutionContextWorker {
   void invokeWorkerPostDo();
   // For cycles whose members are stepped one by one.
   void countCycle(std::chrono::nanoseconds took, std::chrono::nanoseconds waited);
-  // Every phase sees who has come and gone by itself.
+  // Each stage detects added and removed members itself.
   void updateComponentList() {}
 
  private:
