@@ -11,7 +11,7 @@ newline = "\n"
 
 
 def write_png(path, size, colour_of):
-    """A square RGB picture; colour_of(u, v) with u, v in [0, 1) gives r, g, b in [0, 1]."""
+    """A square RGB image; colour_of(u, v) with u, v in [0, 1) gives r, g, b in [0, 1]."""
     rows = bytearray()
     for y in range(size):
         rows.append(0)
@@ -113,7 +113,7 @@ class Mesh:
 
     def __init__(self):
         self.vertices, self.faces = [], {}
-        self.limb, self.limbs = None, []  # what comes next hangs on; of each vertex
+        self.limb, self.limbs = None, []  # limb of the next vertices; limb of each vertex
 
     def vertex(self, position, normal, uv=(0, 0)):
         self.vertices.append((position, normal, uv))
@@ -208,13 +208,13 @@ class Mesh:
 
 
 class Joint:
-    """A joint of a skeleton at a place in the mesh; angles(t), t in [0, 1), gives its roll, pitch and yaw during a round of steps, way(t) how far it is from its place."""
+    """A joint of a skeleton at a position in the mesh. angles(t), t in [0, 1), is its roll, pitch and yaw during a round of steps, way(t) its offset from that position."""
 
     def __init__(self, name, parent, place, angles=lambda t: (0, 0, 0), way=lambda t: (0, 0, 0)):
         self.name, self.parent, self.place, self.angles, self.way = name, parent, place, angles, way
 
     def matrix(self, t=None):
-        """In its parent, row by row; without a time at rest."""
+        """The transform in its parent, row by row; without a time that at rest."""
         x, y, z = sub(self.place, self.parent.place if self.parent else (0, 0, 0))
         if t is None:
             return [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]

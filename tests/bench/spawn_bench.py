@@ -27,7 +27,7 @@ numbers = b"0123456789"
 # Changes bytes, words and numbers, or cuts, as tests/fuzz/asset_mutations.cpp does.
 def mutated(content, random):
     text = bytearray(content)
-    is_gentle = random.random() < 0.5  # numbers alone, so that more than the first line of the file is read
+    is_gentle = random.random() < 0.5  # only numbers change, so that more than the first line of the file is read
     for _ in range(random.choice((1, 1, 2, 4))):
         if not text:
             break
@@ -70,7 +70,7 @@ class Server:
     def steps(self):
         return json.loads(subprocess.run([*self.simctl, "--json", "stats"], check=True, timeout=60, capture_output=True, text=True).stdout)["steps"]
 
-    def new_lines(self):  # of the log since the last call
+    def new_lines(self):  # lines of the log since the last call
         return [line for line in self.log.read().splitlines() if line]
 
     def reader(self):
@@ -79,7 +79,7 @@ class Server:
             try:
                 children += pathlib.Path(f"/proc/{self.process.pid}/task/{task}/children").read_text().split()
             except OSError:
-                pass  # the thread has ended
+                pass  # the thread ended meanwhile
         return children
 
     def stays(self):
@@ -122,7 +122,7 @@ def main():
 def run(server, seeds, options, folder):
     world = rtmsim.World(server_id=server.id, timeout=60)
     problems, all_times, total = [], [], 0
-    for seed in seeds:  # the first file of each format starts what stays
+    for seed in seeds:  # the first file of each format starts processes and threads that stay
         spawn(world, seed)
     server.new_lines()
     before, first_step, began = server.stays(), server.steps(), time.perf_counter()

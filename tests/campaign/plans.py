@@ -79,7 +79,7 @@ faults:
     assert 'replay: cannot compare: connection "RTCLaser0.range_LaserObstacleAvoid0.range" had the fault "drop:0.2:' in done.stderr and len(done.stderr.splitlines()) == 1, done
 
 
-# A run like a recorded one has the faults of its connections and components, but not what happened between its steps, and says so.
+# run --like repeats the faults of connections and components. It does not repeat actions between steps, and prints a warning.
 def like_faulty():
     found = {}
     for name, deeds in (("drop", "faults: [{at: 0, connector: range-to-avoidance, is: drop, amount: 1}]\n"), ("pushed", "events: [{at: 0.2, push: {model: pioneer2dx, force: [0, 40, 0], for: 0.1}}]\n"), ("quiet", "")):

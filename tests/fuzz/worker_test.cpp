@@ -1,4 +1,4 @@
-// Who is to blame for the end of a worker.
+// Finds the code that ended a worker.
 #include "fuzz/worker.h"
 
 #include <gtest/gtest.h>

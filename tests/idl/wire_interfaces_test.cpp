@@ -1,4 +1,4 @@
-// Every interface of the wire contract has the repository id that the contract names.
+// Every interface of the wire contract has the repository ID of the contract.
 #include <gtest/gtest.h>
 
 #include "idl/all_stubs.h"

@@ -1,4 +1,4 @@
-// Every type of the wire contract has the repository id, the members and the order that the contract names.
+// Every type of the wire contract has the repository ID, the members and the order of the contract.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -285,6 +285,6 @@ def test_calls_of_a_local_servant_wait_for_its_poa_manager_with_a_limit(shop):
     done = subprocess.run([python, "-B", "-c", HELD, "-ORBpoaHoldRequestTimeout", "200"], cwd=shop, timeout=60, capture_output=True, text=True)
     assert done.stdout.splitlines()[0] == "None True False", done
     assert "its POAManager is not active; call its activate()" in done.stdout
-    # Without the option the limit is that of calls to other processes.
+    # Without the option the timeout is that of calls to other processes.
     done = subprocess.run([python, "-B", "-c", HELD], cwd=shop, timeout=60, capture_output=True, text=True)
     assert "its POAManager is not active; call its activate()" in done.stdout

@@ -172,11 +172,11 @@ def test_the_types_of_values_in_anys_are_not_kept_for_each_value():
         octets = omniORB.cdrMarshal(CORBA.TC_any, any_.to_any(value), True)
         first, second = (omniORB.cdrUnmarshal(CORBA.TC_any, octets, True) for _ in range(2))
         assert any_.from_any(first) == any_.from_any(second) == value
-        count = sys.getrefcount(second.typecode()._d)  # outside of the assertion, which holds what it looks at
+        count = sys.getrefcount(second.typecode()._d)  # outside of the assertion, which keeps references to its operands
         assert count == 2, "the attribute and the argument"
 
 
-# Peers can send them: each is an exception, not the end of the process.
+# Peers can send such type codes: each raises an exception, and the process continues.
 @pytest.mark.parametrize("octets", [struct.pack("<I", 11) * 100000 + bytes(4), struct.pack("<III", 19, 0xffffffff, 1), struct.pack("<II", 29, 0),
                                     struct.pack("<II", 0xffffffff, 0xfffffffc), struct.pack("<IIIIc", 18, 0, 0xffffffff, 0, b"x")])
 def test_hostile_anys_are_refused(octets):

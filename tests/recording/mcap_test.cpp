@@ -392,7 +392,7 @@ TEST_P(Single, a_chunk_bomb_is_refused_without_memory) {
   EXPECT_NE(read().at(0).find("does not decompress to the 1000 bytes"), std::string::npos) << read().at(0);
 }
 
-// A reader of `rounds` chunks of 2000 channels, [bytes] of the heap that it holds.
+// Heap [bytes] of a reader of `rounds` chunks of 2000 channels.
 std::size_t held_by_reader(const std::string& path, int rounds, bool is_closed) {
   constexpr std::uint16_t channels = 2000;
   const auto heap = [] {

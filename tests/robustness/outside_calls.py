@@ -127,7 +127,7 @@ class Client(threading.Thread):
 
 
 def refused_again_and_again(manager, component):
-    """Calls that fail, each of which would be a line."""
+    """Calls that fail, each of which would be logged without a limit."""
     orb = Orb()
     orb.kept = threading.local()
     silent = Ior.make("IDL:omg.org/RTC/RTObject:1.0", "127.0.0.1", orb.listener.getsockname()[1], b"silent", 2)

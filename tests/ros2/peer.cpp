@@ -9,7 +9,7 @@
 //   "end"
 //
 // DURABILITY is volatile or transient, or a policy of a volatile endpoint: deadline, lease or manual (of liveliness), exclusive. A
-// USER_DATA of "-" is none. The participant has the user data of its second argument; the first one is the domain.
+// USER_DATA "-" means none. Arguments of the program: the domain, and the user data of the participant.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>

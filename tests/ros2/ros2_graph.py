@@ -100,7 +100,7 @@ def families():
             await_("the report", lambda: "Nodes of both cannot share a domain" in rig.log(rig.process))
 
 
-# A subscriber that can never receive a topic of ours has a line in the log, with the policy. So has a publisher of commands.
+# A subscriber that can never receive a topic of the gateway is logged with the policy, and so is a publisher of commands.
 def policies():
     with Rig() as rig:
         rig.sim(two)
@@ -112,7 +112,7 @@ def policies():
             assert not peer.samples[policy]
         peer.writer("command", "rt/leader/cmd_vel", wire.type_on_wire("geometry_msgs/Twist"), durability="exclusive")
         await_("the writer", lambda: "/leader/cmd_vel has the default QoS, but exclusive ownership is offered by a writer" in rig.log(rig.process))
-        # What is offered beyond the default fits.
+        # A writer that offers more than the default matches.
         peer.writer("strict", "rt/leader/cmd_vel", wire.type_on_wire("geometry_msgs/Twist"), durability="deadline")
         peer.await_matched("strict")
         assert "deadline is offered" not in rig.log(rig.process)

@@ -98,7 +98,7 @@ class Peer:
         known += [wire.decode(kind, data) for data in self.samples[topic][len(known):]]
         return known
 
-    # The newest message, or the newest that is good.
+    # The newest message, or the newest one that satisfies the condition.
     def message(self, topic, kind, good=lambda message: True):
         def found():
             return next(message for message in reversed(self.messages(topic, kind)) if good(message))

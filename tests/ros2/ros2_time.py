@@ -159,7 +159,7 @@ def demo():
     assert states[0] == states[1], states
 
 
-# A packet costs one system call: the send timeout that Fast DDS sets before each is answered by the program.
+# A packet costs one system call: the program answers the call by which Fast DDS sets a send timeout before each packet.
 def one_call():
     known = subprocess.run([f"{bin_dir}/ros2-gateway", "--version"], env={**os.environ, "LD_BIND_NOW": "1", "LD_DEBUG": "bindings"}, capture_output=True, text=True, timeout=60)
     assert re.search(r"libfastrtps\S* \S+ to \S*ros2-gateway \S+ normal symbol `setsockopt'", known.stderr), "libfastrtps uses another setsockopt"

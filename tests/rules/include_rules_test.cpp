@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
 // One layer: a folder, the parts of the project whose headers it may include ("stubs" are the headers made from idl/, and its own), and the
-// libraries of others. Standard headers and those of the operating system are everybody's.
+// third-party libraries. Standard headers and those of the operating system are allowed everywhere.
 struct Layer {
   std::string folder;
   Names may_include;

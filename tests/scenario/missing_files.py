@@ -14,7 +14,7 @@ environment = dict(os.environ, RTCTREE_NAMESERVERS="127.0.0.1:1", RTMSIM_SERVER_
 nobody = 65534
 run = ["rtse", "run", system, "-w", course, "-d", "0.1"]
 
-# FILE stands for the bad one.
+# FILE is replaced by the name of the bad file.
 calls = [
     ["rtse", "load", "FILE"], ["rtse", "start", "FILE"], ["rtse", "stop", "FILE"], ["rtse", "teardown", "FILE"], ["rtse", "check", "FILE"],
     ["rtse", "diff", "FILE", "FILE"], ["rtse", "run", "FILE", "-w", course], ["rtse", "run", system, "-w", "FILE"], [*run, "--expect", "FILE"], [*run, "--run-file", "FILE"],

@@ -171,7 +171,7 @@ def of_a_killed_recorder():
     os.kill(found[0], signal.SIGKILL)
     out, err = run.communicate(timeout=200)
     assert run.returncode == 1 and f"rtse recording repair {file} puts it together" in out + err, (out, err)
-    assert 1 <= len(pieces()) <= 3, pieces()  # a piece may just have begun, or may be about to be removed
+    assert 1 <= len(pieces()) <= 3, pieces()  # a segment may just have been started, or may be about to be removed
     done = rig.try_rtse("recording", "repair", file)  # 1: it was killed while it wrote, and the last samples are cut
     assert done.returncode in (0, 1) and "samples kept of" in done.stdout and scan_times("run.mcap"), done
 

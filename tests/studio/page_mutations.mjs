@@ -96,7 +96,7 @@ function answered(what, promise) {
   return Promise.race([promise, lost]).finally(() => waiting.delete(promise));
 }
 
-// In place of that of node, whose threads keep this one waiting when the machine is busy.
+// Replaces that of node, whose threads delay this one on a busy machine.
 class Inflating extends TransformStream {
   constructor() {
     const chunks = [];

@@ -205,7 +205,7 @@ const flows = [
       return ['first', 'late'].filter((name) => models.get(name)?.group.visible).join(' ');
     });
     const place = (name) => page.evaluate((wanted) => window.studio.world.world.links.find((link) => link.name === wanted)?.getWorldPosition(window.studio.world.eye.target.clone()).toArray(), name);
-    // A recorder that was late has a later beginning: a time before it cannot be gone to.
+    // If the recorder started late, the recording begins later, and earlier times cannot be selected.
     const { from, to } = await page.evaluate(() => window.studio.store.hello.recording);
     check(from < 0.9 && to > 6.9, `recorded from ${from} to ${to}`);
     // Back, too: what has come is gone again, and what has gone is there.

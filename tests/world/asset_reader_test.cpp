@@ -279,7 +279,7 @@ TEST(AssetReader, the_first_fault_of_a_file_is_told_until_it_changes) {
   EXPECT_FALSE(is_first_fault(path));
 }
 
-// Physics and rays miss the same file one after the other.
+// Physics and rays fail to read the same file, one after the other.
 TEST(AssetReader, a_fault_is_told_once_however_many_there_were_before) {
   const WorldFiles files;
   for (int i = 0; i < 10000; ++i) {
@@ -338,7 +338,7 @@ TEST(AssetReader, a_ply_whose_header_does_not_fit_the_file_is_refused_before_it_
               testing::HasSubstr("is damaged: a line of \"face\" ends before the count of a list"));
 }
 
-// Assimp fills a list with zeros that is longer than its line, and would take seconds to make triangles of it.
+// If a list is longer than its line, Assimp fills it with zeros, and would take seconds to triangulate it.
 TEST(AssetReader, a_face_with_more_corners_than_its_mesh_or_its_file_can_have_is_refused) {
   const WorldFiles files;
   const auto said = [&](const std::string& property, const std::string& value, const std::string& count, const std::string& comment = "") {
@@ -353,7 +353,7 @@ TEST(AssetReader, a_face_with_more_corners_than_its_mesh_or_its_file_can_have_is
   for (const std::string count : {"3", "5", "20000"}) EXPECT_EQ(said("", "", count), "read");
   for (const std::string count : {"65536", "99999999"})
     EXPECT_THAT(said("", "", count), testing::HasSubstr("is damaged: a list of \"face\" counts " + count + " numbers, the file has "));
-  // In a file with so many bytes only the mesh shows it.
+  // In a file of this size only the check of the mesh finds it.
   EXPECT_THAT(said("", "", "65536", "comment " + std::string(66000, 'x') + "\n"),
               testing::HasSubstr("is damaged: mesh 0 \"\": face 1 has 65537 corners, its mesh 3 vertices"));
   EXPECT_THAT(said("property int first\n", "0 ", "65536"), testing::HasSubstr("is damaged: a list of \"face\" counts 65536 numbers"));
