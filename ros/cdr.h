@@ -1,5 +1,5 @@
 // Messages of ROS 2 as bytes, and their definitions as text, both from one description: a message is a structure with its name, and
-// fields() names its members in order. Little-endian CDR behind four bytes that say so. Pure; any thread.
+// fields() names its members in order. Little-endian CDR after a header of four bytes. Pure; any thread.
 #pragma once
 
 #include <algorithm>

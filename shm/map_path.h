@@ -1,5 +1,5 @@
-// Ways over an occupancy map, for a round robot: past everything that is occupied, and round corners with room to spare where there is
-// some. Pure; any thread.
+// Paths over an occupancy map, for a round robot: around occupied cells, and around corners with a margin where there is room. Pure; any
+// thread.
 #pragma once
 
 #include <array>

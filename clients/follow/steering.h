@@ -1,4 +1,4 @@
-// Computes the velocity of the follower: towards the leader, keeping a distance, and around what is in the way. Pure; any thread.
+// Computes the velocity of the follower: towards the leader, keeping a distance, and around obstacles. Pure; any thread.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
-// LaserObstacleAvoid: drives so that nothing is hit. InPort `range` (RTC::RangeData), OutPort `velocity` (RTC::TimedVelocity2D).
-// Configuration: the settings of avoidance.h; scan_timeout [s of the context's time]: the robot is stopped when no scan has come for so
-// long.
+// LaserObstacleAvoid: drives a robot around obstacles. InPort `range` (RTC::RangeData), OutPort `velocity` (RTC::TimedVelocity2D).
+// Configuration: the settings of avoidance.h; scan_timeout [s of the context's time]: the robot is stopped if no scan has arrived for this
+// time.
 #pragma once
 
 #include <rtm/idl/ExtendedDataTypesSkel.h>

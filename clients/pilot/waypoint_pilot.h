@@ -1,5 +1,5 @@
-// WaypointPilot: leads a vehicle with RTCPosition3d from way point to way point. InPort `pose` (RTC::TimedPose3D): where the vehicle is.
-// OutPorts `velocity` (RTC::TimedVelocity3D): what it is to do, in its own frame; `reached` (RTC::TimedLong): way points that it has
+// WaypointPilot: leads a vehicle with RTCPosition3d from way point to way point. InPort `pose` (RTC::TimedPose3D): the pose of the vehicle.
+// OutPorts `velocity` (RTC::TimedVelocity3D): its command, in the frame of the vehicle; `reached` (RTC::TimedLong): way points that it has
 // reached. After the last one it stays there. Configuration: waypoints: x,y,z [m] of each, in the frame of the pose, separated by
 // semicolons; speed [m/s], turn_rate [rad/s]: highest; tolerance [m]: how near counts as reached; sideways: 1: the vehicle can move to all
 // sides (multicopter), 0: it turns to the way point and drives forward (boat).

@@ -1,4 +1,4 @@
-// An image as it came over a port, made ready to show: packed RGB, checked. Values; any thread.
+// A received image, checked and converted to packed RGB for the window. Values; any thread.
 #pragma once
 
 #include <rtm/idl/InterfaceDataTypesSkel.h>

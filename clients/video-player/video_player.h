@@ -1,7 +1,7 @@
-// VideoPlayer: shows what comes to the InPort `image` (RTC::CameraImage) in a window, with frame rate, simulated time and dropped frames in
+// VideoPlayer: shows the images of the InPort `image` (RTC::CameraImage) in a window, with frame rate, simulated time and dropped frames in
 // its title; space pauses, s saves a PNG (in record_dir, or where the process works), q, escape or the window's button close it. A player
 // without window and record_dir has nothing left to do then: it deactivates itself; active again it has a new window. Without a display it
-// says so and writes to record_dir.
+// logs that and writes to record_dir.
 // Configuration: record_dir: a folder for a PNG of every frame, and times.txt with the simulated time of each (empty: none); what is there
 // already stays, and the numbers go on. window: 0 or 1.
 #pragma once

@@ -1,10 +1,10 @@
-// A window that shows pictures, by SDL2. SDL wants every call from the thread that opened the display, and has one queue of events for the
-// whole process; so the windows of a process share a thread of their own. Any thread may open, use and close a window, several at the same
-// time; nothing but open, close and the destructor waits for the display, and they for a second and a half at most.
+// A window that shows images, by SDL2. SDL requires every call from the thread that opened the display, and has one queue of events for the
+// whole process. So the windows of a process share a thread of their own. Any thread may open, use and close a window, several at the same
+// time. Only open, close and the destructor wait for the display, for at most one and a half seconds.
 //
-// An X server that ends stops that thread for ever instead of the process: Xlib's handler for it must not return into SDL, which cannot
-// leave a dead display. One that is only stopped gets a second and a half for each answer; then the thread is left to it and the component
-// goes on.
+// An X server that exits blocks that thread forever instead of ending the process: Xlib's handler must not return into SDL, which cannot
+// leave a dead display. A stopped X server gets one and a half seconds for each answer. Then the thread is abandoned, and the component
+// continues.
 #pragma once
 
 #include <memory>

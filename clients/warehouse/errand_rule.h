@@ -1,4 +1,4 @@
-// The rule by which a robot brings a box to a door: straight on until it is there, straight back, and no step while something is in its
+// The rule by which a robot brings a box to a door: straight on until it is there, straight back, and stopped while something is in its
 // way. Pure; any thread.
 #pragma once
 

@@ -1,7 +1,7 @@
-// Porter: brings what lies before the robot to a door, straight ahead, and comes back. It stops while its scan shows something in the lane.
-// InPorts `odometry` (RTC::TimedPose2D), `range` (RTC::RangeData), OutPorts `velocity` (RTC::TimedVelocity2D), `stage` (RTC::TimedLong: 0
-// waiting, 1 bringing, 2 returning, 3 done). Configuration: the settings of errand_rule.h; number and interval: it starts number * interval
-// seconds after its activation, by the clock of the context.
+// Porter: pushes the box in front of the robot straight ahead to a door, and drives back. It stops while its scan shows something in the
+// lane. InPorts `odometry` (RTC::TimedPose2D), `range` (RTC::RangeData), OutPorts `velocity` (RTC::TimedVelocity2D), `stage`
+// (RTC::TimedLong: 0 waiting, 1 bringing, 2 returning, 3 done). Configuration: the settings of errand_rule.h; number and interval: it
+// starts number * interval seconds after its activation, by the clock of the context.
 #pragma once
 
 #include <rtm/idl/BasicDataTypeSkel.h>

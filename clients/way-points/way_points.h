@@ -1,5 +1,5 @@
-// WayPoints: leads a robot from pose to pose. InPort `odometry` (RTC::TimedPose2D), OutPort `goal` (RTC::TimedPose2D): the pose that it
-// goes to now, for a drive with pose control; OutPort `reached` (RTC::TimedLong): poses reached so far.
+// WayPoints: leads a robot from pose to pose. InPort `odometry` (RTC::TimedPose2D), OutPort `goal` (RTC::TimedPose2D): the current
+// goal, for a drive with pose control; OutPort `reached` (RTC::TimedLong): poses reached so far.
 // Configuration: path: x,y,heading of each pose [m, rad] of the odometry, separated by semicolons; loop: begin again after the last;
 // near, straight: when a pose is reached [m], [rad].
 #pragma once

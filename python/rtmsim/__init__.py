@@ -5,7 +5,7 @@
         world.step(100)
         print(world.pose("pioneer2dx"), world.scan("pioneer2dx::laser").min())
 
-Units: m, rad, s, kg, N. x is forward, y left, z up. Times are simulated seconds if nothing else is said.
+Units: m, rad, s, kg, N. x is forward, y left, z up. Times are simulated seconds unless stated otherwise.
 """
 from __future__ import annotations
 

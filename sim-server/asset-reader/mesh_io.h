@@ -1,5 +1,5 @@
 // File access of Assimp: regular files only, read whole. A mesh can name others (material libraries, buffers), and a pipe or a device among
-// them would be read for ever. One thread at a time.
+// them would be read endlessly. One thread at a time.
 #pragma once
 
 #include <assimp/DefaultIOSystem.h>

@@ -1,5 +1,5 @@
-// The life of rtm-asset-reader (reader/protocol.h). Whatever a file does to this process, the simulator goes on: limits are set before the
-// first file, and its end is the end of that file alone. For a process that does nothing else.
+// The life of rtm-asset-reader (reader/protocol.h). Whatever a file does to this process, the simulator continues: limits are set before
+// the first file, and its end is the end of that file alone. For a process that does nothing else.
 #pragma once
 
 namespace sim {

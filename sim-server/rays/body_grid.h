@@ -1,4 +1,4 @@
-// Finds what is near a place among many bodies, on a map of square cells. Private to rays/. Building is for one thread; after that any
+// Finds the bodies near a position among many, on a grid of square cells. Private to rays/. Building is for one thread; after that any
 // number may search. Lengths in m.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The world as rays see it, in Embree: what lidars, sonars and other range finders measure against. Exact shapes: boxes and meshes as
+// The world for rays, in Embree: the shapes that lidars, sonars and other range finders measure. Exact shapes: boxes and meshes as
 // triangles, spheres, cylinders and capsules as what they are, planes endless. Static shapes lie in one scene; moving bodies made of the
 // same shapes share theirs.
 //

@@ -1,4 +1,4 @@
-// A scene as glTF 2.0 binary (".glb"): for viewers that draw it themselves and are told only where the links are. Values; any thread.
+// A scene as glTF 2.0 binary (".glb"): for viewers that draw it themselves and receive only the poses of links. Values; any thread.
 //
 // Nodes: the root "world" turns our z up into glTF's y up; below it one node for each model, with one for each link ("model::link", an
 // actor's bones too), with those of what hangs on it: shapes, lights, sensors. Poses of links are in the world. The scene's extras:

@@ -1,4 +1,4 @@
-// Lenses that are no pinhole: how the picture of a distorting or wide lens is put together from one or more flat views. A value; any
+// Lenses other than pinholes: composes the image of a distorting or wide lens from one or more flat views. A value; any
 // thread.
 #pragma once
 

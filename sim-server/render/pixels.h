@@ -1,4 +1,4 @@
-// From what the renderer draws to what sensors publish: loops over whole pictures. Values; any thread.
+// Converts images of the renderer to images of sensors: loops over whole images. Values; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The world for viewers that draw it themselves: all of it once, then only where the links are. Planned in the stepping thread; a plan
+// The world for viewers that draw it themselves: the whole scene once, then only the poses of links. Planned in the stepping thread; a plan
 // never changes and any thread may write it.
 #pragma once
 

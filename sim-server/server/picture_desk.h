@@ -1,5 +1,5 @@
-// Draws and writes screenshots, and writes exports, in a thread of its own: a screenshot takes as long as many steps, and time goes on
-// meanwhile. The stepping thread only, but for what `on_done` does.
+// Draws and writes screenshots, and writes exports, in a thread of its own: a screenshot takes as long as many steps, and the simulation
+// continues meanwhile. The stepping thread only, but for what `on_done` does.
 #pragma once
 
 #include <condition_variable>

@@ -1,4 +1,5 @@
-// Sees where moving models are, ten times a simulated second, and in which step two models begin to touch. The stepping thread only.
+// Records the poses of moving models ten times a simulated second, and the steps in which two models begin to touch. The stepping thread
+// only.
 #pragma once
 
 #include <chrono>

@@ -1,9 +1,9 @@
-// Writes where every moving model was, as text: one line per model and tenth of a simulated second.
+// Writes the poses of moving models as text: one line per model and tenth of a simulated second.
 // The stepping thread only.
 //   # rtm-sim record 1, world NAME
 //   # time model x y z qw qx qy qz      (s, m, unit quaternion; world frame)
 //   0.100 pioneer2dx 0 0 0 1 0 0 0
-// when no model moves, a line that says so, as who reads along sees how far it is:
+// If no model moves, a comment line has the time, so that a reader sees the progress:
 //   # 0.200 nothing moves
 // and one line, in the step in which it happens, when two models begin to touch:
 //   contact 3.217 pioneer2dx box_4

@@ -1,5 +1,5 @@
-// Reads models that are to be spawned, in a thread of its own: their files can take as long as thousands of steps, and time goes on
-// meanwhile (but not in lock step). The stepping thread only, but for what `on_done` does.
+// Reads models that are to be spawned, in a thread of its own: their files can take as long as thousands of steps. The simulation
+// continues meanwhile, except in lock step. The stepping thread only, but for what `on_done` does.
 //
 // States of an order: taken, read (its model and all that its shapes need, or an error), finished. Orders are read in the order in which
 // they come. Nothing that the desk's thread reads is seen by the stepping thread before finished() hands it over.
