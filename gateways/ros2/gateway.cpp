@@ -396,10 +396,11 @@ void Gateway::report_lost(const Writer& writer) {
   if (more == 0) return;
   std::set<std::string> readers;
   for (const Guid& reader : writer.readers()) readers.insert(graph_->node_of(reader));
-  base::log(
-      base::Level::warn, "ros2-gateway", "{}: {} samples were not confirmed in time by every reader ({}). The longest write took {:.2f} ms",
-      writer.settings().topic.substr(2), more, readers.empty() ? "they have left" : base::join({readers.begin(), readers.end()}, ", "),
-      std::chrono::duration<double, std::milli>(writer.longest_write()).count());
+  base::log(base::Level::warn, "ros2-gateway",
+            "{}: {} samples were not confirmed in time by every reader ({}). The longest write took {:.2f} ms",
+            writer.settings().topic.substr(2), more,
+            readers.empty() ? "the readers have left" : base::join({readers.begin(), readers.end()}, ", "),
+            std::chrono::duration<double, std::milli>(writer.longest_write()).count());
 }
 
 // Of a count since the last report. A robot that is made again counts from 0.

@@ -194,9 +194,8 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   const Joining joining(impl_->shared, comp);
   if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
   if (impl_->context.members().size() >= rt::entry_limits.members) {
-    rt::log_refusal(
-        rtclog, RTC::Logger::RTL_ERROR,
-        "a further component is refused: the context has " + std::to_string(rt::entry_limits.members) + ", the most that may be");
+    rt::log_refusal(rtclog, RTC::Logger::RTL_ERROR,
+                    "a further component is refused: the context has " + std::to_string(rt::entry_limits.members) + ", the maximum");
     return RTC::RTC_ERROR;
   }
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;

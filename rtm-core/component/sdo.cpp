@@ -87,7 +87,7 @@ bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
     }
   }
   rt::log_refusal(rtclog, Logger::RTL_ERROR,
-                  "a further organization is refused: the component is in " + std::to_string(most_memberships) + ", the most that may be");
+                  "a further organization is refused: the component is in " + std::to_string(most_memberships) + ", the maximum");
   return false;
 }
 

@@ -120,7 +120,7 @@ std::vector<std::string> module_paths(const std::vector<std::string>& before) {
 
 std::vector<std::string> host_words(const HostSettings& settings) {
   const auto paths = module_paths(settings.module_paths);
-  // In lock step the real time that a call takes decides nothing: who watches the run gives up a tick that does not end.
+  // In lock step the wall-clock time of a call must not change the run. The watch of the run ends a tick that hangs (--hang-timeout).
   std::vector<std::string> options = {"corba.call_timeout:3600",
                                       "corba.nameservers:" + settings.naming,
                                       "manager.modules.load_path:" + base::join(paths, ","),

@@ -174,9 +174,9 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   }
   if (known) return known->reinit(profile);
   if (is_full) {
-    rt::log_refusal(base::Level::error, impl_->component.getInstanceNameString(),
-                    "SDO service " + base::in_quotes(id) + " is refused: there are " + std::to_string(most_consumers) +
-                        " already, the most that may be");
+    rt::log_refusal(
+        base::Level::error, impl_->component.getInstanceNameString(),
+        "SDO service " + base::in_quotes(id) + " is refused: there are " + std::to_string(most_consumers) + " already, the maximum");
     return false;
   }
   if (!is_enabled(enabled, type)) return false;
