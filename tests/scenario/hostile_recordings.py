@@ -1,6 +1,7 @@
 # Recordings of an enemy, shown by rtse: one line says what is wrong, memory stays bounded, nothing is written elsewhere.
 # hostile_recordings.py CASE BIN_DIR LIB_DIR SOURCE_DIR.
 import ctypes
+import functools
 import json
 import os
 import re
@@ -36,6 +37,9 @@ def compressed(octets):
     return room.raw[:size]
 
 
+compressed_once = functools.cache(compressed)
+
+
 # Channels (topic, encoding, schema's name, schema's encoding, schema's text) and messages (channel from 1, octets).
 def recording(path, channels, messages):
     body = b""
@@ -57,12 +61,13 @@ def summarized(path, messages):
     places = b""
     for n, octets in enumerate(messages):
         at = n * 10**9
-        body = (channel if n == 0 else b"") + record(5, struct.pack("<HIQQ", 1, n, at, at) + octets)
-        packed = compressed(body)
-        chunk = record(6, struct.pack("<QQQI", at, at, len(body), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed)
+        head = (channel if n == 0 else b"") + struct.pack("<BQHIQQ", 5, 22 + len(octets), 1, n, at, at)  # record 5 without its data
+        size = len(head) + len(octets)
+        packed = compressed(head + octets) if size < 1 << 20 else compressed(head) + compressed_once(octets)  # two frames
+        chunk = record(6, struct.pack("<QQQI", at, at, size, 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed)
         index = record(7, struct.pack("<HIQQ", 1, 16, at, 0))
         places += record(8, struct.pack("<QQQQIHQQ", at, at, len(data), len(chunk), 10, 1, len(data) + len(chunk), len(index)) +
-                         text("zstd") + struct.pack("<QQ", len(packed), len(body)))
+                         text("zstd") + struct.pack("<QQ", len(packed), size))
         data += chunk + index
     count = len(messages)
     statistics = record(11, struct.pack("<QHIIIIQQIHQ", count, 0, 1, 0, 0, count, 0, (count - 1) * 10**9, 10, 1, count))
@@ -186,9 +191,9 @@ def many_broken():
     refused("recording", "export", file, "-o", "out", says='"broken.mcap": ... and 194 more', lines=6)
 
 
-# A gigabyte of zeros in a small file: what the indexes say is told without them.
+# Gigabytes of zeros in a small file: what the indexes say is told without them.
 def large():
-    chunks = int(os.environ.get("LARGE_CHUNKS", "9"))
+    chunks = int(os.environ.get("LARGE_CHUNKS", "20"))
     chunk = b'{"v":"' + b"0" * (127 << 20) + b'"}'
     file = summarized("large.mcap", [chunk] * chunks)
     assert os.path.getsize(file) < 10 << 20
