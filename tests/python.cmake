@@ -13,5 +13,5 @@ foreach(file python/world_test.py python/arguments_test.py python/process_test.p
   add_test(NAME python.${name}
     COMMAND ${Python_EXECUTABLE} -B -m pytest -q -p no:cacheprovider ${CMAKE_CURRENT_SOURCE_DIR}/${file})
   set_tests_properties(python.${name} PROPERTIES LABELS "sim;process" TIMEOUT 600
-    ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;RTMSIM_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};RTMSIM_LIB_DIR=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}${python_sanitizer}")
+    ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${CMAKE_CURRENT_SOURCE_DIR}/python/whole_lines;RTMSIM_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};RTMSIM_LIB_DIR=${CMAKE_LIBRARY_OUTPUT_DIRECTORY}${python_sanitizer}")
 endforeach()

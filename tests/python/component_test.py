@@ -294,7 +294,6 @@ def test_a_script_finds_connects_and_activates_components_by_their_references(sy
     assert "direct RTC_OK PORT_OK" in said
     says(system, printer, "received 4712")
     says(system, printer, "connected connector0 push")
-    # Two threads of the program print, so one may break a line of the other.
     await_("the new step", lambda: any(int(value) > 2000 for value in re.findall(r"^received (\d+) True$", system.log(printer), re.MULTILINE)))
 
 
