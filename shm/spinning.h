@@ -32,7 +32,7 @@ class FreeProcessors {
   bool is_due(std::chrono::steady_clock::time_point now) const { return now >= next_look_ && file_ >= 0; }
   // Counts the threads that want to run, without the caller and those that take part; at most once in a pause.
   void look(std::chrono::steady_clock::time_point now, std::size_t taking_part = 0);
-  // True if there are free processors for the caller and this number of others.
+  // True if enough processors are free for the caller and this number of further threads.
   bool are_there_for(std::size_t others) const;
 
  private:

@@ -102,8 +102,8 @@ class ExecutionContext {
   State next_state(MemberId id) const;
   bool is_next(State state) const;  // all members will be in that state
 
-  // Asks for a transition, which the next first stage makes: bad_parameter when there is no such member, precondition_not_met when the
-  // state does not allow it or something else is pending.
+  // Requests a transition for the next first stage. Returns bad_parameter if the component is not a member, precondition_not_met if its
+  // state does not allow the transition or another one is pending.
   ReturnCode request(MemberId id, Event event);
   // Waits for the end of a request: precondition_not_met when it ended in another state than asked for, error when the time is over.
   // On the stepping thread it returns ok at once.

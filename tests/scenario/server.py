@@ -463,7 +463,8 @@ def paused_is_idle():
     time.sleep(3)  # what is measured
     woken, used = (after - start for after, start in zip(woken_and_used(), before))
     print(f"woken {woken} times in 3 s, {used * 1e3:.2f} ms of processor time")
-    assert woken <= 10, f"woken {woken} times in 3 s"
+    most = 60 if "RTMSIM_SANITIZED" in os.environ else 10  # the thread sanitizer has a thread of its own, which wakes ten times a second
+    assert woken <= most, f"woken {woken} times in 3 s"
     assert used <= 0.5, f"{used} s of processor time in 3 s"
     stop(process)
 

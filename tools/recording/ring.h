@@ -52,11 +52,11 @@ base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const s
 
 // The reader of a recording. If only segments of a ring exist, the error names them.
 base::Result<mcap::Reader> open_recording(const std::string& path);
-// For options of the command line: the reason if there is no such recording; empty: it exists.
+// For options of the command line: the reason if the recording does not exist; empty if it does.
 std::string check_recording(const std::string& path);
 // True if the file begins as a recording does.
 bool is_recording(const std::string& path);
-// For options of the command line: the reason if the file is not a recording; empty: it begins as one.
+// For options of the command line: the reason if the file is not a recording; empty if it begins as one.
 std::string recording_problem(const std::string& path);
 
 }  // namespace recorder
