@@ -2,6 +2,7 @@
 import json
 import os
 import random
+import signal
 import socket
 import subprocess
 import threading
@@ -237,11 +238,17 @@ def comes_back():
     viewer = studio.viewer()
     assert viewer.event("world")["present"] is False
     assert viewer.event("system")["problem"]
-    simulator = rig.server("-u")
-    viewer.event("world", lambda m: m["present"])
-    viewer.wait_for(is_poses)
-    rig.kill(simulator)
-    viewer.event("world", lambda m: not m["present"] and "has exited" in m["problem"])
+    # It is killed between two requests of the studio, and during one: the studio asks every 0.25 s at least, and waits 2 s for an answer.
+    for is_asked in (False, True):
+        simulator = rig.server("-u")
+        viewer.event("world", lambda m: m["present"])
+        viewer.wait_for(is_poses)
+        if is_asked:
+            simulator.send_signal(signal.SIGSTOP)
+            time.sleep(0.6)
+        rig.kill(simulator)
+        gone = viewer.event("world", lambda m: not m["present"])
+        assert gone["problem"] == f"simulator {rig.server_id} has exited; this page waits for it to restart", gone
     assert "error" in viewer.ask("run")
     rig.server("-u")
     viewer.event("world", lambda m: m["present"])

@@ -5,6 +5,11 @@ import os
 import re
 import socket
 import struct
+import time
+
+from system import watchdog
+
+states = ("hello", "states", "system", "time", "world")  # events that tell how a thing is now: a newer one replaces an older one
 
 
 class Closed(Exception):
@@ -40,10 +45,12 @@ class Socket:
     """One WebSocket."""
 
     # The token goes as a subprotocol, as the page sends it; `in_url`: as viewers send it that are given a URL and nothing else.
-    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=60, receive_buffer=0, in_url=False):
+    def __init__(self, port, token="", protocol="rtmsim.studio.v1", headers=None, limit=watchdog, receive_buffer=0, in_url=False):
         self.line = socket.socket()
+        self.limit = limit  # [s]; of each wait, however many pings and messages come meanwhile
         if receive_buffer:
             self.line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+        self.end = time.monotonic() + limit
         self.line.settimeout(limit)
         self.line.connect(("127.0.0.1", port))
         self.octets = b""
@@ -63,7 +70,9 @@ class Socket:
         self.last_id = 0
 
     def more(self):
+        self.line.settimeout(max(self.end - time.monotonic(), 0.001))
         piece = self.line.recv(1 << 16)
+        self.line.settimeout(self.limit)
         if not piece:
             raise Closed()
         self.octets += piece
@@ -76,6 +85,7 @@ class Socket:
 
     def frame(self):
         """Opcode and payload of the next frame; pings are answered."""
+        self.end = time.monotonic() + self.limit
         while True:
             first, second = self.exactly(2)
             size = second & 0x7F
@@ -119,15 +129,27 @@ class Socket:
         self.line.sendall(octets + payload)
 
     def wait_for(self, fits):
-        """The first message that fits, among those that were passed over and those to come."""
-        for i, message in enumerate(self.kept):
-            if fits(message):
-                return self.kept.pop(i)
+        """The first message that fits, among those that were passed over and those to come. States that are older than the one that fits are forgotten."""
+        end = time.monotonic() + self.limit
+        next_kept = 0
         while True:
-            message = self.message()
+            if next_kept == len(self.kept):
+                try:
+                    self.kept = self.kept[-1000:] + [self.message()]
+                except TimeoutError:
+                    raise AssertionError(f"nothing in {self.limit} s; {self.last_messages()}") from None
+                next_kept = len(self.kept) - 1
+            message = self.kept[next_kept]
             if fits(message):
+                op = message.get("op") if isinstance(message, dict) else None
+                older = [m for m in self.kept[:next_kept] if not (op in states and isinstance(m, dict) and m.get("op") == op)]
+                self.kept = older + self.kept[next_kept + 1:]
                 return message
-            self.kept = self.kept[-200:] + [message]
+            next_kept += 1
+            assert time.monotonic() < end, f"not within {self.limit} s; {self.last_messages()}"
+
+    def last_messages(self):
+        return f"the last messages: {[str(m)[:300] for m in self.kept if isinstance(m, dict)][-5:]}"
 
     def event(self, op, fits=lambda message: True):
         return self.wait_for(lambda m: isinstance(m, dict) and m.get("op") == op and fits(m))

@@ -120,12 +120,18 @@ void WorldWatch::run() {
   }
 }
 
+// The same whichever call is the first to find it out.
+std::string WorldWatch::exit_text() const {
+  return "simulator " + std::to_string(server_id_) + " has exited; this page waits for it to restart";
+}
+
 void WorldWatch::attach() {
   auto found = shm::Requester::open(server_id_);
   if (!found) {
-    const auto places = shm::segment_places();
-    const bool is_there = std::ranges::any_of(*places, [&](const shm::SegmentPlace& place) { return place.name.server_id == server_id_; });
-    return detach(is_there ? found.error().message : "no simulator of number " + std::to_string(server_id_) + " runs");
+    const auto segments = shm::find_segments(server_id_);
+    if (segments.empty()) return detach("no simulator of number " + std::to_string(server_id_) + " runs");
+    const bool is_alive = std::ranges::any_of(segments, [](const auto& segment) { return segment.is_alive; });
+    return detach(is_alive ? found.error().message : exit_text());
   }
   simulator_ = std::move(*found);
   seen_sample_ = 0;
@@ -146,8 +152,7 @@ void WorldWatch::detach(const std::string& problem) {
 
 void WorldWatch::look() {
   auto& simulation = simulator_->simulation();
-  if (simulation.status() != shm::Status::live)
-    return detach("simulator " + std::to_string(server_id_) + " has exited; this page waits for it to restart");
+  if (simulation.status() != shm::Status::live) return detach(exit_text());
   (void)simulation.read();  // without a sample the last one stays
   look_at_poses(std::exchange(was_hurried_, false));
   if (!simulator_) return;
@@ -162,7 +167,10 @@ void WorldWatch::look_at_poses(bool is_hurried) {
   if (has_moved) tell_.clock(std::chrono::nanoseconds(simulation.sample<shm::SimulationSample>().stamp.sim_time_ns));
   if (!has_poses_ || (!has_moved && !is_hurried && Clock::now() - poses_at_ < still_period)) return;
   const auto reply = simulator_->ask(shm::PosesRequest{}, answer_limit);
-  if (!reply) return detach("simulator " + std::to_string(server_id_) + ": " + reply.error().message);
+  if (!reply) {
+    const bool is_alive = simulation.status() == shm::Status::live;
+    return detach(is_alive ? "simulator " + std::to_string(server_id_) + ": " + reply.error().message : exit_text());
+  }
   poses_at_ = Clock::now();
   has_poses_ = reply->status == shm::RequestStatus::ok;
   if (!has_poses_) return;

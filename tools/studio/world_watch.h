@@ -52,6 +52,7 @@ class WorldWatch {
   bool sleep();  // false: the end
   void attach();
   void detach(const std::string& problem);
+  std::string exit_text() const;
   void look();
   void look_at_poses(bool is_hurried);
   void look_at_world();
