@@ -1,11 +1,11 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
 rtmsim_test(porter_test clients/porter_test.cpp LIBRARIES errand_rule)
-rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/line_limit_test.cpp iface-components/ranger_test.cpp iface-components/scan_features_test.cpp LIBRARIES iface_link)
+rtmsim_test(iface_components_test
+  iface-components/conversions_test.cpp iface-components/line_limit_test.cpp iface-components/ranger_test.cpp iface-components/scan_features_test.cpp iface-components/sim_tick_test.cpp
+  iface-components/tick_group_test.cpp iface-components/camera_image_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp ${PROJECT_SOURCE_DIR}/iface-components/tick_group.cpp
+  LIBRARIES iface_link camera_image turbojpeg)
 rtmsim_test(manipulator_test arms/arm_kinematics_test.cpp arms/limb_test.cpp arms/manipulator_test.cpp LIBRARIES arms)
 find_package(SDL2 REQUIRED)
-rtmsim_test(camera_image_test iface-components/camera_image_test.cpp LIBRARIES camera_image turbojpeg)
-rtmsim_test(sim_tick_test iface-components/sim_tick_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp LIBRARIES iface_link)
-rtmsim_test(tick_group_test iface-components/tick_group_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/tick_group.cpp LIBRARIES iface_link)
 rtmsim_test(video_test clients/picture_test.cpp clients/window_test.cpp LIBRARIES video SDL2::SDL2)
 
 rtmsim_component(ArmProbe scenario/arm_probe.cpp)

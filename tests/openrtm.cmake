@@ -12,15 +12,12 @@ target_include_directories(samples_like_openrtm BEFORE PRIVATE ${CMAKE_CURRENT_S
 target_link_libraries(samples_like_openrtm PRIVATE rtm_idl ${PROJECT_NAME}_idl_Echo rtmsim_settings)
 
 # What authors use, name by name.
-rtmsim_test(classic_api_test classic-api/surface_test.cpp classic-api/macho_test.cpp LIBRARIES openrtm)
-rtmsim_test(classic_tools_test classic-api/tools_test.cpp LIBRARIES openrtm)
-rtmsim_test(classic_context_test classic-api/context_test.cpp LIBRARIES openrtm)
+rtmsim_test(classic_api_test classic-api/surface_test.cpp classic-api/macho_test.cpp classic-api/tools_test.cpp classic-api/context_test.cpp LIBRARIES openrtm)
 
 # Component sources in the style of every version of the API; that they compile is the test. LINKED: also as module and program.
 add_subdirectory(classic-api)
 
-rtmsim_test(include_rules_test rules/include_rules_test.cpp rules/length_rules_test.cpp rules/lock_rules_test.cpp rules/name_rules_test.cpp rules/test_lists_test.cpp)
-rtmsim_test(include_closure_test rules/include_closure_test.cpp)
+rtmsim_test(include_rules_test rules/include_rules_test.cpp rules/length_rules_test.cpp rules/lock_rules_test.cpp rules/name_rules_test.cpp rules/test_lists_test.cpp rules/include_closure_test.cpp)
 add_test(NAME build.incremental COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/rules/incremental.py ${PROJECT_BINARY_DIR})
 set_tests_properties(build.incremental PROPERTIES SKIP_RETURN_CODE 77)
 

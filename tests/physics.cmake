@@ -1,19 +1,7 @@
-rtmsim_test(physics_test physics/physics_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(rolling_test physics/rolling_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(joints_test physics/joints_test.cpp physics/joint_limits_test.cpp physics/joint_couplings_test.cpp physics/rotor_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(arm_energy_test physics/arm_energy_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(mesh_energy_test physics/mesh_energy_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(crowd_test physics/crowd_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(tree_solver_test physics/tree_solver_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(mesh_collision_test physics/mesh_collision_test.cpp LIBRARIES simserver png LABELS sim)
-rtmsim_test(free_rotation_test physics/free_rotation_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(impacts_test physics/impacts_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(weld_test physics/weld_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(carried_loads_test physics/carried_loads_test.cpp LIBRARIES simphysics LABELS sim)
-# KDL is what it is compared with; no program uses it.
+# KDL is what the dynamics are compared with; no program uses it.
 find_package(orocos_kdl REQUIRED)
-rtmsim_test(joint_control_test physics/joint_control_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(joint_dynamics_test physics/joint_dynamics_test.cpp LIBRARIES simphysics orocos-kdl LABELS sim)
-rtmsim_test(displacement_test physics/displacement_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(aerodynamics_test physics/aerodynamics_test.cpp LIBRARIES simphysics LABELS sim)
-rtmsim_test(water_test physics/water_test.cpp LIBRARIES simphysics LABELS sim)
+rtmsim_test(physics_test
+  physics/physics_test.cpp physics/rolling_test.cpp physics/joints_test.cpp physics/joint_limits_test.cpp physics/joint_couplings_test.cpp physics/rotor_test.cpp physics/joint_control_test.cpp
+  physics/joint_dynamics_test.cpp physics/arm_energy_test.cpp physics/mesh_energy_test.cpp physics/mesh_collision_test.cpp physics/crowd_test.cpp physics/tree_solver_test.cpp
+  physics/free_rotation_test.cpp physics/impacts_test.cpp physics/weld_test.cpp physics/carried_loads_test.cpp physics/displacement_test.cpp physics/aerodynamics_test.cpp physics/water_test.cpp
+  LIBRARIES simserver png orocos-kdl LABELS sim)

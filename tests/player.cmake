@@ -1,9 +1,8 @@
 # The protocol of Player, player-gateway before a peer of another make, and the follower.
-rtmsim_test(player_protocol_test player/player_protocol_test.cpp LIBRARIES player_protocol)
-rtmsim_test(player_gateway_test player/player_gateway_test.cpp player/player_cfg_test.cpp player/disparity_test.cpp LIBRARIES player_gateway)
-rtmsim_test(player_devices_test player/player_devices_test.cpp player/seen_devices_test.cpp player/new_player_interface_test.cpp LIBRARIES player_gateway)
-rtmsim_test(door_test player/door_test.cpp LIBRARIES player_gateway)
-rtmsim_test(alarm_test player/alarm_test.cpp LIBRARIES player_gateway)
+rtmsim_test(player_test
+  player/player_protocol_test.cpp player/player_gateway_test.cpp player/player_cfg_test.cpp player/disparity_test.cpp player/player_devices_test.cpp player/seen_devices_test.cpp
+  player/new_player_interface_test.cpp player/door_test.cpp player/alarm_test.cpp
+  LIBRARIES player_gateway)
 scenario_cases(player. player listing drive properties flow rate two_clients simulation rangers sensors config JUDGED)
 scenario_cases(player. player_faults gateway_ends restart hung late_and_changing bad_input stuck JUDGED)
 scenario_cases(player. player_drives position heading cars flight)

@@ -1,8 +1,6 @@
 # Recordings: the file format.
 rtmsim_test(mcap_test recording/mcap_test.cpp LIBRARIES mcap)
-rtmsim_test(ros_messages_test recording/ros_messages_test.cpp LIBRARIES recorder)
-rtmsim_test(expression_test recording/expression_test.cpp LIBRARIES recorder)
-rtmsim_test(recorder_line_test recording/recorder_line_test.cpp LIBRARIES recorder)
+rtmsim_test(recorder_test recording/ros_messages_test.cpp recording/expression_test.cpp recording/recorder_line_test.cpp LIBRARIES recorder)
 scenario_cases(recordings. recordings views excluded whole_run same_run killed full_disk compared played kept of_a_run repeated lives hashed simulator_ends bad_input)
 scenario_cases(recordings. recorded_again replayed replayed_without_inputs replayed_from_real_time gone_to gone_to_with_others like)
 scenario_cases(recorded_rings. recorded_rings of_a_run killed again reset taken full_disk of_a_killed_recorder)

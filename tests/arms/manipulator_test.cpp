@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+namespace manipulators {
 namespace {
 
 using arms::Answer;
@@ -454,3 +455,4 @@ TEST(Manipulator, forgets_motions_alarms_and_the_servo_when_the_world_is_reset) 
 }
 
 }  // namespace
+}  // namespace manipulators

@@ -21,6 +21,7 @@
 #error "headers that older tools have generated find no ORB"
 #endif
 
+namespace tools {
 namespace {
 
 class Ported : public RTC::DataFlowComponentBase {
@@ -269,3 +270,4 @@ TEST(Tools, a_ring_buffer_keeps_its_length_and_its_policies) {
 }
 
 }  // namespace
+}  // namespace tools

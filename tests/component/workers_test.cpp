@@ -14,7 +14,7 @@
 #include "base/waiting.h"
 #include "support/context_fixture.h"
 
-namespace rt {
+namespace rt::workers {
 
 using namespace std::chrono_literals;
 using support::RecordingParticipant;
@@ -262,4 +262,4 @@ TEST(ExecutionContextPlaces, members_come_and_go_while_others_of_other_places_ar
 }
 
 }  // namespace
-}  // namespace rt
+}  // namespace rt::workers

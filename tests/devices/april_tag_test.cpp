@@ -7,22 +7,13 @@
 #include <map>
 #include <set>
 
-#include "support/paths.h"
+#include "support/devices_world.h"
 #include "support/simulation_fixture.h"
-#include "world/world_loader.h"
 
 namespace sim {
 namespace {
 
 using namespace test;
-
-WorldDef devices_world() {
-  const std::string worlds = std::string(paths::source_dir) + "/worlds";
-  auto loaded = load_world(worlds + "/devices.sdf", ModelPath::from_environment({}, worlds));
-  if (!loaded) throw std::runtime_error(loaded.error().message);
-  EXPECT_TRUE(loaded->findings.empty()) << loaded->findings.front().text();
-  return std::move(loaded->world);
-}
 
 using Places = std::map<int, Eigen::Vector2d>;  // of the middles in the image [pixel], by id
 

@@ -63,8 +63,8 @@ const std::string of_ros =
     "rear_right_joint</rear_right_joint><left_steering_joint>left_steering</left_steering_joint><right_steering_joint>right_steering"
     "</right_steering_joint><max_steer>0.6458</max_steer><max_speed>20</max_speed></plugin>";
 
-struct Ride {
-  explicit Ride(const std::string& plugin, const std::string& name) : f(car(plugin)), drive(f.open(shm::IfaceType::position2d, name)) {}
+struct CarRide {
+  explicit CarRide(const std::string& plugin, const std::string& name) : f(car(plugin)), drive(f.open(shm::IfaceType::position2d, name)) {}
   shm::Position2dSample after(double seconds) {
     f.run(seconds);
     EXPECT_TRUE(drive.read());
@@ -76,7 +76,7 @@ struct Ride {
 
 TEST(CarDrive, goes_round_in_the_circle_that_it_is_asked_for) {
   for (const auto& [plugin, name] : {std::pair{of_gz, "car::position2d"}, {of_ros, "car::drive"}}) {
-    Ride ride(plugin, name);
+    CarRide ride(plugin, name);
     EXPECT_EQ(ride.drive.info<shm::Position2dInfo>().drive, RTMSIM_DRIVE_CAR);
     EXPECT_NEAR(ride.drive.info<shm::Position2dInfo>().wheel_separation, track, 1e-9);
     EXPECT_NEAR(ride.drive.info<shm::Position2dInfo>().wheel_radius, radius, 1e-9);
@@ -97,7 +97,7 @@ TEST(CarDrive, goes_round_in_the_circle_that_it_is_asked_for) {
 }
 
 TEST(CarDrive, steers_no_further_than_its_limit_and_never_on_the_spot) {
-  Ride ride(of_gz, "car::position2d");
+  CarRide ride(of_gz, "car::position2d");
   ASSERT_TRUE(ride.drive.command_velocity(0, 0, 1));
   const auto parked = ride.after(5);
   EXPECT_NEAR(shm::yaw_of(parked.true_pose), 0, 0.02);
@@ -109,7 +109,7 @@ TEST(CarDrive, steers_no_further_than_its_limit_and_never_on_the_spot) {
 }
 
 TEST(CarDrive, keeps_to_its_acceleration_and_top_speed) {
-  Ride ride(of_gz, "car::position2d");
+  CarRide ride(of_gz, "car::position2d");
   ASSERT_TRUE(ride.drive.command_velocity(9, 0, 0));
   EXPECT_NEAR(ride.after(1).true_velocity[0], 2, 0.1);
   EXPECT_NEAR(ride.after(2).true_velocity[0], 3, 0.06);

@@ -8,21 +8,13 @@
 #include <set>
 
 #include "server/describe.h"
-#include "support/paths.h"
+#include "support/devices_world.h"
 #include "support/simulation_fixture.h"
-#include "world/world_loader.h"
 
 namespace sim {
 namespace {
 
 using namespace test;
-
-WorldDef devices_world() {
-  const std::string worlds = std::string(paths::source_dir) + "/worlds";
-  auto loaded = load_world(worlds + "/devices.sdf", ModelPath::from_environment({}, worlds));
-  if (!loaded) throw std::runtime_error(loaded.error().message);
-  return std::move(loaded->world);
-}
 
 TEST(DevicesWorld, has_an_iface_of_each_type) {
   SimulationFixture f(devices_world());

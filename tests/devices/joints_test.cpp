@@ -266,7 +266,7 @@ TEST(Joints, of_drives_are_left_to_the_drive) {
 }
 
 // Two fingers on a palm that slide apart, the second as the first; a box lies between them.
-LoadResult hand(const std::string& mimic) {
+LoadResult mimic_hand(const std::string& mimic) {
   const auto finger = [](const std::string& name, const std::string& y) {
     return "<link name='" + name + "'><pose>0 " + y +
            " 1 0 0 0</pose><inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz>"
@@ -288,7 +288,7 @@ LoadResult hand(const std::string& mimic) {
 }
 
 TEST(Joints, that_follow_others_are_bound_to_them_by_the_solver) {
-  auto loaded = hand("<mimic joint='one'><multiplier>0.5</multiplier><offset>0.01</offset><reference>0.02</reference></mimic>");
+  auto loaded = mimic_hand("<mimic joint='one'><multiplier>0.5</multiplier><offset>0.01</offset><reference>0.02</reference></mimic>");
   ASSERT_TRUE(loaded.findings.empty()) << loaded.findings.front().text();
   Rig rig(std::move(loaded.world));
   rig.command(0, RTMSIM_JOINT_POSITION, -0.03);

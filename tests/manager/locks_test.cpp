@@ -13,6 +13,7 @@
 #include <streambuf>
 #include <thread>
 
+namespace locks {
 namespace {
 
 using namespace std::chrono_literals;
@@ -173,3 +174,4 @@ TEST(Locks, a_listener_of_the_manager_takes_another_away_while_it_is_deleted) {
 }
 
 }  // namespace
+}  // namespace locks

@@ -10,10 +10,10 @@ namespace {
 
 using namespace test;
 
-constexpr double radius = 0.1;
+constexpr double ball_radius = 0.1;
 
 ModelDef ball(const std::string& name, const Eigen::Isometry3d& pose, double restitution = 1) {
-  ModelDef model = body(name, SphereShape{radius}, pose);
+  ModelDef model = body(name, SphereShape{ball_radius}, pose);
   SurfaceDef& surface = model.links[0].collisions[0].surface;
   surface.restitution = restitution;
   surface.bounce_threshold = 0.01;
@@ -35,7 +35,7 @@ struct Row {
   static WorldDef world(int moving, double sense, double restitution) {
     std::vector<ModelDef> balls;
     for (int i = 0; i < 5; ++i)
-      balls.push_back(ball(name_of(i), at(2 * radius * i - (moves(i, moving, sense) ? 0.05 * sense : 0), 0, 0), restitution));
+      balls.push_back(ball(name_of(i), at(2 * ball_radius * i - (moves(i, moving, sense) ? 0.05 * sense : 0), 0, 0), restitution));
     WorldDef world = world_of(balls);
     world.physics.gravity.setZero();
     return world;
@@ -97,7 +97,7 @@ double highest_of(PhysicsFixture& f, int i, double seconds) {
 // Of the solver that decides all contacts at once the last ball got 65 % of the energy.
 TEST(Impacts, newtons_cradle_lifts_its_last_ball_as_high_as_the_first_one_was) {
   std::vector<ModelDef> balls;
-  for (int i = 0; i < 5; ++i) balls.push_back(pendulum(i, 2 * radius * i, i == 0 ? 0.4 : 0));
+  for (int i = 0; i < 5; ++i) balls.push_back(pendulum(i, 2 * ball_radius * i, i == 0 ? 0.4 : 0));
   PhysicsFixture f(world_of(balls));
   const double lifted = f.position(name_of(0)).z() - 1;
   EXPECT_NEAR(lifted, 1 - std::cos(0.4), 1e-9);

@@ -79,7 +79,7 @@ struct Gears {
   double ratio = 2;
 };
 
-PhysicsFixture make(const Gears& gears) {
+PhysicsFixture geared(const Gears& gears) {
   const auto n = [](double v) { return std::to_string(v); };
   return PhysicsFixture(world_of_text(
       "<gravity>0 0 0</gravity><model name='m'><allow_auto_disable>0</allow_auto_disable><link name='frame'/><link name='a'><pose>0 0 1 0 "
@@ -98,7 +98,7 @@ TEST(GearboxJoint, keeps_its_ratio_and_carries_torque_over) {
   for (const Gears& gears :
        {Gears{}, Gears{{0.4, 0, 1}, "0 0 1", -3}, Gears{{0.4, 0.1, 1.5}, "0 0 -1", 1}, Gears{{0.4, 0.3, 1.2}, "1 0 0", 2},
         Gears{{0.1, 0, 1}, "0 0.6 0.8", -0.5}, Gears{{0.2, 0, 1}, "0 0 1", -1}, Gears{{0, 0, 1.5}, "0 0 1", -1}}) {
-    PhysicsFixture f = make(gears);
+    PhysicsFixture f = geared(gears);
     EXPECT_TRUE(f.notes.empty()) << f.notes.front();
     const double inertia2 = gears.axis2 == "1 0 0" ? 0.02 : gears.axis2 == "0 0.6 0.8" ? 0.36 * 0.03 + 0.64 * 0.04 : 0.04;
     const double torque = 0.05, acceleration = torque / (0.04 + inertia2 / (gears.ratio * gears.ratio));
@@ -111,7 +111,7 @@ TEST(GearboxJoint, keeps_its_ratio_and_carries_torque_over) {
     f.run(20);
     EXPECT_NEAR(f.physics.joint_state(f.joint("m", "ja")).velocity, first, 5e-4 * std::abs(first)) << "no loss";
   }
-  EXPECT_EQ(make(Gears{{0, 0, 1.5}, "0 0 1", 2}).notes.size(), 1U) << "on one line";
+  EXPECT_EQ(geared(Gears{{0, 0, 1.5}, "0 0 1", 2}).notes.size(), 1U) << "on one line";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // No contact of meshes adds energy: bodies dropped onto each other, and begun in each other; and they still rest, bounce and slide.
-// A line for each drop: mesh_energy_test --gtest_filter='Pairs/*'
+// A line for each drop: physics_test --gtest_filter='Pairs/*'
 #include <gtest/gtest.h>
 
 #include <algorithm>

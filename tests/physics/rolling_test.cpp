@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr double radius = 0.1, track = 0.4;
+constexpr double wheel_radius = 0.1, track = 0.4;
 
 // Instead of the fixed ball, one in a ball joint.
 std::string with_ball_joint(std::string text) {
@@ -44,7 +44,7 @@ std::string robot_text(const std::string& name, double x, double y, double ball_
         "</iyy><izz>0.002</izz></inertia></inertial><collision name='c'><geometry><cylinder><radius>{2}</radius><length>0.04</length>"
         "</cylinder></geometry></collision></link><joint name='{0}_joint' type='continuous'><parent>base</parent><child>{0}</child><axis>"
         "<xyz>0 0 1</xyz></axis></joint>",
-        side, place, radius);
+        side, place, wheel_radius);
   }
   return text + "</model>";
 }
@@ -70,8 +70,8 @@ struct Rollers : PhysicsFixture {
   }
   // Forward [m/s] and yaw [rad/s].
   void drive(const std::string& name, double forward, double yaw, double effort = 5) {
-    physics.set_motor(joint(name, "left_joint"), 0, (forward - yaw * track / 2) / radius, effort);
-    physics.set_motor(joint(name, "right_joint"), 0, (forward + yaw * track / 2) / radius, effort);
+    physics.set_motor(joint(name, "left_joint"), 0, (forward - yaw * track / 2) / wheel_radius, effort);
+    physics.set_motor(joint(name, "right_joint"), 0, (forward + yaw * track / 2) / wheel_radius, effort);
   }
   // In small steps of the speed, so that no wheel slips.
   void speed_up(const std::string& name, double forward, double yaw) {

@@ -33,7 +33,7 @@ std::string hydrodynamics(const std::string& numbers, const std::string& name = 
   return "<plugin filename='" + name + "' name='gz::sim::systems::Hydrodynamics'><link_name>hull</link_name>" + numbers + "</plugin>";
 }
 
-const std::string weightless = "<gravity>0 0 0</gravity>";
+const std::string no_gravity = "<gravity>0 0 0</gravity>";
 
 // Without damping it would heave for ever: the middle of its way, and how long one takes.
 TEST(Boat, floats_at_a_quarter_of_a_metre_and_heaves_in_one_second) {
@@ -95,7 +95,7 @@ TEST(Submarine, of_the_weight_of_its_water_stays_and_a_light_one_rises_without_f
 }
 
 TEST(Hydrodynamics, linear_and_quadratic_drag_leave_one_metre_a_second_of_fifty_newtons) {
-  PhysicsFixture f(world_of_text(weightless + body("sub", 0, 50, {1, 1, 1}, hydrodynamics("<xU>-20</xU><xUabsU>-30</xUabsU>"))));
+  PhysicsFixture f(world_of_text(no_gravity + body("sub", 0, 50, {1, 1, 1}, hydrodynamics("<xU>-20</xU><xUabsU>-30</xUabsU>"))));
   for (int i = 0; i < 20000; ++i) {
     ASSERT_TRUE(f.physics.add_wrench(f.link("sub"), {50, 0, 0}, {0, 0, 0}));
     f.physics.step();
@@ -105,7 +105,7 @@ TEST(Hydrodynamics, linear_and_quadratic_drag_leave_one_metre_a_second_of_fifty_
 
 TEST(Hydrodynamics, a_current_takes_the_body_along) {
   PhysicsFixture f(world_of_text(
-      weightless + body("sub", 0, 5, {1, 1, 1}, hydrodynamics("<xU>-20</xU><yV>-20</yV><default_current>0.5 -1 0</default_current>"))));
+      no_gravity + body("sub", 0, 5, {1, 1, 1}, hydrodynamics("<xU>-20</xU><yV>-20</yV><default_current>0.5 -1 0</default_current>"))));
   f.run(5);
   EXPECT_TRUE(f.physics.link_twist(f.link("sub")).linear.isApprox(Eigen::Vector3d(0.5, -1, 0), 1e-6));
 }
@@ -113,7 +113,7 @@ TEST(Hydrodynamics, a_current_takes_the_body_along) {
 // Added mass far larger than the mass makes gz-sim's finite difference explode; a body of the sum of both is what it must be.
 TEST(Hydrodynamics, added_mass_is_a_mass_however_large) {
   for (const double added : {30.0, 50.0, 500.0, 50000.0}) {
-    PhysicsFixture f(world_of_text(weightless + body("sub", 0, 50, {1, 1, 1}, hydrodynamics(fmt::format("<xDotU>-{}</xDotU>", added)))));
+    PhysicsFixture f(world_of_text(no_gravity + body("sub", 0, 50, {1, 1, 1}, hydrodynamics(fmt::format("<xDotU>-{}</xDotU>", added)))));
     for (int i = 0; i < 1000; ++i) {
       ASSERT_TRUE(f.physics.add_wrench(f.link("sub"), {50, 0, 0}, {0, 0, 0}));
       f.physics.step();
@@ -125,7 +125,7 @@ TEST(Hydrodynamics, added_mass_is_a_mass_however_large) {
 // The inertial's y is the link's x, backwards.
 TEST(Hydrodynamics, added_mass_of_an_inertial_is_the_same) {
   for (const Eigen::Vector3d& force : {Eigen::Vector3d(200, 0, 0), Eigen::Vector3d(0, 0, 250)}) {
-    PhysicsFixture f(world_of_text(weightless +
+    PhysicsFixture f(world_of_text(no_gravity +
                                    "<model name='sub'><link name='hull'><inertial><pose>0.2 0 0 0 0 1.5707963</pose><mass>50</mass>"
                                    "<fluid_added_mass><xx>30</xx><yy>150</yy><zz>200</zz></fluid_added_mass></inertial></link></model>"));
     for (int i = 0; i < 1000; ++i) {
@@ -142,7 +142,7 @@ TEST(Hydrodynamics, added_mass_of_an_inertial_is_the_same) {
 TEST(Hydrodynamics, coriolis_forces_of_added_mass_do_no_work) {
   const std::string numbers =
       "<xDotU>-20</xDotU><yDotV>-120</yDotV><zDotW>-120</zDotW><kDotP>-1</kDotP><mDotQ>-30</mDotQ><nDotR>-30</nDotR>";
-  PhysicsFixture f(world_of_text(weightless + body("sub", 0, 100, {2, 0.5, 0.5}, hydrodynamics(numbers))));
+  PhysicsFixture f(world_of_text(no_gravity + body("sub", 0, 100, {2, 0.5, 0.5}, hydrodynamics(numbers))));
   ASSERT_TRUE(f.physics.set_model_twist(0, {{1, 0.3, 0}, {0, 0, 0}}));
   const auto energy = [&] {
     const Eigen::Matrix3d into = f.physics.model_pose(0).linear().transpose();
@@ -170,7 +170,7 @@ TEST(Hydrodynamics, the_moment_of_added_mass_turns_a_slender_hull_off_its_course
   constexpr double x_added = 4.876, y_added = 126.32, r_added = 33.46;
   const auto growth_of = [&](const std::string& more) {
     PhysicsFixture f(world_of_text(
-        weightless +
+        no_gravity +
         "<model name='auv'><link name='hull'><inertial><mass>148</mass><inertia><ixx>3</ixx><iyy>42</iyy><izz>42</izz></inertia>"
         "</inertial></link><plugin filename='gz-sim-lift-drag-system' name='fin'><link_name>hull</link_name><air_density>1000"
         "</air_density><cla>4.13</cla><cda>0</cda><alpha_stall>0.17</alpha_stall><area>0.0244</area><upward>0 1 0</upward>"
@@ -200,7 +200,7 @@ TEST(Hydrodynamics, the_moment_of_added_mass_turns_a_slender_hull_off_its_course
 }
 
 TEST(Hydrodynamics, damping_that_is_too_strong_for_the_step_stops_the_body) {
-  PhysicsFixture f(world_of_text(weightless + body("sub", 0, 1, {1, 1, 1}, hydrodynamics("<xU>-1e6</xU><nR>-1e6</nR>"))));
+  PhysicsFixture f(world_of_text(no_gravity + body("sub", 0, 1, {1, 1, 1}, hydrodynamics("<xU>-1e6</xU><nR>-1e6</nR>"))));
   ASSERT_TRUE(f.physics.set_model_twist(0, {{1, 0, 0}, {0, 0, 1}}));
   f.run(0.1);
   EXPECT_LT(f.physics.link_twist(f.link("sub")).linear.norm(), 1e-3);
@@ -219,7 +219,7 @@ TEST(Hydrodynamics, a_plugin_that_means_no_link_is_left_out_with_a_line) {
 
 TEST(Hydrodynamics, positive_numbers_of_older_files_slow_down_too) {
   PhysicsFixture f(
-      world_of_text(weightless + body("sub", 0, 50, {1, 1, 1}, hydrodynamics("<xU>20</xU><xUabsU>30</xUabsU><xDotU>10</xDotU>"))));
+      world_of_text(no_gravity + body("sub", 0, 50, {1, 1, 1}, hydrodynamics("<xU>20</xU><xUabsU>30</xUabsU><xDotU>10</xDotU>"))));
   ASSERT_EQ(f.notes.size(), 1U);
   EXPECT_THAT(f.notes[0], testing::HasSubstr("positive damping or added mass would drive the link"));
   for (int i = 0; i < 20000; ++i) {
@@ -231,7 +231,7 @@ TEST(Hydrodynamics, positive_numbers_of_older_files_slow_down_too) {
 
 TEST(Hydrodynamics, added_mass_that_is_negative_in_some_direction_is_left_out_with_a_line) {
   PhysicsFixture f(
-      world_of_text(weightless + body("sub", 0, 50, {1, 1, 1},
+      world_of_text(no_gravity + body("sub", 0, 50, {1, 1, 1},
                                       hydrodynamics("<xDotU>-10</xDotU><yDotV>-10</yDotV><xDotV>-30</xDotV><yDotU>-30</yDotU>"))));
   ASSERT_EQ(f.dropped.size(), 1U);
   EXPECT_THAT(f.dropped[0], testing::HasSubstr("added mass of link \"hull\": it must be positive in every direction"));
@@ -254,7 +254,7 @@ TEST(Hydrodynamics, is_the_same_after_a_reset) {
 TEST(LiftDrag, is_that_of_the_angle_of_attack) {
   const auto force_at = [](double pitch, const std::string& more) {
     PhysicsFixture f(world_of_text(
-        weightless + fmt::format("<model name='plane'><pose>0 0 0 0 {} 0</pose><link name='hull'><inertial><mass>1e6</mass>"
+        no_gravity + fmt::format("<model name='plane'><pose>0 0 0 0 {} 0</pose><link name='hull'><inertial><mass>1e6</mass>"
                                  "</inertial></link><plugin filename='gz-sim-lift-drag-system' name='wing'><link_name>hull</link_name>"
                                  "<area>1</area><air_density>1.2</air_density><cla>5</cla><cda>0.5</cda><alpha_stall>0.3</alpha_stall>"
                                  "<cla_stall>-2</cla_stall><cda_stall>1</cda_stall>{}</plugin></model>",

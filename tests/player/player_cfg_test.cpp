@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace gateway {
+namespace gateway::configurations {
 namespace {
 
 using enum shm::IfaceType;
@@ -136,4 +136,4 @@ TEST_F(PlayerConfig, is_recognised) {
 }
 
 }  // namespace
-}  // namespace gateway
+}  // namespace gateway::configurations

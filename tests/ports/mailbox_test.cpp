@@ -7,7 +7,7 @@
 #include "core/ring.h"
 #include "core/send_queue.h"
 
-namespace rt {
+namespace rt::mailboxes {
 namespace {
 
 Sample sample(int number) {
@@ -245,4 +245,4 @@ TEST(BlockPool, blocks_come_back) {
 }
 
 }  // namespace
-}  // namespace rt
+}  // namespace rt::mailboxes

@@ -9,7 +9,7 @@
 
 #include "support/quiet_publisher.h"
 
-namespace rt {
+namespace rt::publishers {
 namespace {
 
 Sample sample(int number) {
@@ -202,4 +202,4 @@ TEST(Publisher, a_waiting_writer_is_released_at_the_end) {
 }
 
 }  // namespace
-}  // namespace rt
+}  // namespace rt::publishers

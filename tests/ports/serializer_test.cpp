@@ -8,6 +8,7 @@
 
 #include "ports/support.h"
 
+namespace serializers {
 namespace {
 
 using ports::profile;
@@ -273,3 +274,4 @@ TEST_P(SerializingOnce, cdr_is_there_for_authors_too) {
 }
 
 }  // namespace
+}  // namespace serializers

@@ -12,6 +12,7 @@
 
 #include "support/paths.h"
 
+namespace include_closure {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,3 +114,4 @@ TEST(IncludeClosure, every_header_of_ours_that_is_included_is_one_of_authors_or_
 }
 
 }  // namespace
+}  // namespace include_closure

@@ -1,5 +1,5 @@
-// A cold build compiles several sources of a library as one, and a source more moves the borders between such batches: what stands in the
-// unnamed namespaces of a library's sources must not have the same name twice. Reads every source of the project as text.
+// A cold build compiles several sources of a library or of a test program as one, and a source more moves the borders between such batches:
+// what stands in the unnamed namespaces of such sources must not have the same name twice. Reads every source of the project as text.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +10,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,25 @@ fs::path library_of(const fs::path& source, const fs::path& root) {
   fs::path folder = source.parent_path();
   while (folder != root && !fs::exists(folder / "CMakeLists.txt")) folder = folder.parent_path();
   return folder;
+}
+
+// The test program of each source of tests, by its path below `tests`.
+std::map<std::string, std::string> test_programs(const fs::path& tests) {
+  static const std::regex program(R"(rtmsim_test\(([^)]*)\))");
+  std::map<std::string, std::string> programs;
+  if (!fs::exists(tests)) return programs;
+  for (const auto& list : fs::directory_iterator(tests)) {
+    if (list.path().extension() != ".cmake" && list.path().filename() != "CMakeLists.txt") continue;
+    std::stringstream text;
+    text << std::ifstream(list.path()).rdbuf();
+    const std::string all = text.str();
+    for (auto one = std::sregex_iterator(all.begin(), all.end(), program); one != std::sregex_iterator(); ++one) {
+      std::stringstream words((*one)[1]);
+      std::string name, source;
+      for (words >> name; words >> source && source != "LIBRARIES";) programs[source] = name;
+    }
+  }
+  return programs;
 }
 
 // What a line at the margin of an unnamed namespace declares, as "name" or "function(its first parameters"; empty: nothing.
@@ -64,7 +84,7 @@ void collect(const fs::path& source, const std::string& library, const std::stri
   }
 }
 
-// "library namespace::name: files", for each name that two sources of a library have. Aliases of one type are allowed.
+// "library namespace::name: files", for each name that two sources of a library or of a test program have. Aliases of one type are allowed.
 Lines names_of_two(const fs::path& root) {
   Places places;
   for (const char* top :
@@ -76,6 +96,7 @@ Lines names_of_two(const fs::path& root) {
       collect(entry.path(), fs::relative(library, root).generic_string(), fs::relative(entry.path(), root).generic_string(), places);
     }
   }
+  for (const auto& [source, program] : test_programs(root / "tests")) collect(root / "tests" / source, program, "tests/" + source, places);
   Lines found;
   for (const auto& [name, files] : places) {
     std::set<std::string> meanings;
@@ -90,7 +111,7 @@ Lines names_of_two(const fs::path& root) {
   return found;
 }
 
-TEST(NameRules, sources_of_a_library_have_no_unnamed_thing_of_one_name) {
+TEST(NameRules, sources_of_a_library_or_test_program_have_no_unnamed_thing_of_one_name) {
   for (const auto& found : names_of_two(paths::source_dir)) ADD_FAILURE() << found << ": expected another name, or one place for both";
 }
 
@@ -104,13 +125,19 @@ TEST(NameRules, every_kind_of_a_double_is_found) {
       << both << "using Other = int;\nvoid two(int a) {\n}\n}  // namespace\n}  // namespace one\n";
   std::ofstream(root / "clients" / "a" / "y.cpp") << both << "using Other = char;\nvoid two(char a) {\n}\n}  // namespace\nint free = 1;\n";
   std::ofstream(root / "clients" / "a" / "z.cpp") << "namespace two {\nnamespace {\nint limit = 3;\n}  // namespace\nint free = 1;\n";
+  fs::create_directories(root / "tests");
+  std::ofstream(root / "tests" / "a.cmake")
+      << "rtmsim_test(a_test\n  b_test.cpp c_test.cpp LIBRARIES base)\nrtmsim_test(d_test d_test.cpp LIBRARIES base)\n";
+  for (const char* name : {"b_test.cpp", "c_test.cpp", "d_test.cpp"})
+    std::ofstream(root / "tests" / name) << "namespace {\nint count = 1;\n}  // namespace\n";
   const auto found = names_of_two(root);
   fs::remove_all(root);
-  ASSERT_EQ(found.size(), 4u) << testing::PrintToString(found);
-  EXPECT_TRUE(found[0].starts_with("clients/a one::::Other:")) << found[0];
-  EXPECT_TRUE(found[1].starts_with("clients/a one::::Row:")) << found[1];
-  EXPECT_TRUE(found[2].starts_with("clients/a one::::act(int a) {:")) << found[2];
-  EXPECT_TRUE(found[3].starts_with("clients/a one::::limit:")) << found[3];
+  ASSERT_EQ(found.size(), 5u) << testing::PrintToString(found);
+  EXPECT_EQ(found[0], "a_test ::count: tests/b_test.cpp tests/c_test.cpp");
+  EXPECT_TRUE(found[1].starts_with("clients/a one::::Other:")) << found[1];
+  EXPECT_TRUE(found[2].starts_with("clients/a one::::Row:")) << found[2];
+  EXPECT_TRUE(found[3].starts_with("clients/a one::::act(int a) {:")) << found[3];
+  EXPECT_TRUE(found[4].starts_with("clients/a one::::limit:")) << found[4];
 }
 
 }  // namespace
