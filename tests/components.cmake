@@ -1,5 +1,5 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
-rtmsim_test(porter_test clients/porter_test.cpp LIBRARIES errand_rule)
+rtmsim_test(porter_test clients/porter_test.cpp LIBRARIES delivery_rule)
 rtmsim_test(iface_components_test iface-components/conversions_test.cpp iface-components/line_limit_test.cpp iface-components/ranger_test.cpp iface-components/scan_features_test.cpp LIBRARIES iface_link)
 rtmsim_test(manipulator_test arms/arm_kinematics_test.cpp arms/limb_test.cpp arms/manipulator_test.cpp LIBRARIES arms)
 find_package(SDL2 REQUIRED)
