@@ -97,7 +97,7 @@ class Limb {
   std::optional<Positions> next_;  // a goal of the joints, once it has come to rest
 };
 
-// Commands the joints. Fails when a command is refused.
+// Commands the joints. Fails when a command is rejected.
 base::Result<void> command(const Limb::Command& command, shm::JointPart& part);
 
 }  // namespace arms

@@ -26,10 +26,10 @@ Reply check_percent(std::uint32_t percent) {
   return percent <= 100 ? Reply{} : wrong_value("a speed must be within 0 and 100 %, got " + std::to_string(percent));
 }
 
-Reply check_time(double time, double least) {
-  constexpr double most = 100;
-  if (time >= least && time <= most) return {};
-  return wrong_value("an acceleration time must be within " + number_text(least) + " and 100 s, got " + number_text(time));
+Reply check_time(double time, double min) {
+  constexpr double max = 100;
+  if (time >= min && time <= max) return {};
+  return wrong_value("an acceleration time must be within " + number_text(min) + " and 100 s, got " + number_text(time));
 }
 
 Reply check_offset(const Eigen::Isometry3d& offset) {
@@ -203,8 +203,8 @@ void Manipulator::advance_low_level(double dt, Target& target) {
   if (low_level_.empty()) return;
   const double left = std::max(low_level_left_, dt);
   for (std::size_t i = 0; dt > 0 && i < hold_.size(); ++i) {
-    const double most = settings_.max_speeds[i] * dt;
-    const double step = std::clamp((low_level_[i] - hold_[i]) * dt / left, -most, most);
+    const double max = settings_.max_speeds[i] * dt;
+    const double step = std::clamp((low_level_[i] - hold_[i]) * dt / left, -max, max);
     hold_[i] += step;
     target.velocities[i] = step / dt;
   }
@@ -358,8 +358,8 @@ Reply Manipulator::set_max_joint_speeds(const std::vector<double>& speeds) {
 }
 
 Reply Manipulator::set_max_cartesian_speed(double translation, double rotation) {
-  constexpr double most = 100;
-  if (!(translation > 0 && translation <= most && rotation > 0 && rotation <= most))
+  constexpr double max = 100;
+  if (!(translation > 0 && translation <= max && rotation > 0 && rotation <= max))
     return wrong_value("speeds must be above 0 and at most 100 [m/s, rad/s], got " + number_text(translation) + " and " +
                        number_text(rotation));
   settings_.max_translation = translation, settings_.max_rotation = rotation;

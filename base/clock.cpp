@@ -32,14 +32,14 @@ std::chrono::nanoseconds FollowingClock::now() const {
   return (clock ? *clock : current_clock()).now();
 }
 
-std::uint64_t FollowingClock::era() const {
+std::uint64_t FollowingClock::epoch() const {
   const auto clock = clock_.snapshot();
-  return clock ? clock->era() : 0;
+  return clock ? clock->epoch() : 0;
 }
 
-std::uint64_t FollowingClock::moment() const {
+std::uint64_t FollowingClock::phase_counter() const {
   const auto clock = clock_.snapshot();
-  return clock ? clock->moment() : 0;
+  return clock ? clock->phase_counter() : 0;
 }
 
 bool FollowingClock::is_simulated() const {

@@ -81,8 +81,8 @@ Option* Option::expected(int count) {
   return this;
 }
 
-Option* Option::expected(int least, int most) {
-  inner_.expected(least, most);
+Option* Option::expected(int min, int max) {
+  inner_.expected(min, max);
   return this;
 }
 

@@ -47,7 +47,7 @@ class Option final {
   Option* seconds_between(double low, double high);  // the value is a time, as parse_seconds reads it: 30, 500ms, 2min
   Option* capture_default_str();                     // the help shows the value that the variable has now
   Option* expected(int count);
-  Option* expected(int least, int most);
+  Option* expected(int min, int max);
   Option* description(const std::string& text);
   Option* type_name(const std::string& text);
   Option* group(const std::string& text);

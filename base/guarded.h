@@ -1,10 +1,10 @@
 // The locks of the project. Any thread.
-//   Guarded   owns its data: the data can be reached only while the lock is held.
-//   Turn      guards no data; its owner may do what one thread at a time may do, such as calling a library with global buffers.
-//   UsersTurn a Turn in which code of users is called. That code can take any lock.
-// Guarded and Turn have ranks; a thread may take one only if its rank is higher than that of every other it has (asserted in builds without
-// NDEBUG). Code of users, the network, the log and the file system are never called while data is held: take a snapshot, release, then
-// act. Where such calls leave us, expect_no_data_held() asserts it.
+//   Guarded   a mutex with its data. The data can be accessed only while the lock is held.
+//   Turn      a lock section without data: its owner uses a resource that allows one thread at a time, such as a library with global
+//   buffers. UsersTurn a Turn in which user code is called. That code can acquire any lock.
+// Guarded and Turn have ranks. A thread may acquire a lock only if its rank is above the ranks of all locks that it holds (asserted in
+// builds without NDEBUG). Never call user code, the network, the log or the file system while a Guarded is held: take a snapshot, release
+// the lock, then act. expect_no_data_held() asserts this at such calls.
 #pragma once
 
 #include <cassert>
@@ -17,34 +17,34 @@
 
 namespace base {
 
-// What a lock guards, outermost first: the order in which a thread may take several.
+// Ranks, named by what the lock guards, outermost first. A thread acquires several locks in this order.
 enum class Rank : int {
-  turn = 5,        // no data: one thread at a time
+  turn = 5,        // no data: a lock section
   manager = 10,    // the state of a manager or of a whole program
   component = 20,  // a component, its configuration, the members of its contexts
-  context = 30,    // the states of those whom a context calls, its place in the lock step
+  context = 30,    // the states of the members of a context, its slot in the lock step
   port = 40,       // a port, its open calls
   connector = 50,  // the connections of a port; one connection
-  callbacks = 60,  // who runs the callbacks of a component
-  worker = 62,     // what a thread does, and whether it is to go on
+  callbacks = 60,  // which thread runs the callbacks of a component
+  worker = 62,     // the work of a thread, and whether it shall stop
   queue = 64,      // jobs, messages and samples that wait for a thread
-  samples = 66,    // samples that wait for a reader; the newest ones
-  details = 68,    // one fact of an object that others may replace: profile and clock of a connection, a fault
+  samples = 66,    // unread samples, latest samples
+  details = 68,    // one replaceable property of an object: profile and clock of a connection, a fault
   objects = 70,    // tables of objects of this process by name or key
-  peers = 73,      // other processes: who is connected, watched, bound, or still to be told
-  profile = 76,    // properties of a component that its author reads as well
-  tasks = 79,      // threads that serve others, and what they are asked for
-  memory = 82,     // blocks and streams to be used again
-  noted = 85,      // counts, times, and what is said or found only once
-  log = 90         // the log, and what it asks for: clock, caller, settings
+  peers = 73,      // other processes: connected, watched, bound, or waiting for a notification
+  profile = 76,    // properties of a component that its author reads, too
+  tasks = 79,      // service threads and their requests
+  memory = 82,     // pools of blocks and streams
+  noted = 85,      // counts, times, and what was reported once
+  log = 90         // the log and its inputs: clock, caller, settings
 };
 
 namespace detail {
 
-// What the calling thread holds; kept in builds without NDEBUG only.
+// The locks that the calling thread holds; only in builds without NDEBUG.
 struct Held {
-  int rank = 0;  // the highest
-  int data = 0;  // how many Guarded
+  int rank = 0;  // the highest rank
+  int data = 0;  // number of Guarded
 };
 inline Held& held() {
   thread_local Held mine;
@@ -76,7 +76,7 @@ class HeldRank {
 
 }  // namespace detail
 
-// Before a call that may take long, or may come back: the calling thread must hold no data (asserted in builds without NDEBUG).
+// Call it before a call that can block or call back: the calling thread must hold no Guarded (asserted in builds without NDEBUG).
 inline void expect_no_data_held() { assert(detail::held().data == 0 && "called while data is held"); }
 
 template <class T, Rank rank>
@@ -87,7 +87,7 @@ class Guarded {
     T* operator->() { return &owner_.data_; }
     T& operator*() { return owner_.data_; }
 
-    // Waits until predicate() or the time-out; true when the predicate holds.
+    // Waits until predicate() is true or the timeout expires; returns predicate().
     template <class Predicate>
     bool wait_for(std::condition_variable& condition, std::chrono::nanoseconds timeout, Predicate predicate) {
       return condition.wait_until(lock_, std::chrono::steady_clock::now() + timeout, std::move(predicate));
@@ -96,12 +96,12 @@ class Guarded {
     bool wait_until(std::condition_variable& condition, std::chrono::steady_clock::time_point deadline, Predicate predicate) {
       return condition.wait_until(lock_, deadline, std::move(predicate));
     }
-    // For threads that sleep between their tasks: somebody is sure to notify.
+    // For threads that sleep between their tasks. Some other thread must notify.
     template <class Predicate>
     void wait(std::condition_variable& condition, Predicate predicate) {
       condition.wait(lock_, std::move(predicate));
     }
-    // False when the thread is asked to stop and predicate() does not hold.
+    // False if a stop of the thread was requested and predicate() is false.
     template <class Predicate>
     bool wait(std::condition_variable_any& condition, const std::stop_token& stop, Predicate predicate) {
       return condition.wait(lock_, stop, std::move(predicate));
@@ -141,8 +141,8 @@ class Guarded {
   T data_{};
 };
 
-// What is done in a turn may take long and may call a library, the log or the file system, where that is what the turn is for. It must not
-// come back for the same turn, so code of users is not called in one.
+// A lock section can take long. It may call the library, log or file system that it is for. It must not acquire the same Turn again, so it
+// does not call user code.
 template <Rank rank = Rank::turn>
 class Turn {
  public:
@@ -154,20 +154,20 @@ class Turn {
     std::unique_lock<std::mutex> lock_;
   };
 
-  // Waits for it; it ends with the result.
+  // Waits for the lock section. It ends with the destructor of the result.
   [[nodiscard]] Mine take() { return Mine(*this); }
 
  private:
   std::mutex mutex_;
 };
 
-// Nobody knows what code of users asks for, or waits for, so such a turn has no rank. Instead the thread that has it may take it again, and
-// whoever waits for it gives up after a time: what would be a dead lock is an error.
+// The locks and waits of user code are not known, so this lock section has no rank. Instead, its owner may acquire it again, and waiting
+// for it has a timeout: a deadlock becomes an error.
 class UsersTurn {
  public:
   using Mine = std::unique_lock<std::recursive_timed_mutex>;
 
-  // None when it did not come in time. No data may be held.
+  // Nothing after the timeout. The calling thread must hold no Guarded.
   [[nodiscard]] std::optional<Mine> take(std::chrono::nanoseconds timeout) {
     expect_no_data_held();
 #ifdef __SANITIZE_THREAD__

@@ -19,7 +19,7 @@ bool equal_ignoring_case(std::string_view a, std::string_view b);
 std::vector<std::string> split_list(std::string_view text, char separator = ',');
 std::string join(const std::vector<std::string>& parts, std::string_view separator);
 
-// The whole text (blanks at the ends apart) must be the number; no overflow. parse_number also refuses NaN and infinities.
+// The whole text (blanks at the ends apart) must be the number; no overflow. parse_number also rejects NaN and infinities.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 std::optional<double> parse_number(std::string_view text);
 // A time in seconds: a number alone, or with us, ms, s, min (m) or h behind it.

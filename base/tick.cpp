@@ -16,7 +16,7 @@ Tick* current_tick() { return scoped_tick(); }
 
 Tick* tick_in_lock_step() {
   Tick* tick = current_tick();
-  return tick && tick->moment() != 0 ? tick : nullptr;
+  return tick && tick->phase_counter() != 0 ? tick : nullptr;
 }
 
 ScopedTick::ScopedTick(Tick& tick) : previous_(scoped_tick()) { scoped_tick() = &tick; }

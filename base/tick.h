@@ -1,9 +1,9 @@
 // The tick of a lock step that runs on this thread: its time, its phase counter, and the data that passes in it. An execution context on
 // simulated time puts a ScopedTick around the callbacks. The thread of the tick only.
 //
-// The rule of delivery: what is written at moment m, which is odd while a phase runs, can be read at later moments only. So readers of
-// higher phases see it in the same tick, readers of the same phase and of lower ones in their next, and whether a thread came early or late
-// within its phase makes no difference.
+// Rule of delivery: data that is written at phase counter m (odd while a phase runs) can be read only when the counter is above m. Readers
+// of higher phases see it in the same tick, readers of the same phase and of lower phases in their next tick. The order of threads within a
+// phase makes no difference.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@
 
 namespace base {
 
-inline constexpr bool is_in_phase(std::uint64_t moment) { return moment % 2 == 1; }
+inline constexpr bool is_in_phase(std::uint64_t phase_counter) { return phase_counter % 2 == 1; }
 
 // A sample on its way through a port.
 struct Passage {
@@ -32,8 +32,8 @@ class Tick {
  public:
   virtual ~Tick() = default;
   virtual std::chrono::nanoseconds time() const = 0;  // simulated
-  // Of the phase; 0 where time does not wait for the tick.
-  virtual std::uint64_t moment() const = 0;
+  // The phase counter; 0 if time does not wait for the tick.
+  virtual std::uint64_t phase_counter() const = 0;
   // `work` is called when the callbacks are over, still within the tick, on its thread; several in the order in which they came. It may ask
   // for the end of the next tick again.
   virtual void at_end(std::function<void(Tick&)> work) = 0;

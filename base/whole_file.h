@@ -9,7 +9,7 @@
 namespace base {
 
 // A file that is replaced keeps its mode. A symbolic link stays one; what is there and no ordinary file (a folder, a device, a pipe) is
-// refused. On failure nothing is left behind.
+// rejected. On failure nothing is left behind.
 Result<void> write_whole_file(const std::filesystem::path& file, std::string_view octets);
 
 // Whether a file of that name could be written now. Said before long work, since it would be a pity afterwards. Folders are not made: an

@@ -79,35 +79,37 @@ Every device of a simulated world is an *iface*: a segment of POSIX shared memor
     rtmsim-<uid>-<server>.<type>.<iface name>
 
 with the type in words (`laser`, `position2d`, ...) and the iface name as model names joined by `::`, then the sensor or plugin name. The file
-`shm/rtmsim_layout.h` (C11 and C++) is the authority; the tables below are made from it by `docs/make_shared_memory.py`. `simctl dump IFACE` shows a living one.
-When another user has made a file of that name, which he alone can remove, the segment is in the folder `rtmsim-<uid>.<random letters>` of the user who is meant.
-For C there are functions in `shm/rtmsim_iface.h`, for C++ in `shm/client.h`.
+`shm/rtmsim_layout.h` (C11 and C++) defines the layout; `docs/make_shared_memory.py` makes the tables below from it. `simctl dump IFACE` prints the segment of
+a running simulator. If another user owns a file of that name, the segment is in a folder `rtmsim-<uid>.<random letters>` of the simulator's user. Functions for
+C are in `shm/rtmsim_iface.h`, for C++ in `shm/client.h`.
 
 All numbers are little endian; areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left, z up,
-counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic] are written while others read them.
+counter-clockwise positive; quaternions are (w, x, y, z). Fields marked [atomic] are written while other processes read them.
+"Server" is the simulator that owns the segment.
 
 ## Rules
 
-- **Reading a sample.** Sample *n* lies in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
-  the copy is whole when both locks are 2 n + 2. The writer never waits for readers.
+- **Reading a sample.** Sample *n* is in cell *n* mod `count` of the area `cells`: a lock word, then the sample. Read `sequence`, the lock, the sample (by atomic words), the lock again;
+  the copy is valid if both locks are 2 n + 2. The writer never waits for readers.
 - **Waiting.** Read `wake_word`, set `waiting` to 2 wake_word + 1, read `wake_word` again and sleep on it (futex, shared) if it is the same. With `waiting` 0 the writer makes no system call. A
-  late writer of a sample that you have read already wakes you without need, but does not change `waiting`.
+  late wake-up for a sample that you have read already is possible; it does not change `waiting`.
 - **Subscribing.** Take a lease: change `owner` from 0 to (pid << 32) + a number that no other lease of your process has, then write `pid_namespace`, `start_time` and last `flags` with
   `RTMSIM_LEASE_SUBSCRIBER`. Add 1 to `lease_epoch` of the header: without that the simulator does not read the leases. A sensor works as long as one lease has the flag; leases of dead processes are
   released. To release a lease, store 0 in `owner` and add 1 to `lease_epoch`. Then add 1 to `attention` of the simulation iface and wake it if `attention_waiting` is set: a sensor that is
   switched on in a paused simulation then publishes the current state at once; otherwise the simulator finds the lease within a second. Such a sample does not change later samples.
-  While the simulation runs, samples are due at the first step at or after each multiple of the period: a new subscriber changes nothing for the others.
-- **Frames.** Put slot + 1 into a `holds` word of the own lease, then check that the slot's `lock` still is the frame; the writer leaves held slots alone and counts what it must drop.
+  While the simulation runs, samples are due at the first step at or after each multiple of the period. So a new subscriber does not change the samples of other subscribers.
+- **Frames.** Put slot + 1 into a `holds` word of the own lease. Then check that the slot's `lock` still has the number of the frame. The writer does not overwrite held slots, and counts
+  the frames that it must drop.
 - **Commands** are in the leases: make `command_lock` odd, write the command and the `command_values` doubles behind it, make the lock even; then store (number of commands + 1) << 16 | index
-  of the lease in `command_latest` of the header, which names the valid command. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner exits or releases the lease, the robot stops. A process that takes or releases a lease first writes a command of kind 0xffffffff into it
+  of the lease in `command_latest` of the header, which selects the valid command. The iface chooses `command_values` (layout version 2; version 1 had twelve). When its owner exits or releases the lease, the robot stops. A process that takes or releases a lease first writes a command of kind 0xffffffff into it
   in the same way, since the lease may still have a command, or half of one, of another process. The simulator does this for processes that exited.
-- **Requests** go through a slot of one's own: `idle` - `asked` - `replying` - `replied`; texts longer than a piece travel in several rounds of the same id.
-- **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; the name of a running simulator is refused. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
-- The server keeps private copies of every size and index: what a client writes cannot make it read or write elsewhere. A truncated file ends no process either: a
-  process that has mapped it continues with zeros of its own (`base/cut_guard.h`), the server logs it, and the iface exists again after its next start.
+- **Requests** use a slot of the client, with the states `idle` - `asked` - `replying` - `replied`. Longer texts are sent in several rounds with the same id.
+- **Stale segments** (pid, start time, boot id of the server) are replaced by the next server; the name of a running simulator is rejected. Mode 0600 unless `--shm-mode` or `--shm-group` say otherwise.
+- The server keeps private copies of every size and index: data of a client cannot make it read or write outside of the segment. A truncated file does not end a process: a
+  process that has mapped it continues with zeros (`base/cut_guard.h`), and the server logs it. The iface exists again after its next start.
 
 """
-c_names = dict(re.findall(r"(RTMSIM_\w+) = (\d+)", re.search(r"/\* Iface types;.*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1)))
+c_names = dict(re.findall(r"(RTMSIM_\w+) = (\d+)", re.search(r"/\* Iface types\..*?\*/\s*enum \{\n(.*?)\};", text, re.S).group(1)))
 assert sorted(c_names.values(), key=int) == [one["number"] for one in types], "rtmsim_layout.h and iface_types.h have the same types"
 c_names = {number: name for name, number in c_names.items()}
 out += "## Iface types\n\n| value | name | in segment names | meaning | largest count |\n| --- | --- | --- | --- | ---: |\n"
@@ -115,8 +117,8 @@ for one in types:
     unit = " pixels" if one["frames"] else ""
     out += f"| {one['number']} | `{c_names[one['number']]}` | `{one['name']}` | {one['meaning']} | {str(one['most']) + unit if one['most'] else ''} |\n"
 out += """
-The largest count is that of beams, transducers, contacts or pixels; an iface with more, or with none, is not made and not opened. The table of types is
-`shm/iface_types.h`: number, name, constants, samples and fields of a type stand there once, and programs, checks and this page follow.
+The largest count is the maximum number of beams, transducers, contacts or pixels. An iface with more, or with none, is neither created nor opened. `shm/iface_types.h`
+has the table of types with number, name, constants, samples and fields; programs, checks and this page use it.
 
 """
 
@@ -140,14 +142,14 @@ out += table("Requests", r"enum \{\s*(RTMSIM_REQUEST_.*?)\}")
 out += table("Views of a screenshot", r"enum \{\s*(RTMSIM_VIEW_.*?)\}")
 out += """Texts of replies are JSON:
 
-| request | holds |
+| request | text |
 | --- | --- |
 | list | `world`; `models`: name, static, pose (x y z qw qx qy qz); `ifaces`: type, name, model, subscribed; of joints also `groups`: kind (array, gripper, chain, pan_tilt), joints, name of the gripper, field of view of the camera [rad]; `attachments`: name, on, holds (MODEL::LINK or empty) of grippers and detachable joints |
 | tree | `models`: name, static, pose, `links` (name, mass, pose, collisions, sensors with the names of their ifaces), `joints` (name, type, parent, child, position, velocity), plugins, `grippers` (name, palm, fingers); `actors`: name |
 | stats | what `simctl --json stats` prints: time, speed, hash, counts, `parts` (where wall time goes), `participants`, `contacts_by_model` |
 | contacts | `model`, `total` since the start, `contacts` of now: link, other, position, normal, depth |
 | models | `models`: name, sorted; at most 10,000 |
-| faults | `time`; `faults`: iface, kind, amount or null, from, until [s] or null, on (false: still to come) |
+| faults | `time`; `faults`: iface, kind, amount or null, from, until [s] or null, on (false: it starts later) |
 
 | constant | value |
 | --- | --- |
@@ -162,20 +164,20 @@ for name, value, comment in re.findall(r"(\w+) = (\d+),?\s*(?:/\*(.*?)\*/)?", re
 out += """
 - Rows run from the top down, pixels from left to right; `stride` bytes from one row to the next, now without padding. Colours are sRGB.
 - A camera publishes the format that its world names: `R8G8B8`, `B8G8R8`, `L8`, `L16`, `BAYER_RGGB8`, `BAYER_BGGR8`, `BAYER_GBRG8`, `BAYER_GRBG8`, `RGBA_INT8`, `BGRA_INT8`, and the other
-  spellings of the same (`RGB_INT8`, `L_INT8`, ...). A format that is not known is said once, and the camera publishes `R8G8B8`. Depth and points are float whatever the world says (`R_FLOAT32`).
+  spellings of the same (`RGB_INT8`, `L_INT8`, ...). An unknown format is logged once, and the camera publishes `R8G8B8`. Depth and points are always float (`R_FLOAT32`).
 - Luminance is 0.299 R + 0.587 G + 0.114 B of the sRGB values; 16 bits hold 257 times that of 8 bits, with its fractions.
-- Depth is measured along the optical axis. Where nothing is between the clip planes it is +infinity; the point there is NaN NaN NaN. Clouds are organised: point i belongs to pixel i of the depth
-  image of the same time, x forward, y left, z up in the sensor. Of a distorting lens the points lie on the rays that its pixels really see.
-- A pixel at column u, row v has its centre at (u + 0.5, v + 0.5); a point (x, y, z) of the sensor is seen at u = cx - fx y / x, v = cy - fy z / x. With `distortion` those tangents are first
-  bent by k1 k2 p1 p2 k3 as in OpenCV. Of a wide-angle lens (`<lens>`) fx and fy are those that a pinhole with its field of view would have.
+- Depth is measured along the optical axis. Where no object is between the clip planes it is +infinity, and the point is NaN NaN NaN. Clouds are organised: point i belongs to pixel i of the depth
+  image of the same time, x forward, y left, z up in the sensor. With a distorting lens, the points are on the distorted rays of its pixels.
+- A pixel at column u, row v has its centre at (u + 0.5, v + 0.5); a point (x, y, z) of the sensor is seen at u = cx - fx y / x, v = cy - fy z / x. With `distortion`, these tangents are first
+  distorted by k1 k2 p1 p2 k3 as in OpenCV. For a wide-angle lens (`<lens>`), fx and fy are those of a pinhole camera with the same field of view.
 - The cameras of a set (`multicamera`) are ifaces `sensor::camera`, taken at the same time; the base line of a stereo pair is the difference of their `pose`s.
-- `dropped` counts frames that found every slot of the ring held by readers; a reader that is merely late misses the sequence numbers in between.
+- `dropped` counts frames for which readers held every slot of the ring. A slow reader only misses the sequence numbers in between.
 
 """
 out += """## What `simctl` shows
 
 Names and units of `simctl info` and `simctl echo`, as text and as JSON. Every sample also has a `stamp`: `sequence`, `sim_time` [s], `wall_time` [s], `valid`. Poses are `position` [m] and
-`orientation` (w x y z). Of ranges null is "nothing hit" and -1 "too near".
+`orientation` (w x y z). In ranges, null is "no hit" and -1 is "too near".
 
 | type | info | sample |
 | --- | --- | --- |

@@ -5,7 +5,7 @@
 // Each context that subscribes gets a SimTimeProxy in this process, which ticks it at the first step at or after each multiple of its
 // period, under the name of its owner. Both calls return at once: what they ask for is done in their order on a thread of the component's
 // own, since the contexts are asked in turn, perhaps in the middle of a tick. A second subscription of a context takes the place of the
-// first. What is no period is refused with CORBA::BAD_PARAM.
+// first. What is no period is rejected with CORBA::BAD_PARAM.
 //
 // Configuration: phase (1) and server_id of those who subscribe from then on.
 #pragma once

@@ -14,7 +14,7 @@ std::vector<Parameter> drive_parameters() {
 }
 
 Drive::Drive(RTC::Manager* manager, const Specification& specification, shm::IfaceType type)
-    : IfaceComponent(manager, specification, type, true), commander_(type, say()), errand_(say()), service_port_("drive") {}
+    : IfaceComponent(manager, specification, type, true), commanding_client_(type, say()), async_requests_(say()), service_port_("drive") {}
 
 void Drive::bindDrive() {
   addPort(service_port_);
@@ -24,11 +24,11 @@ void Drive::bindDrive() {
 }
 
 void Drive::attached(const Device& device) {
-  commander_.set_simulated_time(in_simulated_time());  // before the first velocity comes
-  if (const auto done = commander_.attach(device); !done) say_limited(true, done.error().message);
+  commanding_client_.set_simulated_time(in_simulated_time());  // before the first velocity comes
+  if (const auto done = commanding_client_.attach(device); !done) say_limited(true, done.error().message);
 }
 
-void Drive::detaching() { commander_.detach(); }
+void Drive::detaching() { commanding_client_.detach(); }
 
 void Drive::describe(const shm::Iface&) { *described_.lock() = link().device(); }
 
@@ -39,7 +39,7 @@ void Drive::set_odometry(shm::ResetOdometryRequest request) {
     return;
   }
   request.iface = device.device_id;
-  errand_.post(device.server_id, request);
+  async_requests_.post(device.server_id, request);
 }
 
 void Drive::switch_motors() {
@@ -51,7 +51,7 @@ void Drive::switch_motors() {
   if (motors_ == motors_enabled_) return;
   motors_ = motors_enabled_;
   const auto& device = link().device();
-  errand_.post(device.server_id, shm::SetMotorsRequest{device.device_id, motors_enabled_});
+  async_requests_.post(device.server_id, shm::SetMotorsRequest{device.device_id, motors_enabled_});
 }
 
 // A value that means nothing must not switch the robot's safety off.
@@ -67,7 +67,7 @@ void Drive::watch_and_publish() {
   auto* robot = link().fresh(wait_limit());
   if (!robot) return;
   const auto& stamp = robot->sample<shm::Stamp>();
-  if (watch_.expired(commander_, stamp.sim_time_ns, command_timeout())) {
+  if (watch_.expired(commanding_client_, stamp.sim_time_ns, command_timeout())) {
     RTC_WARN(("no velocity for %g s: the robot stops", command_timeout()));
     timed_out();
   }

@@ -15,8 +15,8 @@
 #include <array>
 #include <functional>
 
-#include "commander.h"
-#include "errand.h"
+#include "async_requests.h"
+#include "commanding_client.h"
 #include "geometry_service.h"
 #include "iface_component.h"
 #include "simulated_time.h"
@@ -63,7 +63,7 @@ class Drive : public IfaceComponent {
   void watch_and_publish();
   // No command has come for command_timeout: the robot was stopped.
   virtual void timed_out() {}
-  Commander& commander() { return commander_; }
+  CommandingClient& commanding_client() { return commanding_client_; }
   RTC::CorbaPort& service_port() { return service_port_; }
 
  private:
@@ -72,11 +72,11 @@ class Drive : public IfaceComponent {
   bool motors_enabled_ = true;
   double command_timeout_ = 1;  // [s]; 0: never
   bool timeout_was_good_ = true;
-  Commander commander_;  // shared with the threads that bring velocities
+  CommandingClient commanding_client_;  // shared with the threads that bring velocities
   CommandWatch watch_;
   bool motors_ = true;  // as told to the simulator
   std::uint64_t told_attachment_ = 0;
-  Errand errand_;
+  AsyncRequests async_requests_;
   base::Guarded<Device, base::Rank::details> described_;  // whose odometry services set
   RTC::CorbaPort service_port_;
 };
@@ -90,10 +90,10 @@ class DriveComponent : public Drive {
   RTC::ReturnCode_t onExecute(RTC::UniqueId) override {
     if (!follow_configuration()) return RTC::RTC_ERROR;
     const bool simulated = in_simulated_time();
-    commander().set_simulated_time(simulated);
+    commanding_client().set_simulated_time(simulated);
     if (read_newest_velocity()) {
       // In real time the listener has driven the robot already.
-      if (simulated && commander().is_newest_of_this_run()) commander().drive(values_of(velocity_));
+      if (simulated && commanding_client().is_newest_of_this_run()) commanding_client().drive(values_of(velocity_));
       velocity_came();
     }
     read_goals();
@@ -109,21 +109,21 @@ class DriveComponent : public Drive {
   // To be called in onInitialize.
   void addVelocityPort() {
     addInPort("velocity", velocity_in_);
-    velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, new Received(commander()));
+    velocity_in_.addConnectorDataListener(RTC::ConnectorDataListenerType::ON_RECEIVED, new Received(commanding_client()));
   }
 
  private:
   class Received : public RTC::ConnectorDataListenerT<Velocity> {
    public:
     USE_CONNLISTENER_STATUS;
-    explicit Received(Commander& commander) : commander_(commander) {}
+    explicit Received(CommandingClient& commanding_client) : commanding_client_(commanding_client) {}
     ReturnCode operator()(RTC::ConnectorInfo&, Velocity& velocity) override {
-      commander_.received(values_of(velocity));
+      commanding_client_.received(values_of(velocity));
       return this->NO_CHANGE;
     }
 
    private:
-    Commander& commander_;
+    CommandingClient& commanding_client_;
   };
 
   // What is older than the newest velocity would be driven too late, now and in every tick after this one.

@@ -34,8 +34,8 @@ class JointComponent : public IfaceComponent {
   void detaching() override;
   JointPart& part() { return part_; }
   const JointPart& part() const { return part_; }
-  // A line for the log when something was refused. What is refused again and again has no second line, whatever its value, until it has
-  // not been refused for a second of simulated time.
+  // A line for the log when something was rejected. What is rejected again and again has no second line, whatever its value, until it has
+  // not been rejected for a second of simulated time.
   void note(const base::Result<void>& done);
 
   // The parameter `joints`, and what a component adds to it.

@@ -29,7 +29,7 @@ class PathService : public virtual Skeleton, public virtual PortableServer::RefC
   // There is none: CORBA::BAD_INV_ORDER.
   Waypoint GetCurrentWaypoint() override;
 
-  // False: SetPath would refuse it.
+  // False: SetPath would reject it.
   bool set(const WaypointList& path);
   // ---- for the drive ----
   // A path has been set since the last call.

@@ -64,14 +64,14 @@ void RTCPosition2d::detaching() {
 
 void RTCPosition2d::command(const shm::PlanarPose& velocity) {
   const double values[] = {velocity.x, velocity.y, velocity.a};
-  commander().received(values);  // in real time it drives
-  if (iface::in_simulated_time()) commander().drive(values);
+  commanding_client().received(values);  // in real time it drives
+  if (iface::in_simulated_time()) commanding_client().drive(values);
 }
 
 void RTCPosition2d::give_up() {
   if (std::holds_alternative<std::monostate>(goal_)) return;
   goal_ = {};
-  commander().stop();
+  commanding_client().stop();
 }
 
 // Values that are no numbers are ignored with a line: the robot goes on as before.
@@ -114,8 +114,8 @@ void RTCPosition2d::read_car() {
   }
   const double values[] = {car_.data.speed, car_.data.steeringAngle};
   goal_ = {};
-  commander().received(values, shm::CommandKind::car);  // in real time it drives
-  if (iface::in_simulated_time()) commander().drive(values, shm::CommandKind::car);
+  commanding_client().received(values, shm::CommandKind::car);  // in real time it drives
+  if (iface::in_simulated_time()) commanding_client().drive(values, shm::CommandKind::car);
 }
 
 void RTCPosition2d::read_path() {
@@ -143,7 +143,7 @@ void RTCPosition2d::go_on(const shm::Position2dInfo& robot, const shm::Position2
     if (way->has_arrived()) goal_ = {};
   } else if (const auto* heading = std::get_if<Heading>(&goal_)) {
     const double velocity[] = {heading->speed, 0, shm::turn_towards(odometry.a, heading->angle, shm::within({}, robot))};
-    commander().drive(velocity);
+    commanding_client().drive(velocity);
   }
   if (!std::holds_alternative<Following>(goal_)) return path_follower_.end();
   const auto velocity = path_follower_.next(odometry, robot);

@@ -61,8 +61,8 @@ void RTCPosition3d::detaching() {
 }
 
 void RTCPosition3d::command(const std::array<double, 6>& values, shm::CommandKind kind) {
-  commander().received(values, kind);  // in real time it drives
-  if (iface::in_simulated_time()) commander().drive(values, kind);
+  commanding_client().received(values, kind);  // in real time it drives
+  if (iface::in_simulated_time()) commanding_client().drive(values, kind);
 }
 
 // Values that are no numbers are ignored with a line: the robot goes on as before.
@@ -101,7 +101,7 @@ void RTCPosition3d::read_path() {
   while (path_in_.isNew()) has_path = path_in_.read() || has_path;
   if (has_path && !path_follower_.set(path_.waypoints)) RTC_WARN(("path: expected finite numbers and at most 10000 way points; ignored"));
   if (!path_follower_.take_news()) return;
-  if (!std::holds_alternative<std::monostate>(goal_)) commander().stop();
+  if (!std::holds_alternative<std::monostate>(goal_)) commanding_client().stop();
   goal_ = Following{};
   last_.reset();
   resets_.reset();
@@ -131,7 +131,7 @@ void RTCPosition3d::go_on(const shm::Position3dSample& sample) {
   resets_ = sample.stamp.resets;
   if (is_elsewhere && !std::holds_alternative<std::monostate>(goal_)) {
     goal_ = {};
-    commander().stop();
+    commanding_client().stop();
   }
   if (std::holds_alternative<Following>(goal_)) {
     follow(sample);
@@ -148,7 +148,7 @@ void RTCPosition3d::go_on(const shm::Position3dSample& sample) {
                                0,
                                0,
                                std::clamp(gain * error, -fastest_turn, fastest_turn)};
-    commander().drive(velocity);
+    commanding_client().drive(velocity);
   }
 }
 

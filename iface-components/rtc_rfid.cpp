@@ -16,10 +16,10 @@ RTCRfid::RTCRfid(RTC::Manager* manager)
     : IfaceComponent(manager, specification, shm::IfaceType::rfid, true),
       tags_out_("tags", tags_),
       service_port_("rfid"),
-      errand_(say()),
+      async_requests_(say()),
       service_([this](const std::string& id, const std::string& data) {
         const iface::Device device = described_.snapshot();
-        errand_.post(device.server_id, shm::WriteTagRequest{device.device_id, id, data});
+        async_requests_.post(device.server_id, shm::WriteTagRequest{device.device_id, id, data});
       }) {}
 
 RTC::ReturnCode_t RTCRfid::onInitialize() {

@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include "errand.h"
+#include "async_requests.h"
 #include "geometry_service.h"
 #include "iface_component.h"
 
@@ -45,7 +45,7 @@ class RTCRfid : public iface::IfaceComponent {
   RTC::TimedStringSeq tags_;
   RTC::OutPort<RTC::TimedStringSeq> tags_out_;
   RTC::CorbaPort service_port_;
-  iface::Errand errand_;
+  iface::AsyncRequests async_requests_;
   base::Guarded<iface::Device, base::Rank::details> described_;  // whose tags are written
   RfidService service_;
 };

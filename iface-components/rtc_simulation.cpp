@@ -87,7 +87,7 @@ RTCSimulation::RTCSimulation(RTC::Manager* manager)
                 RTC_INFO(("%s", line.c_str()));
               }
             }),
-      errand_([this](bool, const std::string& line) { RTC_WARN(("%s", line.c_str())); }),
+      async_requests_([this](bool, const std::string& line) { RTC_WARN(("%s", line.c_str())); }),
       time_out_("time", time_),
       simulation_port_("simulation") {}
 
@@ -105,7 +105,7 @@ RTC::ReturnCode_t RTCSimulation::onInitialize() {
 // In lock step the server answers between ticks, so a component that is in a tick cannot wait for the answer.
 RTC::ReturnCode_t RTCSimulation::ask(const shm::Request& request) {
   if (iface::in_simulated_time()) {
-    errand_.post(server_id_, request);
+    async_requests_.post(server_id_, request);
     return RTC::RTC_OK;
   }
   const auto reply = ask_server(server_id_, request);

@@ -15,7 +15,7 @@
 
 #include <atomic>
 
-#include "errand.h"
+#include "async_requests.h"
 #include "iface_link.h"
 #include "line_limit.h"
 
@@ -58,7 +58,7 @@ class RTCSimulation : public RTC::DataFlowComponentBase {
 
   int server_id_ = 0;
   iface::IfaceLink link_;
-  iface::Errand errand_;
+  iface::AsyncRequests async_requests_;
   iface::LineLimit limit_;  // of lines about a simulator that is not there
   RTC::TimedDouble time_;
   RTC::OutPort<RTC::TimedDouble> time_out_;

@@ -34,7 +34,7 @@ class SimTick final : public base::Tick {
   void end(const std::function<std::uint64_t()>& states);
 
   std::chrono::nanoseconds time() const override { return tick_.now; }
-  std::uint64_t moment() const override { return tick_.moment; }
+  std::uint64_t phase_counter() const override { return tick_.phase_counter; }
   void at_end(std::function<void(Tick&)> work) override { at_end_.push_back(std::move(work)); }
   bool keeps_data() const override { return log_.has_value(); }
   void passed(const base::Passage& passage) override;

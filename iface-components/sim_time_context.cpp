@@ -1,7 +1,7 @@
 #include "sim_time_context.h"
 
-#include <base/chance.h>
 #include <base/hash64.h>
+#include <base/nondeterminism.h>
 #include <base/text.h>
 #include <component/context_clock.h>
 #include <rtm/ECFactory.h>

@@ -14,21 +14,21 @@ void SimulatorTime::follow(std::optional<shm::Iface> simulation) {
   const auto* sample = state->read();
   const auto resets = sample ? sample->stamp.resets : 0;
   // The same simulator once more has no new time, unless it was reset meanwhile.
-  if (state->generation != 0 && (generation != state->generation || resets != state->resets)) ++state->era;
+  if (state->generation != 0 && (generation != state->generation || resets != state->resets)) ++state->epoch;
   state->generation = generation;
   state->resets = resets;
 }
 
-std::uint64_t SimulatorTime::era() const {
+std::uint64_t SimulatorTime::epoch() const {
   auto state = state_.lock();
   const auto* sample = state->read();
-  if (sample && std::exchange(state->resets, sample->stamp.resets) != sample->stamp.resets) ++state->era;
-  return state->era;
+  if (sample && std::exchange(state->resets, sample->stamp.resets) != sample->stamp.resets) ++state->epoch;
+  return state->epoch;
 }
 
-std::uint64_t SimulatorTime::moment() const {
+std::uint64_t SimulatorTime::phase_counter() const {
   auto state = state_.lock();
-  return state->simulation ? shm::moment_of(*state->simulation) : 0;
+  return state->simulation ? shm::phase_counter_of(*state->simulation) : 0;
 }
 
 const shm::SimulationSample* SimulatorTime::State::read() {

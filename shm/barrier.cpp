@@ -39,7 +39,7 @@ struct Barrier::State {
     std::uint64_t missed = 0;
     bool is_hanging = false;
     bool observes = false;    // as of this tick
-    bool looks_on = false;    // likewise
+    bool is_tool = false;     // likewise
     bool is_looking = false;  // an observer in its tick
 
     auto order() const { return std::pair(phase, turn); }
@@ -68,15 +68,17 @@ struct Barrier::State {
   std::int64_t earliest_part = 0;  // of those who do not only look on
   bool is_looked_at = false;
   std::uint32_t resets = 0;
-  mutable std::uint64_t moment = 0;  // kept here, too: what a client scribbles into the shared one must not stay
+  mutable std::uint64_t phase_counter = 0;  // kept here, too: what a client scribbles into the shared one must not stay
 
   ParticipantSlot& slot(const Member& member) const { return slot_at(segment, member.index); }
   Control& control() const { return control_of(segment); }
-  void pass_moment() const { store(control().moment, ++moment, std::memory_order_release); }  // pairs with the loads in moment_of
+  void advance_phase_counter() const {
+    store(control().moment, ++phase_counter, std::memory_order_release);
+  }  // pairs with the loads in phase_counter_of
   bool is_done(const Member& member) const { return load(slot(member).done, std::memory_order_seq_cst) == member.go; }
   void tell(BarrierEvent::Kind kind, const Member& member, bool was_in_tick = false) const {
     if (options.on_event)
-      options.on_event({kind, member.name, owner_pid(member.owner), member.phase, member.period, member.looks_on, was_in_tick});
+      options.on_event({kind, member.name, owner_pid(member.owner), member.phase, member.period, member.is_tool, was_in_tick});
   }
   void schedule_all();
   void take_in(std::size_t index);
@@ -88,7 +90,7 @@ struct Barrier::State {
   bool run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps);
   void end_phase();
   bool observes(std::size_t index) const { return options.is_lockstep && load(slot_at(segment, index).observes) == observer; }
-  bool looks_on(std::size_t index) const { return load(slot_at(segment, index).observes) != takes_part; }
+  bool is_tool(std::size_t index) const { return load(slot_at(segment, index).observes) != takes_part; }
   void let_look(std::int64_t now, std::uint64_t steps);
   void remove_gone();
   bool wait_for(std::span<Member*> group);
@@ -128,7 +130,7 @@ void Barrier::State::schedule_all() {
   for (const Member& member : members) {
     earliest_due = std::min(earliest_due, member.next_due);
     if (!member.observes) earliest_turn = std::min(earliest_turn, member.next_due);
-    if (!member.looks_on) earliest_part = std::min(earliest_part, member.next_due);
+    if (!member.is_tool) earliest_part = std::min(earliest_part, member.next_due);
   }
 }
 
@@ -148,7 +150,7 @@ void Barrier::State::take_in(std::size_t index) {
   member.turn = slot.turn;
   member.period = load(slot.period_ns);
   member.observes = observes(index);
-  member.looks_on = looks_on(index);
+  member.is_tool = is_tool(index);
   const bool is_good = member.phase <= max_phase && member.period > 0 && member.period < longest_period && member.owner != 0;
   member.watched = server.watch().watch(mark_of(slot));
   if (member.watched->is_dead()) return free_slot(slot, member.owner);
@@ -351,7 +353,7 @@ void Barrier::State::learn_ahead(std::span<Member* const> group) {
 
 // Of a phase in which nobody was due nothing is counted.
 void Barrier::State::end_phase() {
-  if (moment % 2 == 1) pass_moment();
+  if (phase_counter % 2 == 1) advance_phase_counter();
 }
 
 bool Barrier::State::run_turn(std::span<Member*> group, std::int64_t now, std::uint64_t steps) {
@@ -369,7 +371,7 @@ bool Barrier::State::run_turn(std::span<Member*> group, std::int64_t now, std::u
   }
   // Whoever counts down to one or below wakes the server, which then looks at all `done` words itself: the count is only a hint, so
   // that a participant that died between the two costs nothing but an extra look.
-  if (moment % 2 == 0) pass_moment();  // the first turn of its phase
+  if (phase_counter % 2 == 0) advance_phase_counter();  // the first turn of its phase
   // Who has died in an earlier turn of this tick did not die in its own.
   for (Member* member : group) {
     if (server.watch().deaths() != seen_deaths && member->watched->is_dead() && remove_if_gone(*member)) member->owner = 0;
@@ -425,7 +427,7 @@ bool Barrier::tick(nanoseconds now, std::uint64_t steps) {
   state.look_for_processors();
   for (State::Member& member : state.members) {
     member.observes = state.observes(member.index);
-    member.looks_on = state.looks_on(member.index);
+    member.is_tool = state.is_tool(member.index);
   }
   std::size_t begin = 0;
   bool is_complete = true, has_begun = false;
@@ -458,7 +460,7 @@ std::optional<nanoseconds> Barrier::next_due() const {
 
 std::optional<bool> Barrier::has_turn(nanoseconds now) {
   refresh();
-  if (std::ranges::all_of(state_->members, &State::Member::looks_on)) return std::nullopt;
+  if (std::ranges::all_of(state_->members, &State::Member::is_tool)) return std::nullopt;
   return now.count() >= state_->earliest_part;
 }
 

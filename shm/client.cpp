@@ -440,7 +440,7 @@ base::Result<void> Iface::command_velocity(double vx, double vy, double va) {
   return command(CommandKind::velocity, values);
 }
 
-bool Iface::is_commander() const {
+bool Iface::is_commanding() const {
   return state_->has_lease() && state_->last_command != 0 && load(state_->header().command_latest) == state_->last_command;
 }
 

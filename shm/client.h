@@ -137,12 +137,12 @@ class Iface {
   std::optional<HeldFrame> hold();
 
   // ---- commands ----
-  // The latest command of all clients counts. Missing values are 0. Refuses values that are not finite, and more than the iface has.
+  // The latest command of all clients counts. Missing values are 0. Rejects values that are not finite, and more than the iface has.
   // `duration`: simulated time after which the simulator ends the command by itself, counted from the first step that follows it; 0: none.
   base::Result<void> command(CommandKind kind, std::span<const double> values, std::chrono::nanoseconds duration = {});
   base::Result<void> command_velocity(double vx, double vy, double va);
   // True while this handle's command is the one in force.
-  bool is_commander() const;
+  bool is_commanding() const;
 
   // ---- life ----
   Status status() const;

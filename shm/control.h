@@ -15,7 +15,7 @@ namespace shm {
 inline constexpr std::chrono::seconds usual_timeout{10};
 inline constexpr std::chrono::minutes picture_timeout{10};  // large images take minutes; a simulator that exits is noticed at once
 
-// The reply to a request that succeeded. A refusal is an Error: "spawn: no model found in ...".
+// The reply to a request that succeeded. A rejection is an Error: "spawn: no model found in ...".
 base::Result<Reply> ask_for(Requester& requester, const Request& request, std::chrono::nanoseconds timeout = usual_timeout);
 // The same of a reply that is there.
 base::Result<Reply> without_refusal(const Request& request, Reply reply);

@@ -33,9 +33,9 @@ base::Result<const FaultRow*> check_fault(std::string_view name, std::optional<d
   if (row->kind == FaultKind::latency && *amount != std::floor(*amount))
     return base::Error{"fault " + std::string(name) + ": its amount must be a whole number of samples, got " +
                        base::format_number(*amount)};
-  if (*amount >= row->least && *amount <= row->most) return row;
-  return base::Error{"fault " + std::string(name) + ": its amount must be from " + base::format_number(row->least) + " to " +
-                     base::format_number(row->most) + ", got " + base::format_number(*amount)};
+  if (*amount >= row->min_amount && *amount <= row->max_amount) return row;
+  return base::Error{"fault " + std::string(name) + ": its amount must be from " + base::format_number(row->min_amount) + " to " +
+                     base::format_number(row->max_amount) + ", got " + base::format_number(*amount)};
 }
 
 }  // namespace shm

@@ -17,8 +17,8 @@ struct FaultRow {
   std::string_view name;
   FaultKind kind;
   bool is_of_drive = false;
-  std::optional<double> amount{};  // the usual one; nothing: it has none
-  double least = 0, most = 0;      // of the amount
+  std::optional<double> amount{};         // the usual one; nothing: it has none
+  double min_amount = 0, max_amount = 0;  // of the amount
   std::string_view meaning;
 };
 

@@ -69,7 +69,9 @@ base::Result<std::vector<ParticipantRecord>> read_participants(const Iface& simu
   return read_records(simulation.segment());
 }
 
-std::uint64_t moment_of(const Iface& simulation) { return slot_count(simulation.segment()) == 0 ? 0 : moment_of(simulation.segment()); }
+std::uint64_t phase_counter_of(const Iface& simulation) {
+  return slot_count(simulation.segment()) == 0 ? 0 : phase_counter_of(simulation.segment());
+}
 
 struct Participant::Impl {
   explicit Impl(Iface opened) : simulation(std::move(opened)) {}
@@ -81,7 +83,7 @@ struct Participant::Impl {
   std::uint32_t last_go = 0;
   bool is_in_tick = false, is_tool = false;
   steady_clock::time_point tick_start, check_at;  // check_at: when to look next whether the server lives
-  std::uint64_t moment = 0;                       // of the last tick
+  std::uint64_t phase_counter = 0;                // of the last tick
   std::uint64_t ticks = 0;
   std::int64_t total = 0, max = 0;
   std::atomic<bool> is_interrupted{false};
@@ -112,7 +114,7 @@ base::Result<void> Participant::Impl::take_slot(const ParticipantOptions& option
     store(candidate.start_time, mark.start_time);
     store(candidate.phase, options.phase);  // who looks for a place reads them meanwhile
     store(candidate.turn, options.turn);
-    is_tool = options.looks_on;
+    is_tool = options.is_tool;
     store(candidate.observes, part(options.observes));
     store(candidate.period_ns, static_cast<std::int64_t>(options.period.count()));
     set_text(candidate.name, options.name);
@@ -196,16 +198,16 @@ bool Participant::Impl::finish(steady_clock::time_point now) {
   return !wake_server(control);
 }
 
-// Until the server has passed to the next phase, and a moment longer: who takes part there is woken meanwhile and goes on on this
+// Until the server has passed to the next phase, and a little longer: who takes part there is woken meanwhile and goes on on this
 // processor, which has not gone to sleep. When no phase follows at once, and after observers, there is nobody to wait for.
 void Participant::Impl::linger() const {
   constexpr nanoseconds most = std::chrono::microseconds(20), pause = std::chrono::microseconds(3);
-  if (moment % 2 == 0) return;
+  if (phase_counter % 2 == 0) return;
   const auto begin = steady_clock::now();
   std::optional<steady_clock::time_point> over;
-  std::uint64_t seen = moment;
+  std::uint64_t seen = phase_counter;
   for (auto now = begin; now - begin < most && !has_tick(); now = steady_clock::now()) {
-    if (const auto at = moment_of(simulation.segment()); at != std::exchange(seen, at)) over = now;
+    if (const auto at = phase_counter_of(simulation.segment()); at != std::exchange(seen, at)) over = now;
     if (over && now - *over > pause) return;
     give_way();
   }
@@ -242,8 +244,8 @@ Tick Participant::begin() {
   constexpr auto relaxed = std::memory_order_relaxed;
   impl.last_go = load(mine.go, std::memory_order_seq_cst);  // pairs with the store in Barrier's release
   const Tick tick = {nanoseconds(load(mine.now_ns, relaxed)), nanoseconds(load(mine.due_ns, relaxed)), load(mine.steps, relaxed),
-                     load(mine.resets, relaxed), moment_of(impl.simulation.segment())};
-  impl.moment = tick.moment;
+                     load(mine.resets, relaxed), phase_counter_of(impl.simulation.segment())};
+  impl.phase_counter = tick.phase_counter;
   impl.is_in_tick = true;
   impl.tick_start = steady_clock::now();
   return tick;

@@ -35,8 +35,8 @@ inline ProcessMark mark_of(const ParticipantSlot& slot) {
   return {owner_pid(load(slot.owner)), load(slot.pid_namespace), load(slot.start_time)};
 }
 
-inline std::uint64_t moment_of(const Segment& segment) {
-  return load(control_of(segment).moment, std::memory_order_acquire);  // pairs with pass_moment
+inline std::uint64_t phase_counter_of(const Segment& segment) {
+  return load(control_of(segment).moment, std::memory_order_acquire);  // pairs with advance_phase_counter
 }
 
 // Whatever a client has written there, it is one line of text for people.

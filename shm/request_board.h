@@ -63,7 +63,7 @@ class Requester {
   Requester& operator=(Requester&&) noexcept;
   ~Requester();
 
-  // The server's answer, also when it is a refusal. An error when the server does not answer in time or is gone.
+  // The server's answer, also when it is a rejection. An error when the server does not answer in time or is gone.
   base::Result<Reply> ask(const Request& request, std::chrono::nanoseconds timeout = std::chrono::seconds(10));
   base::Result<Reply> ask_raw(const RawRequest& request, std::chrono::nanoseconds timeout = std::chrono::seconds(10));
   // The same in two calls, for a request without text that takes long: begin() sends it, await() waits for the answer. Nothing: there is

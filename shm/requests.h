@@ -67,7 +67,7 @@ struct DeleteRequest {
   std::string model;
 };
 struct ScreenshotRequest {
-  // Absolute; written atomically, with the rights of the server, so refused by one that is shared with others. Empty: the PNG is the text
+  // Absolute; written atomically, with the rights of the server, so rejected by one that is shared with others. Empty: the PNG is the text
   // of the reply.
   std::string path;
   std::uint32_t width = 800, height = 600;  // 1..8192
@@ -115,7 +115,7 @@ struct FaultsRequest {
   std::string iface;  // empty = all
 };
 struct ModelsRequest {};
-// Sensors that somebody is subscribed to publish what is there now, as after a reset or after a model was moved. Refused while time goes
+// Sensors that somebody is subscribed to publish what is there now, as after a reset or after a model was moved. Rejected while time goes
 // on.
 struct ShowRequest {};
 // New data of a tag that a reader has in its reach, until a reset.

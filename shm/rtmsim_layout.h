@@ -1,10 +1,11 @@
-/* What lies in the shared memory of an iface, byte for byte (docs/shared-memory.md says the same in tables). C11 and C++; plain data only.
+/* Layout of the shared memory of an iface (a simulated device), byte for byte. docs/shared-memory.md has it as tables. C11 and C++; plain
+ * data only.
  *
- * Segment `/dev/shm/rtmsim-<uid>-<server>.<type>.<iface name>`: rtmsim_header, then areas whose offsets and sizes the header names. All
- * numbers are little endian, all areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds; x forward, y left,
- * z up, counter-clockwise positive; quaternions are (w, x, y, z).
+ * A segment `/dev/shm/rtmsim-<uid>-<server>.<type>.<iface name>` starts with a rtmsim_header, which has the offset and size of each area.
+ * Numbers are little endian. Areas start at multiples of 64. Units: m, rad, s, kg, N; times are int64 nanoseconds. Axes: x forward, y left,
+ * z up. Angles are positive counter-clockwise. Quaternions are (w, x, y, z). "Server" is the simulator that owns the segment.
  *
- * Words marked [atomic] are written while others read them; touch them only with atomic operations of their width. */
+ * Words marked [atomic] are written while other processes read them. Access them only with atomic operations of their width. */
 #ifndef RTMSIM_LAYOUT_H
 #define RTMSIM_LAYOUT_H
 
@@ -21,9 +22,9 @@ extern "C" {
 #define RTMSIM_HOLDS 4       /* frames that one client can hold at a time */
 #define RTMSIM_PARTS 12
 #define RTMSIM_TICK_WORDS 4
-#define RTMSIM_TEXT_PIECE 16384 /* longer texts of requests and replies travel in pieces */
+#define RTMSIM_TEXT_PIECE 16384 /* longer texts of requests and replies are sent in several parts */
 
-/* Iface types; what they are called in names of segments and what they say is in iface_types.h. */
+/* Iface types. iface_types.h has the name of each type in segment names, and its fields. */
 enum {
   RTMSIM_SIMULATION = 1,
   RTMSIM_LASER = 2,
@@ -55,7 +56,7 @@ enum {
   RTMSIM_LOCALIZATION = 34,
 };
 
-/* Areas of a segment, by index into rtmsim_header.areas; those an iface does not have are all zero. */
+/* Areas of a segment, by index into rtmsim_header.areas. An area that the iface does not have is all zero. */
 enum {
   RTMSIM_AREA_INFO = 0,        /* constants of the iface: rtmsim_<type>_info, and what follows it */
   RTMSIM_AREA_CELLS = 1,       /* latest samples: count cells of stride bytes, each a lock word [atomic, 8 bytes] and the sample; lock is
@@ -69,7 +70,7 @@ enum {
 
 enum { RTMSIM_STATE_LIVE = 1, RTMSIM_STATE_CLOSED = 2 };
 
-/* Which process: the pid alone can be used again, so its start time (field 22 of /proc/<pid>/stat) and pid namespace go with it. */
+/* Identifies a process. A pid can be reused, so the start time (field 22 of /proc/<pid>/stat) and the pid namespace are stored with it. */
 typedef struct {
   int32_t pid;
   uint32_t pid_namespace; /* inode of /proc/self/ns/pid */
@@ -83,25 +84,25 @@ typedef struct {
   uint32_t count;  /* elements */
 } rtmsim_area;
 
-/* The start of every segment. What stands before `state` never changes while the segment exists. */
+/* The start of every segment. Fields before `state` do not change while the segment exists. */
 typedef struct {
   char magic[8];
   uint32_t layout_version;
   uint32_t type;
   uint64_t total_size;
-  uint64_t generation; /* differs each time an iface of this name is made; the later one is greater */
+  uint64_t generation; /* increases each time an iface of this name is made */
   rtmsim_process server;
-  uint8_t boot_id[16]; /* of the boot the server runs in */
+  uint8_t boot_id[16]; /* boot id of the system that the server runs in */
   uint32_t server_id;
   uint32_t uid;
   char type_name[24];
   char name[RTMSIM_NAME_SIZE - 4];
   uint32_t command_values; /* doubles behind the command of each lease */
   rtmsim_area areas[RTMSIM_AREAS];
-  uint32_t state;       /* [atomic] RTMSIM_STATE_* ; closed: no more samples, open the name again */
-  uint32_t lease_epoch; /* [atomic] changes with every lease taken or given back */
-  int64_t heartbeat_ns; /* [atomic] CLOCK_MONOTONIC of the server's last sign of life, renewed about ten times a second, or once while time
-                           stands still */
+  uint32_t state;          /* [atomic] RTMSIM_STATE_* ; closed: no more samples, open the name again */
+  uint32_t lease_epoch;    /* [atomic] changes when a lease is acquired or released */
+  int64_t heartbeat_ns;    /* [atomic] CLOCK_MONOTONIC of the server's last heartbeat: about ten times a second, or once a second
+                              while time is paused */
   uint64_t command_latest; /* [atomic] (number of commands << 16) | index of the lease whose command is the latest; 0 = none yet */
   uint8_t reserved0[40];
   uint64_t sequence;    /* [atomic] sequence number of the latest sample or frame, 0 = none yet; sample n is in cell n % count */
@@ -112,23 +113,24 @@ typedef struct {
   uint8_t reserved1[416];
 } rtmsim_header;
 
-/* A client of an iface. A client takes a free lease by changing owner from 0 and gives it back by storing 0; the server takes the leases
- * of dead processes back. */
+/* The lease of a client of an iface. A client acquires a free lease by changing owner from 0, and releases it by storing 0. The server
+ * releases the leases of dead processes. */
 enum { RTMSIM_LEASE_SUBSCRIBER = 1 }; /* flag: the sensor works as long as one lease has it */
 
-/* What a client commands. header.command_values doubles follow it; what a client does not give is 0. Velocity: position2d vx vy va;
- * position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Car: position2d of a drive whose info
- * gives a wheel base: speed [m/s] and steering angle [rad] of a wheel in the middle between the steered ones. Joints: for each joint of the
- * iface mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface follows
- * the commands of all its clients, each for its own joints. Charge: battery 1 (the charger is connected) or 0. */
+/* The command of a client. header.command_values doubles follow it; values that the client does not set are 0. Velocity: position2d vx vy
+ * va; position3d vx vy vz wx wy wz (body frame). Pose: position2d x y a; position3d x y z roll pitch yaw. Car: for a position2d drive whose
+ * info has a wheel base: speed [m/s] and steering angle [rad] of a wheel in the middle between the steered ones. Joints: for each joint of
+ * the iface mode, value, velocity, effort (RTMSIM_JOINT_*); mode 0 leaves the joint to the client that commands it now. A joints iface
+ * follows the commands of all its clients, each for its own joints. Charge: battery 1 (the charger is connected) or 0. */
 typedef struct {
   uint64_t sequence;   /* counts the commands of this lease */
-  int64_t sim_time_ns; /* of the clock when the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
+  int64_t sim_time_ns; /* simulated time at which the client wrote the command, or 0; with RTMSIM_COMMAND_TIMED: duration [simulated ns] */
   uint32_t kind;       /* RTMSIM_COMMAND_* */
   uint32_t flags;      /* RTMSIM_COMMAND_TIMED, or 0 */
 } rtmsim_command;
 
-/* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had left. */
+/* Flag: the command ends sim_time_ns after the start of the first step that follows it. Then the robot stops as if the client had
+ * disconnected. */
 enum { RTMSIM_COMMAND_TIMED = 1 };
 
 enum {
@@ -145,11 +147,11 @@ typedef struct {
   uint64_t start_time;          /* [atomic] of the owner; 0 = not written yet */
   uint32_t pid_namespace;       /* [atomic] */
   uint32_t flags;               /* [atomic] */
-  char name[40];                /* of the program, for people */
+  char name[40];                /* of the program, for display */
   uint32_t holds[RTMSIM_HOLDS]; /* [atomic] slot + 1 of each frame held; the writer leaves these slots alone */
   uint8_t reserved[48];
   uint64_t command_lock;  /* [atomic] odd while the owner writes the command */
-  rtmsim_command command; /* [atomic words], as are the values behind it: a lease is as long as its area's stride says */
+  rtmsim_command command; /* [atomic words], like the values that follow; the stride of the area is the size of a lease */
 } rtmsim_lease;
 
 /* ---- samples: each starts with a stamp ---- */
@@ -158,7 +160,7 @@ typedef struct {
   uint64_t sequence;    /* 1, 2, 3, ... */
   int64_t sim_time_ns;  /* simulated time that the values belong to */
   int64_t wall_time_ns; /* Unix time of publication */
-  uint32_t valid;       /* 0: the device has nothing true to say (yet); do not use the values */
+  uint32_t valid;       /* 0: the device has no valid values (yet); do not use them */
   uint32_t resets;      /* resets of the world so far; simulated time starts again with each */
 } rtmsim_stamp;
 
@@ -184,7 +186,7 @@ typedef struct {
   char version[32]; /* of the server */
 } rtmsim_simulation_info;
 
-/* The clock: published after each step, and after anything that changes it. stamp.sim_time_ns is the simulated time. */
+/* The clock. Published after each step and after each change of its fields. stamp.sim_time_ns is the simulated time. */
 typedef struct {
   rtmsim_stamp stamp;
   uint64_t steps;      /* since the last reset */
@@ -194,14 +196,14 @@ typedef struct {
   uint32_t waiting_for; /* participants still missing before time starts */
   double rtf_wanted;    /* 0 = as fast as possible */
   double rtf_reached;   /* over the last second or so */
-  double load;          /* part of wall time spent working, over the same interval [0..1] */
+  double load;          /* fraction of wall-clock time with work, over the same interval [0..1] */
   uint32_t models, bodies, joints, contacts;
   uint32_t ifaces, active_sensors, participants, part_count;
   rtmsim_part parts[RTMSIM_PARTS];
 } rtmsim_simulation_sample;
 
 typedef struct {
-  uint32_t beams;  /* of one layer; beam i looks to min_angle + i * angle_step: counter-clockwise, from right to left */
+  uint32_t beams;  /* of one layer; beam i has the direction min_angle + i * angle_step: counter-clockwise, from right to left */
   uint32_t layers; /* from the lowest to the highest; 1 for a planar scanner */
   double min_angle, max_angle, angle_step; /* [rad] */
   double min_vertical, max_vertical;       /* [rad], 0 for a planar scanner */
@@ -213,13 +215,13 @@ typedef struct {
 } rtmsim_laser_info;
 
 /* A scan; `count` = beams * layers float ranges [m] follow, then as many float intensities. Beam by beam, layer by layer.
- * A range is +infinity where nothing is hit, -infinity where something is nearer than min_range. */
+ * A range is +infinity if the beam hits nothing, -infinity if the object is nearer than min_range. */
 typedef struct {
   rtmsim_stamp stamp;
   rtmsim_pose pose; /* true pose of the scanner in the world at the stamp */
   uint32_t count;
-  uint32_t sweep_ns; /* the beams turn: the first of each layer is from so long before the stamp, the last from the stamp, the others evenly
-                        between; ranges are in the frames of their own instants. 0: all are from the stamp */
+  uint32_t sweep_ns; /* for a rotating scanner: the first beam of each layer is this much older than the stamp, the last has the time of the
+                        stamp, the others are evenly between; each range is in the frame of its own time. 0: all at the stamp */
 } rtmsim_laser_sample;
 
 /* `count` poses of the transducers on the model (rtmsim_pose) follow. */
@@ -233,7 +235,7 @@ typedef struct {
   char model[128];
 } rtmsim_sonar_info;
 
-/* `count` float ranges [m] follow (padded to 8 bytes), marks as in a laser scan. */
+/* `count` float ranges [m] follow (padded to 8 bytes), with the infinities of a laser scan. */
 typedef struct {
   rtmsim_stamp stamp;
   uint32_t count;
@@ -252,20 +254,20 @@ typedef struct {
   double wheel_separation, wheel_radius;
   double rate;
   char model[128];
-  double wheel_base;         /* from the steered wheels to the axle that commands are of; 0: not steered, or an older simulator [m] */
+  double wheel_base;         /* from the steered wheels to the reference axle of commands; 0: not steered, or an older simulator [m] */
   double max_steering_angle; /* of a wheel in the middle between the steered ones [rad] */
 } rtmsim_position2d_info;
 
 typedef struct {
   rtmsim_stamp stamp;
-  double odometry[3];      /* x y a by the encoders, since the last reset of the odometry; a is in (-pi, pi] */
-  double velocity[3];      /* vx vy va by the encoders, robot frame */
+  double odometry[3];      /* x y a from the encoders, since the last reset of the odometry; a is in (-pi, pi] */
+  double velocity[3];      /* vx vy va from the encoders, robot frame */
   rtmsim_pose true_pose;   /* in the world */
   double true_velocity[3]; /* vx vy va in the robot frame */
   double command[3];       /* vx vy va that the drive follows at this time */
   uint32_t stalled;        /* commanded to move, but it does not */
   uint32_t motors_enabled;
-  uint32_t commanded; /* a living client commands it */
+  uint32_t commanded; /* a running client commands it */
   uint32_t reserved;
 } rtmsim_position2d_sample;
 
@@ -306,8 +308,8 @@ enum {
   RTMSIM_FORMAT_BAYER_BGGR8 = 11,           /* even rows b g b g ..., odd rows g r g r ... */
   RTMSIM_FORMAT_BAYER_GBRG8 = 12,           /* even rows g b g b ..., odd rows r g r g ... */
   RTMSIM_FORMAT_BAYER_GRBG8 = 13,           /* even rows g r g r ..., odd rows b g b g ... */
-  RTMSIM_FORMAT_LABELS = 14,    /* three bytes: semantic: the label three times; instances: number of the object among those of its
-                                   label, from 1, high byte and low byte, then the label. 0: nothing that has one */
+  RTMSIM_FORMAT_LABELS = 14,    /* three bytes. Semantic: the label three times. Instances: number of the object with this label, from 1,
+                                   high byte and low byte, then the label. 0: no labelled object */
   RTMSIM_FORMAT_THERMAL16 = 15, /* temperature in units of the frame, two bytes, the low one first */
   RTMSIM_FORMAT_THERMAL8 = 16   /* temperature in units of the frame, a byte */
 };
@@ -327,7 +329,7 @@ typedef struct {
   char model[128];
 } rtmsim_camera_info;
 
-/* Head of a slot of the frame ring; the data follow at once. */
+/* Header of a slot of the frame ring; the data follow directly. */
 typedef struct {
   uint64_t lock;                          /* [atomic] sequence number of the frame in the slot; 0 while it is empty or written */
   rtmsim_stamp stamp;                     /* stamp.sequence == lock */
@@ -363,7 +365,7 @@ typedef struct {
 
 typedef struct {
   rtmsim_stamp stamp;
-  double latitude, longitude; /* [degree] WGS 84: the one place where angles are not rad */
+  double latitude, longitude; /* [degree] WGS 84; all other angles are in rad */
   double altitude;            /* [m] */
   double velocity[3];         /* east, north, up [m/s] */
 } rtmsim_gps_sample;
@@ -374,9 +376,9 @@ typedef struct {
   double rate;
   rtmsim_pose pose;
   char model[128];
-  rtmsim_pose middle; /* of the box around the collisions that count, along the axes of their link; in the frame of the model */
+  rtmsim_pose middle; /* of the box around the collisions of the bumper, along the axes of their link; in the frame of the model */
   double size[3];     /* of that box [m]; 0 without collisions */
-  double radius;      /* of a sphere, or of a cylinder that stands, when that is the only collision; else 0 [m] */
+  double radius;      /* of a sphere, or of an upright cylinder, if that is the only collision; else 0 [m] */
 } rtmsim_bumper_info;
 
 typedef struct {
@@ -390,7 +392,7 @@ typedef struct {
 typedef struct {
   rtmsim_stamp stamp;
   uint32_t count;
-  uint32_t total; /* contacts there were; more than count when they did not all fit */
+  uint32_t total; /* number of contacts; above count if not all of them fit */
 } rtmsim_bumper_sample;
 
 /* Of force_torque, altimeter, magnetometer and air_pressure. */
@@ -459,30 +461,30 @@ typedef struct {
   rtmsim_stamp stamp;
   rtmsim_pose pose; /* of the camera in the world */
   uint32_t count;
-  uint32_t total; /* models there were; more than count when they did not all fit */
+  uint32_t total; /* number of models; above count if not all of them fit */
 } rtmsim_logical_camera_sample;
 
-/* What the boxes of a camera are around. */
+/* Kinds of bounding boxes of a camera. */
 enum {
-  RTMSIM_BOX_VISIBLE = 1, /* what is seen of an object, in the image */
+  RTMSIM_BOX_VISIBLE = 1, /* the visible part of an object, in the image */
   RTMSIM_BOX_FULL = 2,    /* the whole object, projected into the image and cut at its edges */
   RTMSIM_BOX_ORIENTED = 3 /* the whole object, in space, along its own axes */
 };
 
-/* The boxes of a bounding box camera, whose images are the camera iface of the same name. */
+/* The boxes of a bounding box camera. Its images are in the camera iface of the same name. */
 typedef struct {
   uint32_t kind;          /* RTMSIM_BOX_* */
-  uint32_t capacity;      /* most boxes of a sample */
+  uint32_t capacity;      /* maximum number of boxes of a sample */
   uint32_t width, height; /* of the image [pixel] */
   double rate;
   rtmsim_pose pose;
   char model[128];
 } rtmsim_boxes_info;
 
-/* Around an object that has a label and is seen. A model's or visual's label is what the Label plugin says. */
+/* The box around a visible object with a label. The Label plugin sets the label of a model or visual. */
 typedef struct {
   uint32_t label;            /* 1..255 */
-  uint32_t pixels;           /* of the image that show it */
+  uint32_t pixels;           /* number of pixels of the object */
   double center[2], size[2]; /* [pixel] from the left and the top; 0 of oriented boxes */
   rtmsim_pose pose;          /* of the middle of an oriented box in the camera */
   double extent[3];          /* length, width, height of an oriented box [m] */
@@ -493,11 +495,11 @@ typedef struct {
 typedef struct {
   rtmsim_stamp stamp;
   uint32_t count;
-  uint32_t total; /* boxes there were; more than count when they did not all fit */
+  uint32_t total; /* number of boxes; above count if not all of them fit */
 } rtmsim_boxes_sample;
 
 typedef struct {
-  uint32_t capacity; /* most marks of a sample */
+  uint32_t capacity; /* maximum number of marks of a sample */
   uint32_t reserved;
   double min_range, max_range; /* [m] */
   double view_angle;           /* full, centred on the x axis, in the plane of x and y [rad] */
@@ -512,7 +514,7 @@ typedef struct {
   uint32_t reserved;
   rtmsim_pose pose; /* of the middle of the mark in the detector: its x axis points out of the mark, z is its up */
   double size[3];   /* thickness, width, height [m] */
-  char model[128];  /* that carries the mark */
+  char model[128];  /* the model with the mark */
 } rtmsim_mark;
 
 /* `capacity` marks (rtmsim_mark) follow, `count` of them are filled. */
@@ -520,21 +522,21 @@ typedef struct {
   rtmsim_stamp stamp;
   rtmsim_pose pose; /* of the detector in the world */
   uint32_t count;
-  uint32_t total; /* marks there were; more than count when they did not all fit */
+  uint32_t total; /* number of marks; above count if not all of them fit */
 } rtmsim_fiducial_sample;
 
-/* Modes of a joint; in commands what `value` is. Velocity and effort of a command for a position are fed
- * forward; the effort of one for a velocity is the highest that the joint may use, 0: its own. */
+/* Modes of a joint. In commands they give the meaning of `value`. A position command feeds its velocity and effort forward. The effort of
+ * a velocity command is the maximum effort; 0: that of the joint. */
 enum {
-  RTMSIM_JOINT_NONE = 0,     /* nobody has commanded it */
-  RTMSIM_JOINT_POSITION = 1, /* value: target [rad or m]. With a velocity the target moves on with it until the next command, 50 ms at most;
-                                without, the joint goes there at its highest velocity */
+  RTMSIM_JOINT_NONE = 0,     /* no client has commanded it */
+  RTMSIM_JOINT_POSITION = 1, /* value: target [rad or m]. With a velocity, the target moves at it until the next command, for at most 50 ms.
+                                Without one, the joint moves to the target at its maximum velocity */
   RTMSIM_JOINT_VELOCITY = 2, /* value: [rad/s or m/s] */
   RTMSIM_JOINT_EFFORT = 3,   /* value: [N m or N] */
   RTMSIM_JOINT_FREE = 4,
   RTMSIM_JOINT_BRAKE = 5,
-  RTMSIM_JOINT_DISABLED = 6,     /* only in samples: the joint left the numbers; until a reset */
-  RTMSIM_JOINT_COMPENSATED = 256 /* added to the mode of a command: the effort that gravity needs is added, whatever the gains say */
+  RTMSIM_JOINT_DISABLED = 6,     /* only in samples: the joint left the range of numbers; until a reset */
+  RTMSIM_JOINT_COMPENSATED = 256 /* added to the mode of a command: gravity is compensated, for any gains */
 };
 enum { RTMSIM_JOINT_IDLE = 0, RTMSIM_JOINT_MOVING = 1, RTMSIM_JOINT_BRAKED = 2, RTMSIM_JOINT_STALLED = 3 };
 enum { RTMSIM_JOINT_TURNS = 1, RTMSIM_JOINT_SLIDES = 2 };
@@ -550,12 +552,12 @@ typedef struct {
 
 typedef struct {
   char name[96];        /* as in the file, scoped */
-  char link[96];        /* that it moves */
-  char gains_from[96];  /* where p, i and d come from */
-  uint32_t id;          /* index into this list and those of samples and commands */
+  char link[96];        /* the link that it moves */
+  char gains_from[96];  /* source of p, i and d */
+  uint32_t id;          /* index into this list, and into the lists of samples and commands */
   uint32_t kind;        /* RTMSIM_JOINT_TURNS or RTMSIM_JOINT_SLIDES */
   uint32_t parent;      /* 1 + id of the joint that carries it; 0: the model's base */
-  uint32_t compensated; /* gravity is compensated when the position or velocity is controlled */
+  uint32_t compensated; /* gravity is compensated in position and velocity control */
   double lower, upper;  /* limits [rad or m]; infinite without */
   double max_velocity, max_effort;
   double rest;    /* position at the start */
@@ -577,11 +579,11 @@ typedef struct {
 typedef struct {
   rtmsim_stamp stamp;
   uint32_t count;
-  uint32_t commanded; /* joints that a living client commands */
+  uint32_t commanded; /* number of joints that a running client commands */
 } rtmsim_joints_sample;
 
 enum {
-  RTMSIM_BATTERY_IDLE = 0,   /* nothing takes power yet */
+  RTMSIM_BATTERY_IDLE = 0,   /* no load has taken power yet */
   RTMSIM_BATTERY_DRAINS = 1, /* its load takes power */
   RTMSIM_BATTERY_CHARGES = 2,
   RTMSIM_BATTERY_FULL = 3,  /* the charger is connected and has stopped */
@@ -607,7 +609,7 @@ typedef struct {
   double current;    /* out of the battery; negative while it charges [A] */
   double charge;     /* [Ah] */
   double level;      /* charge / capacity, 0 to 1 */
-  double power;      /* that the load takes [W] */
+  double power;      /* power of the load [W] */
   uint32_t state;    /* RTMSIM_BATTERY_* */
   uint32_t is_empty; /* 1: the motors of its model have no power */
 } rtmsim_battery_sample;
@@ -619,7 +621,7 @@ typedef struct {
   double rate, noise;          /* standard deviation of the speed along a beam [m/s] */
   double min_range, max_range; /* [m] */
   rtmsim_pose pose;            /* on the model; the beams look down, along -z */
-  rtmsim_pose reference;       /* frame that the velocity is told in, in the frame of the sensor */
+  rtmsim_pose reference;       /* frame of the velocity, in the frame of the sensor */
   char model[128];
 } rtmsim_dvl_info;
 
@@ -632,7 +634,7 @@ typedef struct {
 typedef struct {
   rtmsim_stamp stamp;
   double velocity[3];    /* of the sensor against the bottom, in the reference frame [m/s]; 0 while it is not known */
-  double covariance[9];  /* of it, by rows */
+  double covariance[9];  /* of the velocity, by rows */
   double range;          /* of the nearest echo [m]; +infinity: none */
   uint32_t count;        /* beams */
   uint32_t locked;       /* beams with an echo */
@@ -672,10 +674,10 @@ typedef struct {
 
 typedef struct {
   uint32_t capacity;
-  uint32_t needs_sight; /* 1: what stands between reader and tag hides it */
+  uint32_t needs_sight; /* 1: an object between reader and tag hides the tag */
   double rate;
   double range; /* [m] */
-  double angle; /* full opening angle of what it reads, about x [rad] */
+  double angle; /* full opening angle of the reading cone, about x [rad] */
   rtmsim_pose pose;
   char model[128];
 } rtmsim_rfid_info;
@@ -708,7 +710,7 @@ typedef struct {
   char transmitter[128]; /* model::sensor */
   double frequency;      /* [MHz] */
   double level;          /* received power [dBm] */
-  uint32_t is_blocked;   /* something stands between the antennas */
+  uint32_t is_blocked;   /* an object is between the antennas */
   uint32_t reserved;
 } rtmsim_radio;
 
@@ -724,7 +726,7 @@ typedef struct {
   uint32_t count;
   uint32_t reserved;
   double rate;
-  double ticks; /* in a turn of a wheel */
+  double ticks; /* per revolution of a wheel */
   char model[128];
 } rtmsim_wheels_info;
 
@@ -742,7 +744,7 @@ typedef struct {
 
 typedef struct {
   double ticks; /* whole; since the start */
-  double angle; /* that they stand for [rad] */
+  double angle; /* of these ticks [rad] */
   double speed; /* of the wheel [rad/s] */
 } rtmsim_wheel_state;
 
@@ -757,7 +759,7 @@ typedef struct {
 typedef struct {
   double pose[3];       /* x y a in the world */
   double covariance[6]; /* xx, xy, xa, yy, ya, aa */
-  double weight;        /* those of a sample sum to 1 */
+  double weight;        /* the weights of a sample sum to 1 */
 } rtmsim_hypothesis;
 
 /* `capacity` hypotheses (rtmsim_hypothesis) follow, `count` of them are filled: the best first. */
@@ -769,7 +771,7 @@ typedef struct {
 
 /* ---- simulation: requests ---- */
 
-/* What a client can ask. Uses of the body (what is not named is 0): */
+/* Requests of a client, with their use of the body. Other fields are 0. */
 enum {
   RTMSIM_REQUEST_PAUSE = 1,
   RTMSIM_REQUEST_RUN = 2,
@@ -800,23 +802,23 @@ enum {
   RTMSIM_REQUEST_CONTACTS = 19,         /* name = model; reply count = its contacts since the last such request; text: JSON */
   RTMSIM_REQUEST_DROP_PARTICIPANT = 20, /* name = participant */
   RTMSIM_REQUEST_EXPORT = 21, /* flags 1 = shapes that collide; reply text: the world as glTF 2.0 binary (render/gltf.h); reply count = its
-                                 links, values 0 = version of the scene, another one after models have come or gone */
+                                 links, values 0 = version of the scene, a new one after models were added or deleted */
   RTMSIM_REQUEST_POSES = 22,  /* reply count = links, values 0 = version of the scene; text: count x 7 floats x y z qw qx qy qz in the
                                  world, in the order of an export; then values 1 x 4: two positions, two velocities of each joint of TREE */
   RTMSIM_REQUEST_FAULT = 23,  /* inject a fault into a sensor, drive or joint from now on. name = iface, or IFACE::JOINT; text = kind (see
                                  simctl fault --help); flags 1: values 0 = amount, else the usual one; values 1 = simulated seconds, 0 =
-                                 until it is ended. One of its kind that is on gives way */
+                                 until it is ended. It replaces an active fault of the same kind */
   RTMSIM_REQUEST_END_FAULTS = 24, /* name = iface or empty for all; text = kind or empty for all; reply count = faults that have ended */
   RTMSIM_REQUEST_FAULTS = 25,     /* name = iface or empty for all; reply text: JSON, those that are on or still to come */
   RTMSIM_REQUEST_MODELS = 26,     /* reply text: JSON, the models of the model path, which SPAWN takes as model://NAME */
   RTMSIM_REQUEST_WRITE_TAG = 29,  /* name = rfid iface; text = id of a tag in its reach, line break, its new data; until a reset */
-  RTMSIM_REQUEST_SHOW = 28,       /* while time stands still: subscribed sensors publish the present moment; nothing later changes */
+  RTMSIM_REQUEST_SHOW = 28,       /* while time is paused: subscribed sensors publish the current state; later samples do not change */
   RTMSIM_REQUEST_POSE_LOG = 27    /* the first one starts the pose log (shm/pose_log.h). count = first byte wanted; earlier ones are
                                      deleted. text = joints MODEL::JOINT, a line each, whose positions are in the log from now on (empty:
                                      as before). Reply count = end of the log [bytes]; text = bytes of it, at most 8 MiB */
 };
 
-/* Views of a screenshot. Without TOP and FOLLOW the camera's pose is in values; none given: one that shows the whole world. */
+/* Views of a screenshot. Without TOP and FOLLOW the pose of the camera is in values. Without a pose the camera shows the whole world. */
 enum {
   RTMSIM_VIEW_TOP = 1,
   RTMSIM_VIEW_FOLLOW = 2,
@@ -829,10 +831,10 @@ enum {
 
 enum {
   RTMSIM_STATUS_OK = 0,
-  RTMSIM_STATUS_FAILED = 1,      /* understood, but it did not work */
+  RTMSIM_STATUS_FAILED = 1,      /* valid, but it failed */
   RTMSIM_STATUS_BAD_REQUEST = 2, /* unknown kind, bad number, bad name */
-  RTMSIM_STATUS_NOT_FOUND = 3,   /* nothing has that name */
-  RTMSIM_STATUS_UNSUPPORTED = 4  /* this server can't */
+  RTMSIM_STATUS_NOT_FOUND = 3,   /* no object has this name */
+  RTMSIM_STATUS_UNSUPPORTED = 4  /* this server does not support it */
 };
 
 typedef struct {
@@ -865,14 +867,14 @@ typedef struct {
   uint64_t start_time;    /* [atomic] */
   uint32_t pid_namespace; /* [atomic] */
   uint32_t state;         /* [atomic] futex; RTMSIM_SLOT_* */
-  uint64_t id;            /* chosen by the client, never 0, different for each request; comes back in reply_id */
+  uint64_t id;            /* chosen by the client, never 0, different for each request; the reply has it in reply_id */
   uint32_t kind;
-  uint32_t text_length; /* bytes of text in this piece, at most RTMSIM_TEXT_PIECE */
-  uint32_t more;        /* 1: the text goes on in another piece of the same id */
+  uint32_t text_length; /* bytes of text in this part, at most RTMSIM_TEXT_PIECE */
+  uint32_t more;        /* 1: the text continues in another part of the same id */
   uint32_t status;      /* of the reply, RTMSIM_STATUS_* */
   uint64_t reply_id;
   uint32_t reply_length;
-  uint32_t reply_more; /* 1: ask again with the same id to get the next piece */
+  uint32_t reply_more; /* 1: ask again with the same id to get the next part */
   rtmsim_request_body body;
   rtmsim_reply_body reply;
   uint8_t reserved[136];
@@ -882,7 +884,8 @@ typedef struct {
 
 typedef struct {
   uint32_t attention;         /* [atomic] futex: clients add 1 when they ask for something or join */
-  uint32_t attention_waiting; /* [atomic] 2 attention + 1 before the server sleeps; who finds it wakes it, and sets 0 if that is old */
+  uint32_t attention_waiting; /* [atomic] 2 attention + 1 before the server sleeps; a client that reads it wakes the server, and sets 0 if
+                                 the value is old */
   uint32_t participant_epoch; /* [atomic] changes when a participant joins or leaves */
   uint32_t reserved0[13];
   int32_t pending;         /* [atomic] participants that have not finished the tick */
@@ -890,7 +893,7 @@ typedef struct {
   uint32_t server_waiting; /* [atomic] */
   uint32_t reserved1[13];
   uint32_t tick_words[RTMSIM_TICK_WORDS]; /* [atomic] futexes: the participant in slot i sleeps on tick_words[i / 32 % 4] with bit i % 32 */
-  uint64_t moment;                        /* [atomic] counts the beginnings and ends of phases: odd while one runs; 0 without lock step */
+  uint64_t moment; /* [atomic] phase counter: counts starts and ends of phases, odd while a phase runs; 0 without lock step */
   uint32_t reserved2[10];
 } rtmsim_control;
 
@@ -903,21 +906,21 @@ enum {
 };
 
 typedef struct {
-  /* written by the participant before it asks to join */
+  /* written by the participant before it requests to join */
   uint64_t owner;         /* [atomic] as in a lease */
   uint64_t start_time;    /* [atomic] */
   uint32_t pid_namespace; /* [atomic] */
   uint32_t phase;
-  int64_t period_ns; /* [atomic] may change at any time; taken over at the next tick */
+  int64_t period_ns; /* [atomic] may change at any time; valid from the next tick on */
   char name[64];
   uint32_t state;    /* [atomic] RTMSIM_PARTICIPANT_* */
-  uint32_t error;    /* why the server refused or dropped it: RTMSIM_DROPPED_* */
-  uint32_t turn;     /* within its phase: the higher ones begin when the lower ones have finished; written before it asks to join */
-  uint32_t observes; /* [atomic] 1: it observes, 2: a tool that is waited for; shm/lockstep.h. May change at any time, taken over at the
-                        next tick */
+  uint32_t error;    /* why the server rejected or dropped it: RTMSIM_DROPPED_* */
+  uint32_t turn;     /* call order within the phase: higher ones begin when lower ones have finished; written before it requests to join */
+  uint32_t observes; /* [atomic] 1: an observer, 2: a tool that the server waits for (shm/lockstep.h). May change at any time; valid from
+                        the next tick on */
   uint8_t reserved0[16];
   /* written by the server */
-  uint32_t go;     /* [atomic] number of the tick to do; 0 = none yet */
+  uint32_t go;     /* [atomic] number of the tick to execute; 0 = none yet */
   uint32_t resets; /* [atomic] of the world */
   int64_t now_ns;  /* [atomic] simulated time of that tick */
   int64_t due_ns;  /* [atomic] when it was due; now_ns - due_ns is less than a step */
@@ -926,9 +929,9 @@ typedef struct {
   uint8_t reserved1[24];
   /* written by the participant */
   uint32_t done;     /* [atomic] number of the tick it has finished */
-  uint32_t sleeping; /* [atomic] 1 before it sleeps on its tick word; 2: the server wakes it, its tick comes at once */
+  uint32_t sleeping; /* [atomic] 1 before it sleeps on its tick word; 2: the server wakes it early, its tick follows at once */
   uint64_t ticks;    /* [atomic] finished */
-  int64_t total_ns;  /* [atomic] wall time of all of them */
+  int64_t total_ns;  /* [atomic] wall-clock time of all of them */
   int64_t max_ns;    /* [atomic] */
   uint8_t reserved2[32];
 } rtmsim_participant;

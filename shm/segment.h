@@ -55,7 +55,7 @@ struct SegmentPlace;
 class Segment {
  public:
   // Makes a segment that is complete before its name appears. A stale one of a dead server is replaced (its readers are told); a living
-  // server's is refused. `info` is copied in. Fails with a clear message when memory, rights or the name do not do.
+  // server's is rejected. `info` is copied in. Fails with a clear message when memory, rights or the name do not do.
   static base::Result<Segment> create(const SegmentName& name, const Geometry& geometry, std::span<const std::byte> info,
                                       const Access& access);
   // Maps an existing one and checks that every area lies inside it.

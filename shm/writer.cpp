@@ -75,30 +75,32 @@ bool IfaceWriter::Impl::read_command(std::size_t index, CommandHead& head) {
 }
 
 CommandChange IfaceWriter::Impl::lose() {
-  if (commander == 0) return CommandChange::none;
-  commander = 0;
+  if (commanding_owner == 0) return CommandChange::none;
+  commanding_owner = 0;
   return CommandChange::lost;
 }
 
 CommandChange IfaceWriter::poll_command(Command& command) {
   Impl& impl = *impl_;
   const std::uint64_t latest = load(impl.segment.header().command_latest);  // pairs with the release in Iface::command
-  const auto is_held = [&] { return load(impl.segment.as<Lease>(AreaIndex::leases, impl.commander_lease).owner) == impl.commander; };
-  if (latest == impl.seen_command) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  const auto is_held = [&] {
+    return load(impl.segment.as<Lease>(AreaIndex::leases, impl.commanding_lease).owner) == impl.commanding_owner;
+  };
+  if (latest == impl.seen_command) return impl.commanding_owner != 0 && !is_held() ? impl.lose() : CommandChange::none;
   const std::size_t index = latest & 0xffff;
   if (index >= impl.segment.area(AreaIndex::leases).count) {
     impl.seen_command = latest;
-    return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+    return impl.commanding_owner != 0 && !is_held() ? impl.lose() : CommandChange::none;
   }
   const std::uint64_t owner = load(impl.segment.as<Lease>(AreaIndex::leases, index).owner);
   CommandHead fresh;
-  if (!impl.read_command(index, fresh)) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  if (!impl.read_command(index, fresh)) return impl.commanding_owner != 0 && !is_held() ? impl.lose() : CommandChange::none;
   impl.seen_command = latest;
   if (owner == 0) return impl.lose();  // commanded and went before we looked
   const bool is_finite = std::ranges::all_of(impl.fresh_values, [](double value) { return std::isfinite(value); });
-  if (!is_finite || fresh.kind > last_command_kind) return impl.commander != 0 && !is_held() ? impl.lose() : CommandChange::none;
-  impl.commander = owner;
-  impl.commander_lease = index;
+  if (!is_finite || fresh.kind > last_command_kind) return impl.commanding_owner != 0 && !is_held() ? impl.lose() : CommandChange::none;
+  impl.commanding_owner = owner;
+  impl.commanding_lease = index;
   impl.command_values.swap(impl.fresh_values);
   const bool is_timed = (fresh.flags & RTMSIM_COMMAND_TIMED) != 0 && fresh.sim_time_ns > 0;
   command = {fresh.sequence, static_cast<CommandKind>(fresh.kind), impl.command_values,
@@ -156,6 +158,6 @@ void IfaceWriter::drop_command() {
   impl_->seen_command = load(impl_->segment.header().command_latest);  // pairs with the release in Iface::command
 }
 
-pid_t IfaceWriter::commander() const { return owner_pid(impl_->commander); }
+pid_t IfaceWriter::commanding_pid() const { return owner_pid(impl_->commanding_owner); }
 
 }  // namespace shm

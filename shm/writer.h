@@ -21,7 +21,7 @@ namespace shm {
 enum class CommandChange {
   none,   // as before
   fresh,  // a new command
-  lost,   // the commander died or detached: stop. Said once
+  lost,   // the commanding client died or detached: stop. Reported once
 };
 
 class IfaceWriter {
@@ -87,7 +87,7 @@ class IfaceWriter {
   // What has been commanded and not been taken yet is not delivered.
   void drop_command();
   // Pid of the client whose command is in force, 0 = none.
-  pid_t commander() const;
+  pid_t commanding_pid() const;
 
   struct Impl;
   explicit IfaceWriter(std::shared_ptr<Impl> impl);

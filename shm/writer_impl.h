@@ -50,8 +50,8 @@ struct IfaceWriter::Impl {
   std::atomic<std::uint32_t> served{0};  // LeaseTable::times_switched_on at the last publication
 
   std::uint64_t seen_command = 0;
-  std::uint64_t commander = 0;  // owner word of the lease whose command is in force
-  std::size_t commander_lease = 0;
+  std::uint64_t commanding_owner = 0;  // owner word of the lease whose command is in force
+  std::size_t commanding_lease = 0;
   std::vector<std::uint64_t> seen_of_leases;  // sequence of the command taken last, by lease; see poll_commands
   bool is_cut_told = false;                   // under the lock of the server's ifaces
 

@@ -1,5 +1,5 @@
 rtmsim_test(avoidance_test clients/avoidance_test.cpp LIBRARIES avoidance)
-rtmsim_test(porter_test clients/porter_test.cpp LIBRARIES errand_rule)
+rtmsim_test(porter_test clients/porter_test.cpp LIBRARIES delivery_rule)
 rtmsim_test(iface_components_test
   iface-components/conversions_test.cpp iface-components/line_limit_test.cpp iface-components/ranger_test.cpp iface-components/scan_features_test.cpp iface-components/sim_tick_test.cpp
   iface-components/tick_group_test.cpp iface-components/camera_image_test.cpp ${PROJECT_SOURCE_DIR}/iface-components/sim_tick.cpp ${PROJECT_SOURCE_DIR}/iface-components/tick_group.cpp

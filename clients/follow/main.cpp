@@ -67,7 +67,7 @@ class Follower {
     for (const auto& device : {drive_address(), laser_address()}) {
       if (auto good = connection_.subscribe(device); !good) return good;
     }
-    // Drives without such a switch refuse it and drive nevertheless.
+    // Drives without such a switch reject it and drive nevertheless.
     static_cast<void>(connection_.request(drive_address(), motor_power, player::encode_u32(1)));
     const auto geometry = connection_.request(laser_address(), get_geometry);
     if (!geometry) return geometry.error();

@@ -106,7 +106,7 @@ base::Result<PlayerConnection> PlayerConnection::open(int socket, const std::str
   if (!pull) return pull.error();
   if (!key.empty()) {
     const auto admitted = connection.request({}, player::player_request::auth, player::encode_key(key));
-    if (!admitted) return base::Error{connection.where_ + " refuses the key"};
+    if (!admitted) return base::Error{connection.where_ + " rejects the key"};
   }
   return connection;
 }
@@ -135,7 +135,7 @@ base::Result<std::string> PlayerConnection::request(const player::Address& devic
     }
     if (got.address != device || got.subtype != subtype) continue;  // of a round of data
     if (got.type == player::Type::nack)
-      return base::Error{where_ + " refuses request " + std::to_string(subtype) + " to " + player::to_text(device)};
+      return base::Error{where_ + " rejects request " + std::to_string(subtype) + " to " + player::to_text(device)};
     return std::move((*message)->payload);
   }
 }

@@ -23,7 +23,7 @@ class PlayerConnection {
   ~PlayerConnection();
 
   base::Result<void> subscribe(const player::Address& device);
-  // The payload of the answer; an error when the server refuses.
+  // The payload of the answer; an error when the server rejects.
   base::Result<std::string> request(const player::Address& device, std::uint8_t subtype, const std::string& payload = {});
   base::Result<void> command(const player::Address& device, std::uint8_t subtype, const std::string& payload);
 

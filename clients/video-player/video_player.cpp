@@ -117,7 +117,7 @@ void VideoPlayer::close_window() {
 RTC::ReturnCode_t VideoPlayer::onDeactivated(RTC::UniqueId) {
   close_window();
   const auto passed = passed_ > 0 ? ", " + std::to_string(passed_) + " passed while it paused" : std::string();
-  RTC_INFO(("%s frames shown, %s dropped, %s refused%s", std::to_string(frames_).c_str(),
+  RTC_INFO(("%s frames shown, %s dropped, %s rejected%s", std::to_string(frames_).c_str(),
             std::to_string(dropped_.load(std::memory_order_relaxed)).c_str(), std::to_string(refused_).c_str(), passed.c_str()));
   return RTC::RTC_OK;
 }

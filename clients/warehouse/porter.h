@@ -1,6 +1,6 @@
 // Porter: pushes the box in front of the robot straight ahead to a door, and drives back. It stops while its scan shows something in the
 // lane. InPorts `odometry` (RTC::TimedPose2D), `range` (RTC::RangeData), OutPorts `velocity` (RTC::TimedVelocity2D), `stage`
-// (RTC::TimedLong: 0 waiting, 1 bringing, 2 returning, 3 done). Configuration: the settings of errand_rule.h; number and interval: it
+// (RTC::TimedLong: 0 waiting, 1 bringing, 2 returning, 3 done). Configuration: the settings of delivery_rule.h; number and interval: it
 // starts number * interval seconds after its activation, by the clock of the context.
 #pragma once
 
@@ -13,7 +13,7 @@
 #include <rtm/DataOutPort.h>
 #include <rtm/Manager.h>
 
-#include "errand_rule.h"
+#include "delivery_rule.h"
 
 class Porter : public RTC::DataFlowComponentBase {
  public:

@@ -160,7 +160,7 @@ void Device::publish(std::uint8_t subtype, const std::string& payload, const shm
 }
 
 std::nullopt_t Device::ask(shm::Request request, const Later& later) {
-  services_.errands.post(std::move(request), [later](const base::Result<shm::Reply>& reply) { later(reply ? ack() : nack()); });
+  services_.async_requests.post(std::move(request), [later](const base::Result<shm::Reply>& reply) { later(reply ? ack() : nack()); });
   return std::nullopt;
 }
 

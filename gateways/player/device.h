@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "common/errands.h"
+#include "common/async_requests.h"
 #include "common/source.h"
 #include "joint_group.h"
 #include "outbox.h"
@@ -40,8 +40,8 @@ using Later = std::function<void(Answer)>;
 
 // What devices share.
 struct Services {
-  Errands& errands;
-  Errands& long_errands;  // with work that would delay the others
+  AsyncRequests& async_requests;
+  AsyncRequests& long_requests;  // with work that would delay the others
   Timeline& timeline;
   RealTime& real_time;
 };
@@ -68,7 +68,7 @@ class Device {
   const std::shared_ptr<Source>& source() const { return source_; }
   const std::shared_ptr<Source>& companion() const { return companion_; }
 
-  // Counted per client. Refused while there is nothing to show.
+  // Counted per client. Rejected while there is nothing to show.
   base::Result<void> subscribe(Client& client);
   // False when it was not subscribed.
   bool unsubscribe(Client& client);
@@ -102,7 +102,7 @@ class Device {
   virtual void on_unused() {}
   // False for devices that never have data.
   virtual bool has_data() const { return true; }
-  // The reason that subscriptions are refused for; none: they are accepted.
+  // The reason that subscriptions are rejected for; none: they are accepted.
   virtual base::Result<void> check() const { return {}; }
 
   std::uint32_t port() const { return robot_; }

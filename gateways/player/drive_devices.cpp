@@ -50,22 +50,22 @@ Drive::~Drive() = default;
 
 bool Drive::tell(Client& client, shm::CommandKind kind, std::span<const double> values) {
   if (!iface().command(kind, values)) return false;
-  commander_ = &client;
+  commanding_client_ = &client;
   return true;
 }
 
 void Drive::take_over(Client& client) {
-  if (commander_ != nullptr && iface().is_commander()) {
-    commander_ = &client;
+  if (commanding_client_ != nullptr && iface().is_commanding()) {
+    commanding_client_ = &client;
   } else {
     command_velocity(client, {});
   }
 }
 
 void Drive::forget(Client& client) {
-  if (commander_ != &client) return;
-  commander_ = nullptr;
-  if (!source() || !iface().is_commander()) return;  // somebody else drives
+  if (commanding_client_ != &client) return;
+  commanding_client_ = nullptr;
+  if (!source() || !iface().is_commanding()) return;  // somebody else drives
   // Fails when the simulator is gone, and the robot with it.
   static_cast<void>(iface().command(shm::CommandKind::velocity, {}));
 }
@@ -165,7 +165,7 @@ void Position2d::steer(Client& client, const std::string& payload) {
 
 void Position2d::go_on(const shm::Position2dSample& sample) {
   if (pursuer_ == nullptr) return;
-  if (!iface().is_commander()) return end_goal();  // somebody else drives now
+  if (!iface().is_commanding()) return end_goal();  // somebody else drives now
   if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets) return give_up();
   resets_ = sample.stamp.resets;
   const shm::PlanarPose odometry{sample.odometry[0], sample.odometry[1], sample.odometry[2]};
@@ -187,7 +187,7 @@ void Position2d::end_goal() {
 
 void Position2d::give_up() {
   if (pursuer_ == nullptr) return;
-  if (iface().is_commander()) command_velocity(*pursuer_, std::array{0.0, 0.0, 0.0});
+  if (iface().is_commanding()) command_velocity(*pursuer_, std::array{0.0, 0.0, 0.0});
   end_goal();
 }
 
@@ -286,7 +286,7 @@ void Position3d::obey(Client& client, std::uint8_t subtype, const std::string& p
 }
 
 void Position3d::give_up() {
-  if (pursuer_ != nullptr && iface().is_commander()) command_velocity(*pursuer_, std::array<double, 6>{});
+  if (pursuer_ != nullptr && iface().is_commanding()) command_velocity(*pursuer_, std::array<double, 6>{});
   pursuer_ = nullptr;
 }
 

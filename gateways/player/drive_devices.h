@@ -27,7 +27,7 @@ class Drive : public Device {
   std::optional<Answer> switch_motors(const std::string& payload, const Later& later);
 
  private:
-  Client* commander_ = nullptr;
+  Client* commanding_client_ = nullptr;
 };
 
 // Also drives to poses of its odometry and keeps headings: one velocity per sample, as shm/pose_control.h says. That ends with any other

@@ -17,7 +17,7 @@ namespace gateway {
 namespace {
 
 // What an event is about: the kind in the upper half of the tag, which one in the lower.
-enum class Kind : std::uint32_t { signal, alarm, errand, long_errand, port, session };
+enum class Kind : std::uint32_t { signal, alarm, async_request, long_request, port, session };
 constexpr std::uint64_t tag(Kind kind, std::uint64_t which = 0) { return static_cast<std::uint64_t>(kind) << 56 | which; }
 constexpr Kind kind_of(std::uint64_t value) { return static_cast<Kind>(value >> 56); }
 constexpr std::uint64_t which_of(std::uint64_t value) { return value & ((std::uint64_t{1} << 56) - 1); }
@@ -36,10 +36,10 @@ Gateway::Gateway(Options options)
     : options_(std::move(options)),
       descriptors_(base::raise_descriptor_limit()),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
-      errands_(options_.server_id),
-      long_errands_(options_.server_id),
+      async_requests_(options_.server_id),
+      long_requests_(options_.server_id),
       simulator_(
-          options_.server_id, errands_, real_time_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
+          options_.server_id, async_requests_, real_time_, [this](const std::vector<ListedIface>& ifaces) { arrange(ifaces); },
           [this] { lose(); }) {}
 
 Gateway::~Gateway() {
@@ -64,18 +64,18 @@ base::Result<void> Gateway::run() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   signals_ = ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || errands_.descriptor() < 0 || long_errands_.descriptor() < 0)
+  if (epoll_ < 0 || signals_ < 0 || alarm_.descriptor() < 0 || async_requests_.descriptor() < 0 || long_requests_.descriptor() < 0)
     return base::Error{"no file descriptors left"};
   add(signals_, tag(Kind::signal));
   add(alarm_.descriptor(), tag(Kind::alarm));
-  add(errands_.descriptor(), tag(Kind::errand));
-  add(long_errands_.descriptor(), tag(Kind::long_errand));
+  add(async_requests_.descriptor(), tag(Kind::async_request));
+  add(long_requests_.descriptor(), tag(Kind::long_request));
   if (options_.config) {
     for (const ConfiguredPort& port : *options_.config) {
       if (auto good = open_port(port.port); !good) return good;
     }
   }
-  if (const auto words = describe(options_.door, options_.address); !words.empty())
+  if (const auto words = describe(options_.access, options_.address); !words.empty())
     base::log(base::Level::warn, "player-gateway", "{}", words);
   simulator_.look();
   if (!simulator_.is_there()) base::log(base::Level::info, "player-gateway", "waiting for simulator {}", options_.server_id);
@@ -106,10 +106,10 @@ void Gateway::handle(const epoll_event& event) {
     case Kind::alarm:
       alarm_.clear();
       return take_samples();
-    case Kind::errand:
-      return errands_.deliver();
-    case Kind::long_errand:
-      return long_errands_.deliver();
+    case Kind::async_request:
+      return async_requests_.deliver();
+    case Kind::long_request:
+      return long_requests_.deliver();
     case Kind::port:
       return accept(ports_[which]);
     case Kind::session:
@@ -166,7 +166,7 @@ void Gateway::serve_ports(std::vector<PortPlan> plans) {
 base::Result<void> Gateway::open_port(std::uint16_t number) {
   auto listener = Listener::open(options_.address, number);
   if (!listener) return listener.error();
-  const Services services{errands_, long_errands_, timeline_, real_time_};
+  const Services services{async_requests_, long_requests_, timeline_, real_time_};
   auto robot = std::make_unique<Robot>(listener->port(), services);
   add(listener->socket(), tag(Kind::port, ports_.size()));
   ports_.push_back({std::move(*listener), std::move(robot), ""});
@@ -214,14 +214,14 @@ void Gateway::accept(Port& port) {
       return set_accepting(false);
     }
     if (accepted.socket < 0) return;
-    const Entry entry = options_.door.entry(accepted.socket);
+    const Entry entry = options_.access.entry(accepted.socket);
     if (entry == Entry::refused || !make_room()) {
       ::close(accepted.socket);
       refuse(port, accepted.peer, entry == Entry::refused ? "of another account or host" : "too many clients");
       continue;
     }
     const std::uint64_t id = next_session_++;
-    auto session = std::make_unique<Session>(accepted.socket, std::move(accepted.peer), options_.door, entry == Entry::needs_key,
+    auto session = std::make_unique<Session>(accepted.socket, std::move(accepted.peer), options_.access, entry == Entry::needs_key,
                                              *port.robot, timeline_);
     session->known_events = EPOLLIN;
     add(accepted.socket, tag(Kind::session, id));
@@ -245,7 +245,7 @@ void Gateway::refuse(const Port& port, const std::string& peer, const std::strin
     ++refusals_.untold;
     return;
   }
-  base::log(base::Level::warn, "player-gateway", "port {}: {} refused: {}{}", port.robot->port(), peer, why,
+  base::log(base::Level::warn, "player-gateway", "port {}: {} rejected: {}{}", port.robot->port(), peer, why,
             refusals_.untold > 0 ? fmt::format(" ({} others before it)", refusals_.untold) : std::string());
   refusals_ = {now, 0};
 }

@@ -1,7 +1,8 @@
 // The gateway: ports, clients and the simulator in one event loop. One thread.
 //
-// Three more threads: that of alarm.h sleeps on the futexes of all subscribed ifaces. Two of errands.h send requests to the simulator, one
-// of them those with expensive replies, such as maps. So samples are not polled, and a hanging simulator does not delay a client.
+// Three more threads: that of alarm.h sleeps on the futexes of all subscribed ifaces. Two of async_requests.h send requests to the
+// simulator, one of them those with expensive replies, such as maps. So samples are not polled, and a hanging simulator does not delay a
+// client.
 #pragma once
 
 #include <sys/epoll.h>
@@ -14,10 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "access_policy.h"
 #include "base/result.h"
 #include "common/alarm.h"
-#include "common/errands.h"
-#include "door.h"
+#include "common/async_requests.h"
 #include "listener.h"
 #include "mapping.h"
 #include "real_time.h"
@@ -32,7 +33,7 @@ struct Options {
   std::uint32_t server_id = 0;
   std::string address = "127.0.0.1";
   std::uint16_t first_port = 6665;  // 0: any free ones
-  Door door;
+  AccessPolicy access;
   std::optional<std::vector<ConfiguredPort>> config;
 };
 
@@ -73,7 +74,7 @@ class Gateway {
   int epoll_ = -1, signals_ = -1;
   Timeline timeline_;
   RealTime real_time_;
-  Errands errands_, long_errands_;
+  AsyncRequests async_requests_, long_requests_;
   Alarm alarm_;
   Simulator simulator_;
   std::vector<Port> ports_;  // only ever more

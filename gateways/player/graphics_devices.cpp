@@ -128,11 +128,11 @@ void Graphics::draw() {
   if (iface().type() == shm::IfaceType::simulation) return spawn(std::nullopt);
   const bool is_flat = iface().type() == shm::IfaceType::position2d;
   const std::string model = is_flat ? iface().info<shm::Position2dInfo>().model : iface().info<shm::Position3dInfo>().model;
-  services_.errands.post(shm::GetPoseRequest{model}, later([](Graphics& self, const base::Result<shm::Reply>& reply) {
-                           if (!reply) return self.end_drawing();
-                           const double* v = reply->values;
-                           self.spawn(shm::Pose{v[0], v[1], v[2], v[3], v[4], v[5], v[6]});
-                         }));
+  services_.async_requests.post(shm::GetPoseRequest{model}, later([](Graphics& self, const base::Result<shm::Reply>& reply) {
+                                  if (!reply) return self.end_drawing();
+                                  const double* v = reply->values;
+                                  self.spawn(shm::Pose{v[0], v[1], v[2], v[3], v[4], v[5], v[6]});
+                                }));
 }
 
 void Graphics::spawn(const std::optional<shm::Pose>& pose) {
@@ -144,19 +144,20 @@ void Graphics::spawn(const std::optional<shm::Pose>& pose) {
   request.has_pose = pose.has_value();
   if (pose) request.pose = *pose;
   request.is_confined = true;
-  services_.errands.post(std::move(request), later([name](Graphics& self, const base::Result<shm::Reply>& reply) {
-                           if (!reply) {
-                             base::log(base::Level::warn, "player-gateway", "{}: {}", player::to_text(self.address()),
-                                       reply.error().message);
-                             return self.end_drawing();
-                           }
-                           self.erase(std::exchange(self.drawn_, name));
-                         }));
+  services_.async_requests.post(std::move(request), later([name](Graphics& self, const base::Result<shm::Reply>& reply) {
+                                  if (!reply) {
+                                    base::log(base::Level::warn, "player-gateway", "{}: {}", player::to_text(self.address()),
+                                              reply.error().message);
+                                    return self.end_drawing();
+                                  }
+                                  self.erase(std::exchange(self.drawn_, name));
+                                }));
 }
 
 void Graphics::erase(const std::string& model) {
   if (model.empty()) return end_drawing();
-  services_.errands.post(shm::DeleteRequest{model}, later([](Graphics& self, const base::Result<shm::Reply>&) { self.end_drawing(); }));
+  services_.async_requests.post(shm::DeleteRequest{model},
+                                later([](Graphics& self, const base::Result<shm::Reply>&) { self.end_drawing(); }));
 }
 
 void Graphics::end_drawing() {

@@ -25,7 +25,7 @@ void JointDevice::choose(const JointGroup& group) { group_ = group; }
 
 void JointDevice::on_attach() {
   commands_.reset();
-  commander_ = nullptr;
+  commanding_client_ = nullptr;
   on_unused();
   const auto chosen = part_.choose(iface(), base::join(group_.joints, ","));
   if (!chosen) part_.clear();
@@ -98,15 +98,15 @@ void JointDevice::obey(Client& client, std::uint8_t subtype, const std::string& 
     if (waiting_.size() < most_waiting) waiting_.push_back({&client, subtype, payload});
     return;
   }
-  commander_ = &client;
+  commanding_client_ = &client;
   do_command(subtype, payload);
   send();
 }
 
 void JointDevice::forget(Client& client) {
   std::erase_if(waiting_, [&](const Waiting& one) { return one.client == &client; });
-  if (commander_ != &client) return;
-  commander_ = nullptr;
+  if (commanding_client_ != &client) return;
+  commanding_client_ = nullptr;
   let_go();
   if (!source() || !commands_) return;
   for (std::size_t i = 0; i < part_.size(); ++i) {
@@ -163,7 +163,7 @@ std::string ActArray::geometry() const {
   return player::encode(all, part().size() > 0 ? to_pose3d(place(0)) : player::Pose3d{});
 }
 
-// The geometry is always answered: client libraries do not see a refusal, and use what they have not got.
+// The geometry is always answered: client libraries do not see a rejection, and use what they have not got.
 std::optional<Answer> ActArray::answer(std::uint8_t subtype, const std::string& payload, const Later&) {
   constexpr std::uint8_t power = 1, brakes = 2, get_geometry = 3, speed = 4;
   if (subtype == get_geometry) return ack(geometry());

@@ -60,7 +60,7 @@ class JointDevice : public Device {
   JointGroup group_;
   shm::JointPart part_;
   std::optional<shm::Iface> commands_;
-  Client* commander_ = nullptr;
+  Client* commanding_client_ = nullptr;
   bool has_state_ = false;       // since somebody uses the device
   bool is_release_due_ = false;  // with the first sample
   std::deque<Waiting> waiting_;  // commands that came before the first sample

@@ -21,8 +21,8 @@ void block_signals() {
 }
 
 const base::Check is_key{[](const std::string& text) {
-                           return text.empty() || text.size() > gateway::Door::max_key
-                                      ? "key must have 1 to " + std::to_string(gateway::Door::max_key) + " characters"
+                           return text.empty() || text.size() > gateway::AccessPolicy::max_key
+                                      ? "key must have 1 to " + std::to_string(gateway::AccessPolicy::max_key) + " characters"
                                       : std::string();
                          },
                          "KEY"};
@@ -51,11 +51,11 @@ int main(int argc, char** argv) {
                    ->check(base::integer_between(0, 65535))
                    ->capture_default_str();
   app.add_option("--address", options.address, "Address to listen on; 0.0.0.0: all")->capture_default_str();
-  app.add_option("--auth", options.door.key,
+  app.add_option("--auth", options.access.key,
                  "Also serve clients of other accounts and hosts that send this key (Player's authentication request)")
       ->check(is_key)
       ->envname("RTMSIM_PLAYER_AUTH");
-  app.add_flag("--open", options.door.is_open)->description("Accept every client that reaches the ports, without a key");
+  app.add_flag("--open", options.access.is_open)->description("Accept every client that reaches the ports, without a key");
   app.add_option("--config", config, "Mapping file, or a configuration file of Player: devices of each port (docs/player.md)")
       ->check(base::existing_file())
       ->excludes(port);

@@ -60,7 +60,7 @@ void MapDevice::make(std::function<void(const shm::WorldMap*)> done) {
     options.may_coarsen = true;
     *made = reply ? shm::make_map(reply->text, options) : base::Result<shm::WorldMap>(reply.error());
   };
-  services_.long_errands.post(
+  services_.long_requests.post(
       shm::ExportRequest{true},
       [made, map = map_, done = std::move(done)](const base::Result<shm::Reply>& reply) {
         if (!reply || !*made) {
@@ -70,7 +70,7 @@ void MapDevice::make(std::function<void(const shm::WorldMap*)> done) {
         *map = std::move(**made);
         done(map.get());
       },
-      Errands::limit, work);
+      AsyncRequests::limit, work);
 }
 
 std::vector<player::Segment> MapDevice::lines_of(const shm::WorldMap& map) {

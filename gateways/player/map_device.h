@@ -11,7 +11,7 @@
 
 namespace gateway {
 
-// Makes the map, in the thread of the long errands: cells grow where it would have more than 4096 a side.
+// Makes the map, in the thread of the long async_requests: cells grow where it would have more than 4096 a side.
 class MapDevice : public Device {
  public:
   using Device::Device;

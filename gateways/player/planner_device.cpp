@@ -65,12 +65,13 @@ void Planner::plan() {
   if (std::hypot(to[0] - from[0], to[1] - from[1]) > farthest)
     return take(wish_->number, base::Error{fmt::format("the goal is more than {} m away", farthest)});
   wish_->is_asked = true;
-  services_.long_errands.post(
+  services_.long_requests.post(
       shm::ExportRequest{true},
       [weak = std::weak_ptr(self_), way, number = wish_->number](const base::Result<shm::Reply>&) {
         if (const auto self = weak.lock()) (*self)->take(number, *way);
       },
-      Errands::limit, [way, from, to, room = radius()](const base::Result<shm::Reply>& reply) { *way = planned(reply, from, to, room); });
+      AsyncRequests::limit,
+      [way, from, to, room = radius()](const base::Result<shm::Reply>& reply) { *way = planned(reply, from, to, room); });
 }
 
 void Planner::take(std::uint64_t number, const base::Result<std::vector<shm::MapPlace>>& way) {
@@ -94,7 +95,7 @@ shm::PlanarPose Planner::waypoint(std::size_t index) const {
 
 void Planner::go_on(const shm::Position2dSample& sample, const shm::PlanarPose& now) {
   if (way_.empty() || is_done_ || !is_enabled_) return;
-  if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets || (is_driving_ && !iface().is_commander())) {
+  if (resets_.value_or(sample.stamp.resets) != sample.stamp.resets || (is_driving_ && !iface().is_commanding())) {
     stop();
     return end();
   }
@@ -153,7 +154,7 @@ std::optional<Answer> Planner::answer(std::uint8_t subtype, const std::string& p
 }
 
 void Planner::stop() {
-  if (is_driving_ && pursuer_ != nullptr && source() && iface().is_commander()) command_velocity(*pursuer_, std::array{0.0, 0.0, 0.0});
+  if (is_driving_ && pursuer_ != nullptr && source() && iface().is_commanding()) command_velocity(*pursuer_, std::array{0.0, 0.0, 0.0});
   is_driving_ = false;
   leg_.reset();
 }

@@ -14,7 +14,7 @@
 namespace gateway {
 
 // The iface is the drive, the companion the true pose of the robot, which is what it goes by. A goal makes the map, in the thread of the
-// long errands, and a way over it (shm/map_path.h); then each sample of the drive gives the next velocity (shm/pose_control.h). What
+// long async_requests, and a way over it (shm/map_path.h); then each sample of the drive gives the next velocity (shm/pose_control.h). What
 // moves is not on the map. A way ends like the ways of a Position2d: with any other command, when the client that gave the goal lets go,
 // and when the world is reset. Cars, which can't turn on the spot, have no way.
 class Planner final : public Drive {

@@ -8,7 +8,7 @@
 
 namespace gateway {
 
-// Marks of a detector, or models of a logical camera. SET_FOV and SET_ID are refused: the world has them.
+// Marks of a detector, or models of a logical camera. SET_FOV and SET_ID are rejected: the world has them.
 class Fiducial final : public Device {
  public:
   using Device::Device;

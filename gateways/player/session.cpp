@@ -26,10 +26,10 @@ void set_flag(int socket, int level, int option) {
 
 }  // namespace
 
-Session::Session(int socket, std::string peer, const Door& door, bool needs_key, Robot& robot, const Timeline& timeline)
+Session::Session(int socket, std::string peer, const AccessPolicy& access, bool needs_key, Robot& robot, const Timeline& timeline)
     : socket_(socket),
       peer_(std::move(peer)),
-      door_(door),
+      access_(access),
       robot_(robot),
       timeline_(timeline),
       outbox_(robot.port()),
@@ -117,7 +117,7 @@ void Session::handle(const player::Message& message) {
 void Session::authenticate(const player::Message& message) {
   constexpr int most_wrong_keys = 3;
   const auto key = player::decode_key(message.payload);
-  const bool is_right = key && door_.fits(*key);
+  const bool is_right = key && access_.fits(*key);
   needs_key_ = needs_key_ && !is_right;
   answer(message.header, is_right ? ack() : nack());
   if (!is_right && needs_key_ && ++wrong_keys_ == most_wrong_keys) end("has sent three keys that are wrong");
@@ -184,7 +184,7 @@ void Session::complain(const player::Address& device, std::uint8_t command, cons
   base::log(base::Level::warn, "player-gateway", "port {}: {}: {}", robot_.port(), peer_, what);
 }
 
-// Clients look into the answer without asking whether there is one, so also a refusal has it.
+// Clients look into the answer without asking whether there is one, so also a rejection has it.
 void Session::open_or_close(const player::Message& message) {
   auto request = player::decode_device_request(message.payload);
   if (!request) return answer(message.header, nack());
@@ -194,7 +194,7 @@ void Session::open_or_close(const player::Message& message) {
   if (request->access == static_cast<std::uint32_t>(player::Access::open)) {
     const auto opened = device != nullptr ? device->subscribe(*this) : base::Result<void>(why_unknown(request->address));
     is_done = opened.ok();
-    if (!opened) complain(request->address, 0, "subscription refused: " + opened.error().message);
+    if (!opened) complain(request->address, 0, "subscription rejected: " + opened.error().message);
   } else if (device != nullptr && request->access == static_cast<std::uint32_t>(player::Access::close)) {
     is_done = device->unsubscribe(*this);
     if (!device->is_subscribed(*this)) outbox_.forget(request->address);

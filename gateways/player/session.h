@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "door.h"
+#include "access_policy.h"
 #include "outbox.h"
 #include "protocol/message.h"
 #include "robot.h"
@@ -22,9 +22,9 @@ class Session final : public Client {
   // Answers that wait [bytes] before the client is no longer listened to.
   static constexpr std::size_t max_answers = 1 << 18;
 
-  // Takes the connected, non-blocking socket and says hello. `door`, `robot` and `timeline` outlive the session. A client that needs the
+  // Takes the connected, non-blocking socket and says hello. `access`, `robot` and `timeline` outlive the session. A client that needs the
   // key is served once it has sent it.
-  Session(int socket, std::string peer, const Door& door, bool needs_key, Robot& robot, const Timeline& timeline);
+  Session(int socket, std::string peer, const AccessPolicy& access, bool needs_key, Robot& robot, const Timeline& timeline);
   ~Session() override;  // leaves all devices and closes
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -64,7 +64,7 @@ class Session final : public Client {
 
   const int socket_;
   const std::string peer_;
-  const Door& door_;
+  const AccessPolicy& access_;
   Robot& robot_;
   const Timeline& timeline_;
   player::MessageParser parser_{max_payload};

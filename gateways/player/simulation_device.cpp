@@ -37,14 +37,14 @@ std::optional<Answer> Simulation::answer(std::uint8_t subtype, const std::string
   if (name.empty()) return nack();
   switch (subtype) {
     case get_pose2d:
-      services_.errands.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
+      services_.async_requests.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
         if (!reply) return later(nack());
         const auto pose = to_pose3d(pose_of(*reply));
         later(ack(player::encode(player::NamedPose2d{name, {pose.x, pose.y, pose.yaw}})));
       });
       return std::nullopt;
     case get_pose3d:
-      services_.errands.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
+      services_.async_requests.post(shm::GetPoseRequest{name}, [later, name](const base::Result<shm::Reply>& reply) {
         if (!reply) return later(nack());
         later(ack(player::encode(player::NamedPose3d{name, to_pose3d(pose_of(*reply)), static_cast<double>(reply->sim_time_ns) / 1e3})));
       });
@@ -107,12 +107,12 @@ void Simulation::obey(Client&, std::uint8_t subtype, const std::string&) {
     base::log(
         base::Level::warn, "player-gateway",
         "SAVE of simulation is ignored: a world is written by its author, not by the simulator; rtse record keeps what happens in it");
-  if (subtype == reset) services_.errands.post(shm::ResetRequest{}, nobody);
+  if (subtype == reset) services_.async_requests.post(shm::ResetRequest{}, nobody);
   if (subtype != pause || !iface().read()) return;
   if (iface().sample<shm::SimulationSample>().paused != 0) {
-    services_.errands.post(shm::RunRequest{}, nobody);
+    services_.async_requests.post(shm::RunRequest{}, nobody);
   } else {
-    services_.errands.post(shm::PauseRequest{}, nobody);
+    services_.async_requests.post(shm::PauseRequest{}, nobody);
   }
 }
 

@@ -25,10 +25,10 @@ std::chrono::nanoseconds age_of(const shm::Iface& iface) {
 
 std::chrono::nanoseconds age_of(const shm::Stamp& stamp) { return std::chrono::nanoseconds(shm::wall_ns() - stamp.wall_time_ns); }
 
-Simulator::Simulator(std::uint32_t server_id, Errands& errands, RealTime& real_time,
+Simulator::Simulator(std::uint32_t server_id, AsyncRequests& async_requests, RealTime& real_time,
                      std::function<void(const std::vector<ListedIface>&)> on_list, std::function<void()> on_loss)
     : SimulatorLink(server_id, "player-gateway", std::move(on_loss)),
-      errands_(errands),
+      async_requests_(async_requests),
       real_time_(real_time),
       on_list_(std::move(on_list)) {}
 
@@ -45,7 +45,7 @@ void Simulator::on_sample() {
 }
 
 void Simulator::list() {
-  errands_.post(shm::ListRequest{}, [this, met = met()](const base::Result<shm::Reply>& reply) {
+  async_requests_.post(shm::ListRequest{}, [this, met = met()](const base::Result<shm::Reply>& reply) {
     auto ifaces = reply ? parse_list(reply->text) : base::Result<std::vector<ListedIface>>(reply.error());
     const bool is_known = ifaces && met == this->met() && is_there();
     listed(is_known);

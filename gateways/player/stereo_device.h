@@ -7,7 +7,7 @@
 
 namespace gateway {
 
-// The companion is the right camera. Disparity and points are those of disparity.h; cameras that are no pair are refused.
+// The companion is the right camera. Disparity and points are those of disparity.h; cameras that are no pair are rejected.
 class Stereo final : public Device {
  public:
   using Device::Device;

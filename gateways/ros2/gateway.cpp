@@ -48,18 +48,19 @@ std::set<std::string> robots_in(const Listed& listed) {
 Gateway::Gateway(Options options)
     : options_(std::move(options)),
       started_(now_as_text()),
-      errands_(options_.server_id),
+      async_requests_(options_.server_id),
       steps_(options_.server_id),
-      turns_(options_.is_lockstep ? std::make_unique<Turns>(options_.server_id, tick_period(options_.clock_rate)) : nullptr),
+      lock_step_(options_.is_lockstep ? std::make_unique<LockStepParticipant>(options_.server_id, tick_period(options_.clock_rate))
+                                      : nullptr),
       bell_([this] {
-        if (turns_) turns_->interrupt();
+        if (lock_step_) lock_step_->interrupt();
       }),
       world_(
-          options_.server_id, errands_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
+          options_.server_id, async_requests_, [this](const Listed& listed) { arrange(listed); }, [this] { lose(); }),
       waits_(options_.waits) {}
 
 Gateway::~Gateway() {
-  if (turns_) turns_->leave();
+  if (lock_step_) lock_step_->leave();
   robots_.clear();
   services_.reset();
   node_.reset();
@@ -87,10 +88,10 @@ base::Result<void> Gateway::open() {
   Writer* tf = options_.naming.has_tf_per_robot ? nullptr : node_->advertise<ros::TFMessage>("/tf", {false, 100});
   if (!options_.naming.has_tf_per_robot) tf_static_ = node_->advertise<ros::TFMessage>("/tf_static", {true, 1});
   rosout_ = complete_node(*node_, {.are_served = options_.has_parameters});
-  services_ = std::make_unique<SimulationServices>(*node_, world_, errands_, steps_, options_.service_prefix, namespaces());
+  services_ = std::make_unique<SimulationServices>(*node_, world_, async_requests_, steps_, options_.service_prefix, namespaces());
   shared_ = std::make_unique<Shared>(Shared{*participant_, *graph_, world_, options_.naming, tf, options_.command_timeout,
                                             [this](const Arrival& arrival) { return waits_.arrive(arrival); }, options_.has_joint_tf});
-  if (!bell_.ring_for(signals_) || !bell_.ring_for(errands_.descriptor()) || !bell_.ring_for(steps_.descriptor()))
+  if (!bell_.ring_for(signals_) || !bell_.ring_for(async_requests_.descriptor()) || !bell_.ring_for(steps_.descriptor()))
     return base::Error{"no file descriptors left"};
   return {};
 }
@@ -119,9 +120,9 @@ void Gateway::turn_loop() {
 }
 
 void Gateway::sleep(std::uint32_t rings) {
-  if (!turns_ || tick_ || !turns_->join()) return bell_.sleep(ifaces_, rings, idle_wait);
+  if (!lock_step_ || tick_ || !lock_step_->join()) return bell_.sleep(ifaces_, rings, idle_wait);
   if (bell_.rings() != rings) return;
-  const auto tick = turns_->sleep(idle_wait);
+  const auto tick = lock_step_->sleep(idle_wait);
   if (!tick) return;
   // What came before the tick is no answer to it.
   if (const std::uint32_t news = bell_.rings(); news != answered_) {
@@ -162,8 +163,8 @@ void Gateway::choose_sources() {
     if (source->is_read()) watched.push_back(source->segment());
   }
   std::erase(watched, nullptr);
-  if (turns_) watched.clear();  // the ticks say when there is something new
-  if (has_changed && !turns_ && is_paused()) errands_.post(shm::ShowRequest{}, [](const base::Result<shm::Reply>&) {});
+  if (lock_step_) watched.clear();  // the ticks say when there is something new
+  if (has_changed && !lock_step_ && is_paused()) async_requests_.post(shm::ShowRequest{}, [](const base::Result<shm::Reply>&) {});
   if (!has_changed && watched == watched_) return;
   ifaces_.replace(watched);
   watched_ = std::move(watched);
@@ -173,7 +174,7 @@ void Gateway::choose_sources() {
 void Gateway::choose_clock() {
   constexpr double bursts = 200;  // [Hz] of steps together, at most
   const bool is_fast = options_.clock_rate == 0 || options_.clock_rate > bursts / 2;
-  const bool is_wanted = is_fast && !turns_ && clock_ != nullptr && !clock_->readers().empty();
+  const bool is_wanted = is_fast && !lock_step_ && clock_ != nullptr && !clock_->readers().empty();
   const auto wanted = is_wanted ? world_.clock() : nullptr;
   if (wanted == read_clock_) return;
   if (read_clock_) read_clock_->remove_reader();
@@ -209,7 +210,7 @@ void Gateway::answer_bell() {
   signalfd_siginfo signal{};
   if (::read(signals_, &signal, sizeof signal) == sizeof signal) is_over_ = true;
   if (participant_->deliver()) are_sources_due_ = true;
-  errands_.deliver();
+  async_requests_.deliver();
   steps_.deliver();
 }
 
@@ -261,7 +262,7 @@ void Gateway::name_unknown(const Listed& listed) {
   for (const auto& iface : listed.ifaces) known.ifaces.push_back(iface.name);
   for (const auto& robot : robots_) known.types.insert(robot->types().begin(), robot->types().end());
   auto lines = lines_of_unknown_names(options_.naming, options_.waits, known);
-  if (turns_ && world_.clock() && world_.clock()->iface().info<shm::SimulationInfo>().lockstep == 0)
+  if (lock_step_ && world_.clock() && world_.clock()->iface().info<shm::SimulationInfo>().lockstep == 0)
     lines.push_back("--lockstep: time does not wait, because the simulator was started without --lockstep");
   std::ranges::move(lines_of_shared_names(used_names()), std::back_inserter(lines));
   for (const auto& line : lines) {
@@ -360,7 +361,7 @@ void Gateway::tend_tick(Time now) {
       return;
     }
     base::log(base::Level::warn, "ros2-gateway", "{}", words);
-    if (options_.on_timeout == OnTimeout::stop) errands_.post(shm::PauseRequest{}, [](const base::Result<shm::Reply>&) {});
+    if (options_.on_timeout == OnTimeout::stop) async_requests_.post(shm::PauseRequest{}, [](const base::Result<shm::Reply>&) {});
   }
   if (waits_.is_waiting()) {
     // Readers of the clock are best effort: it may be lost.
@@ -368,7 +369,7 @@ void Gateway::tend_tick(Time now) {
     return;
   }
   tick_.reset();
-  turns_->finish();
+  lock_step_->finish();
 }
 
 // ---- losses ----

@@ -1,5 +1,5 @@
 // The gateway: robots, clock and services in one event loop. One thread. Other threads help it: see dds/participant.h, bell.h and
-// common/errands.h.
+// common/async_requests.h.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,11 @@
 #include "base/result.h"
 #include "bell.h"
 #include "graph.h"
+#include "lock_step_participant.h"
 #include "log_topic.h"
 #include "naming.h"
 #include "robot.h"
 #include "simulation.h"
-#include "turns.h"
 #include "unknown_names.h"
 #include "waits.h"
 #include "world.h"
@@ -81,8 +81,8 @@ class Gateway {
   const std::string started_;  // when
   LogTopic logs_;
   int signals_ = -1;
-  Errands errands_, steps_;       // steps: takes long
-  std::unique_ptr<Turns> turns_;  // before the bell, which interrupts it
+  AsyncRequests async_requests_, steps_;            // steps: takes long
+  std::unique_ptr<LockStepParticipant> lock_step_;  // before the bell, which interrupts it
   Bell bell_;
   gateway::WatchedIfaces ifaces_;
   World world_;

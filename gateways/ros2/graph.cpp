@@ -68,8 +68,9 @@ std::string misfit(const EndpointSettings& own, bool is_writer, const Peer& peer
   if (!is_writer && own.is_reliable && !peer.is_reliable) return name + " is requested as reliable, but best effort is offered by a writer";
   if (!is_writer && own.is_transient && !peer.is_transient)
     return name + " is requested as transient local, but volatile is offered by a writer";
-  if (!peer.special.empty())
-    return name + " has the default QoS, but " + peer.special + " is " + (is_writer ? "requested by a reader" : "offered by a writer");
+  if (!peer.unmatched_policy.empty())
+    return name + " has the default QoS, but " + peer.unmatched_policy + " is " +
+           (is_writer ? "requested by a reader" : "offered by a writer");
   return "";
 }
 

@@ -41,14 +41,14 @@ std::string naming_text(const YAML::Node& node, const std::string& key, const ch
                                         (meant.empty() ? "; expected " + base::join(expected, ", ") + " or " + known.back() : meant)};
 }
 
-double naming_number(const YAML::Node& node, const std::string& key, double least, double most, const char* what) {
+double naming_number(const YAML::Node& node, const std::string& key, double min, double max, const char* what) {
   double value = 0;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= least && value <= most)) throw_wrong(node, key, what);
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value >= min && value <= max)) throw_wrong(node, key, what);
   return value;
 }
 
-double naming_integer(const YAML::Node& node, const std::string& key, double least, double most, const char* what) {
-  const double value = naming_number(node, key, least, most, what);
+double naming_integer(const YAML::Node& node, const std::string& key, double min, double max, const char* what) {
+  const double value = naming_number(node, key, min, max, what);
   if (value != std::floor(value)) throw_wrong(node, key, what);
   return value;
 }

@@ -128,7 +128,7 @@ base::Result<PortDomainSettings> settings_of_process() {
 }
 
 bool complain(const coil::Properties& connection, const base::Error& error) {
-  base::log(base::Level::error, "ros2", "connection refused: {}: {}", connection.getProperty("connector_name"), error.message);
+  base::log(base::Level::error, "ros2", "connection rejected: {}: {}", connection.getProperty("connector_name"), error.message);
   return false;
 }
 

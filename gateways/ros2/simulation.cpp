@@ -107,15 +107,15 @@ bool is_world(const std::string& frame) { return frame.empty() || frame == "worl
 
 }  // namespace
 
-SimulationServices::SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix,
+SimulationServices::SimulationServices(Node& node, World& world, AsyncRequests& async_requests, AsyncRequests& steps, std::string prefix,
                                        Namespaces namespaces)
     : node_(node),
       world_(world),
-      errands_(errands),
+      async_requests_(async_requests),
       steps_(steps),
       prefix_(std::move(prefix)),
       namespaces_(std::move(namespaces)),
-      steps_action_(node, world, errands, steps, name("simulate_steps")) {
+      steps_action_(node, world, async_requests, steps, name("simulate_steps")) {
   serve_time();
   serve_entities();
   serve_spawning();
@@ -132,7 +132,7 @@ ros::SimulationState SimulationServices::state() const {
 }
 
 void SimulationServices::ask(shm::Request request, std::function<void(const Result&)> done) {
-  errands_.post(std::move(request), [done = std::move(done)](const base::Result<shm::Reply>& reply) {
+  async_requests_.post(std::move(request), [done = std::move(done)](const base::Result<shm::Reply>& reply) {
     done(reply ? good() : bad(SimulationResult::failed, reply.error().message));
   });
 }
@@ -219,7 +219,7 @@ void SimulationServices::serve_time() {
 
 void SimulationServices::ask_entities(const ros::EntityFilters& filters, OnEntities done) {
   if (const auto problem = problem_of(filters)) return done({}, bad(problem->result, problem->error_message));
-  errands_.post(shm::ListRequest{}, [this, filters, done = std::move(done)](const base::Result<shm::Reply>& reply) {
+  async_requests_.post(shm::ListRequest{}, [this, filters, done = std::move(done)](const base::Result<shm::Reply>& reply) {
     if (!reply) return done({}, bad(SimulationResult::failed, reply.error().message));
     auto entities = filtered(entities_in(reply->text), filters);
     if (filters.bounds.type == ros::Bounds::empty) return done(entities, good());
@@ -231,7 +231,7 @@ void SimulationServices::ask_entities(const ros::EntityFilters& filters, OnEntit
 }
 
 void SimulationServices::ask_boxes(const std::string& entity, OnBoxes done) {
-  errands_.post(shm::TreeRequest{entity, true}, [done = std::move(done)](const base::Result<shm::Reply>& tree) {
+  async_requests_.post(shm::TreeRequest{entity, true}, [done = std::move(done)](const base::Result<shm::Reply>& tree) {
     if (!tree) return done({}, bad(SimulationResult::failed, tree.error().message));
     done(boxes_in(tree->text), good());
   });
@@ -329,7 +329,7 @@ void SimulationServices::serve_spawnables() {
         if (!request.sources.empty())
           return reply(
               Response{bad(SimulationResult::unsupported, "sources must be empty: the model path of the simulator is listed"), {}});
-        errands_.post(shm::ModelsRequest{}, [reply](const base::Result<shm::Reply>& models) {
+        async_requests_.post(shm::ModelsRequest{}, [reply](const base::Result<shm::Reply>& models) {
           if (!models) return reply(Response{bad(SimulationResult::failed, models.error().message), {}});
           Response response{good(), {}};
           for (const auto& model : models_in(models->text)) response.spawnables.push_back({"model://" + model, "", {}});
@@ -354,7 +354,7 @@ void SimulationServices::spawn(const ros::SpawnEntityRequest& request, const OnS
   const std::string frame = request.initial_pose.header.frame_id;
   if (!pose) return refuse(invalid_pose, "initial_pose must have a finite orientation and a position below 1e12 m");
   if (is_world(frame)) return spawn_at(request, *pose, reply);
-  errands_.post(shm::GetPoseRequest{frame}, [this, request, reply, frame, pose = *pose](const base::Result<shm::Reply>& entity) {
+  async_requests_.post(shm::GetPoseRequest{frame}, [this, request, reply, frame, pose = *pose](const base::Result<shm::Reply>& entity) {
     if (!entity)
       return reply({bad(invalid_pose, "initial_pose must be in the frame world or in that of an entity, got \"" + frame + "\""), ""});
     const double* p = entity->values;
@@ -374,8 +374,8 @@ void SimulationServices::spawn_at(const ros::SpawnEntityRequest& request, const 
     const bool is_path = !request.uri.empty();  // the text is ignored then
     // For clients that may not read all that the simulator may.
     shm::SpawnRequest spawn{is_path ? request.uri : request.resource_string, is_path, wanted, true, pose, true};
-    errands_.post(std::move(spawn), [this, reply, uri = request.uri,
-                                     space = full_namespace(request.entity_namespace)](const base::Result<shm::Reply>& done) {
+    async_requests_.post(std::move(spawn), [this, reply, uri = request.uri,
+                                            space = full_namespace(request.entity_namespace)](const base::Result<shm::Reply>& done) {
       if (!done) return reply(ros::SpawnEntityResponse{bad(code_of_failed_spawn(uri, done.error().message), done.error().message), ""});
       namespaces_.on_spawned(done->message, space);
       reply(ros::SpawnEntityResponse{good(), done->message});
@@ -395,9 +395,9 @@ std::optional<std::string> SimulationServices::problem_of_namespace(const std::s
 }
 
 void SimulationServices::ask_state(const std::string& entity, OnState done) {
-  errands_.post(shm::GetPoseRequest{entity}, [this, entity, done = std::move(done)](const base::Result<shm::Reply>& pose) {
+  async_requests_.post(shm::GetPoseRequest{entity}, [this, entity, done = std::move(done)](const base::Result<shm::Reply>& pose) {
     if (!pose) return done({}, bad(SimulationResult::not_found, pose.error().message));
-    errands_.post(shm::GetVelocityRequest{entity}, [done, place = *pose](const base::Result<shm::Reply>& velocity) {
+    async_requests_.post(shm::GetVelocityRequest{entity}, [done, place = *pose](const base::Result<shm::Reply>& velocity) {
       if (!velocity) return done({}, bad(SimulationResult::failed, velocity.error().message));
       const double* p = place.values;
       const double* v = velocity->values;

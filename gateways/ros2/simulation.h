@@ -28,7 +28,8 @@ class SimulationServices {
  public:
   // `steps`: where steps wait, so that the simulation can be paused meanwhile. `prefix`: "" for the root names, "/sim" for
   // "/sim/get_simulation_state" and so on. All must outlive this object.
-  SimulationServices(Node& node, World& world, Errands& errands, Errands& steps, std::string prefix, Namespaces namespaces);
+  SimulationServices(Node& node, World& world, AsyncRequests& async_requests, AsyncRequests& steps, std::string prefix,
+                     Namespaces namespaces);
 
   // To be called some times a second.
   void tend(std::chrono::steady_clock::time_point now) { steps_action_.tend(now); }
@@ -65,8 +66,8 @@ class SimulationServices {
 
   Node& node_;
   World& world_;
-  Errands& errands_;
-  Errands& steps_;
+  AsyncRequests& async_requests_;
+  AsyncRequests& steps_;
   const std::string prefix_;
   const Namespaces namespaces_;
   StepsAction steps_action_;

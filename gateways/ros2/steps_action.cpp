@@ -35,8 +35,8 @@ std::optional<std::string> problem_of_steps(const World& world, std::uint64_t st
   return std::nullopt;
 }
 
-StepsAction::StepsAction(Node& node, World& world, Errands& errands, Errands& steps, const std::string& name)
-    : world_(world), errands_(errands), steps_(steps) {
+StepsAction::StepsAction(Node& node, World& world, AsyncRequests& async_requests, AsyncRequests& steps, const std::string& name)
+    : world_(world), async_requests_(async_requests), steps_(steps) {
   const std::string front = name + "/_action/";
   feedback_ = node.advertise<ros::SimulateStepsFeedbackMessage>(front + "feedback");
   status_ = node.advertise<ros::GoalStatusArray>(front + "status", {true, 1});
@@ -149,7 +149,7 @@ void StepsAction::tend(std::chrono::steady_clock::time_point now) {
   if (goal->status != GoalStatus::canceling || is_pausing_) return;
   // The steps may not have begun: then it is asked again.
   is_pausing_ = true;
-  errands_.post(shm::PauseRequest{}, [this](const base::Result<shm::Reply>&) { is_pausing_ = false; });
+  async_requests_.post(shm::PauseRequest{}, [this](const base::Result<shm::Reply>&) { is_pausing_ = false; });
 }
 
 }  // namespace ros2

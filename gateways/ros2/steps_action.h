@@ -1,7 +1,7 @@
 // The action SimulateSteps of simulation_interfaces: a paused simulation makes a number of steps, with feedback, and can be ended by a
 // cancel. One goal at a time; a goal that cannot be executed is accepted and aborted, so that its result says why. One thread at a time.
 //
-//   executing ──(all steps made)──> succeeded      ──(paused, reset, refused)──> aborted
+//   executing ──(all steps made)──> succeeded      ──(paused, reset, rejected)──> aborted
 //   executing ──(cancel)──> canceling ──(the steps have ended)──> canceled, or succeeded when they were all made
 #pragma once
 
@@ -26,7 +26,7 @@ std::optional<std::string> problem_of_steps(const World& world, std::uint64_t st
 class StepsAction {
  public:
   // `name`: "/simulate_steps". `steps`: where steps wait. All must outlive this object.
-  StepsAction(Node& node, World& world, Errands& errands, Errands& steps, const std::string& name);
+  StepsAction(Node& node, World& world, AsyncRequests& async_requests, AsyncRequests& steps, const std::string& name);
 
   // Sends feedback, and ends the steps of goals that are canceled; to be called some times a second.
   void tend(std::chrono::steady_clock::time_point now);
@@ -53,8 +53,8 @@ class StepsAction {
   std::uint64_t done_of(const Goal& goal) const;
 
   World& world_;
-  Errands& errands_;
-  Errands& steps_;
+  AsyncRequests& async_requests_;
+  AsyncRequests& steps_;
   Writer* feedback_ = nullptr;
   Writer* status_ = nullptr;
   std::deque<Goal> goals_;  // the oldest first; the last ones that have ended are kept

@@ -55,13 +55,14 @@ std::optional<Listed> parse_listed(const std::string& list, const std::string& t
   }
 }
 
-World::World(std::uint32_t server_id, Errands& errands, std::function<void(const Listed&)> on_list, std::function<void()> on_loss)
-    : SimulatorLink(server_id, "ros2-gateway", std::move(on_loss)), errands_(errands), on_list_(std::move(on_list)) {}
+World::World(std::uint32_t server_id, AsyncRequests& async_requests, std::function<void(const Listed&)> on_list,
+             std::function<void()> on_loss)
+    : SimulatorLink(server_id, "ros2-gateway", std::move(on_loss)), async_requests_(async_requests), on_list_(std::move(on_list)) {}
 
 void World::list() {
-  errands_.post(shm::ListRequest{}, [this, met = met()](const base::Result<shm::Reply>& list) {
+  async_requests_.post(shm::ListRequest{}, [this, met = met()](const base::Result<shm::Reply>& list) {
     if (!list || met != this->met()) return listed(false);
-    errands_.post(shm::TreeRequest{}, [this, met, text = list->text](const base::Result<shm::Reply>& tree) {
+    async_requests_.post(shm::TreeRequest{}, [this, met, text = list->text](const base::Result<shm::Reply>& tree) {
       const bool is_known = tree && met == this->met() && is_there();
       listed(is_known);
       if (is_known) take(text, tree->text);

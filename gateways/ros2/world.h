@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "common/errands.h"
+#include "common/async_requests.h"
 #include "common/simulator_link.h"
 #include "shm/iface_types.h"
 
 namespace ros2 {
 
-using gateway::Errands;
+using gateway::AsyncRequests;
 using gateway::SharedSegment;
 using gateway::Source;
 
@@ -48,13 +48,13 @@ struct Listed {
 
 class World final : public gateway::SimulatorLink {
  public:
-  World(std::uint32_t server_id, Errands& errands, std::function<void(const Listed&)> on_list, std::function<void()> on_loss);
+  World(std::uint32_t server_id, AsyncRequests& async_requests, std::function<void(const Listed&)> on_list, std::function<void()> on_loss);
 
  private:
   void list() override;
   void take(const std::string& list, const std::string& tree);
 
-  Errands& errands_;
+  AsyncRequests& async_requests_;
   const std::function<void(const Listed&)> on_list_;
 };
 

@@ -21,7 +21,7 @@ __all__ = [
 
 for _class in (Error, NotFound, ServerDied, TimedOut):
     _class.__module__ = "rtmsim"
-Error.__doc__ = "The simulator refused what was asked, or the arguments do not fit. One line."
+Error.__doc__ = "The simulator rejected the request, or the arguments are invalid. One line."
 NotFound.__doc__ = "No model, link, iface, type or field has this name. Also a LookupError."
 ServerDied.__doc__ = "The simulator has exited, or was killed. Also a ConnectionError."
 TimedOut.__doc__ = "The simulator did not answer in time, or simulated time did not go on. Also a TimeoutError."

@@ -13,7 +13,7 @@ namespace {
   throw Error(std::string(what) + ": expected " + expected + ", got " + shown(value));
 }
 
-// A conversion of Python has raised: what does not fit is refused, and anything else goes on, as KeyboardInterrupt.
+// A conversion of Python has raised: what does not fit is rejected, and anything else goes on, as KeyboardInterrupt.
 [[noreturn]] void refuse_raised(const char* what, const std::string& expected, py::handle value) {
   for (PyObject* const one : {PyExc_TypeError, PyExc_ValueError, PyExc_ArithmeticError, PyExc_AttributeError}) {
     if (!PyErr_ExceptionMatches(one)) continue;

@@ -166,6 +166,6 @@ void Device::velocity(double a, double b, double c, Simulator::Seconds duration)
   check(iface().command(shm::CommandKind::velocity, values, nanoseconds_of(duration)));
 }
 
-bool Device::is_commander() { return iface().is_commander(); }
+bool Device::is_commanding() { return iface().is_commanding(); }
 
 }  // namespace python

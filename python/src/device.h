@@ -34,7 +34,7 @@ class Device {
 
   void command(shm::CommandKind kind, const std::vector<double>& values, Simulator::Seconds duration);
   void velocity(double a, double b, double c, Simulator::Seconds duration);  // three values of a position2d
-  bool is_commander();
+  bool is_commanding();
 
   const std::string& name() const { return name_; }
   std::string type() const { return std::string(shm::to_text(type_)); }

@@ -8,7 +8,7 @@
 
 namespace python {
 
-// The simulator refused what was asked, or the arguments do not fit.
+// The simulator rejected what was asked, or the arguments do not fit.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -158,7 +158,7 @@ void add_device(py::module_& module) {
       .def_property_readonly("name", &Device::name)
       .def_property_readonly("type", &Device::type)
       .def_property_readonly("sequence", &Device::sequence)
-      .def_property_readonly("is_commander", &Device::is_commander)
+      .def_property_readonly("is_commander", &Device::is_commanding)
       .def("info", &Device::info)
       .def(
           "read", [](Device& d, Given timeout) { return d.read(timeout_of(timeout)); }, patient)

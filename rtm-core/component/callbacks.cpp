@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/sudden_end.h"
+#include "base/abnormal_exit.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "base/waiting.h"

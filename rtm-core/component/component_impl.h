@@ -21,7 +21,7 @@
 #include "component/execute_fault.h"
 #include "component/outside_calls.h"
 #include "core/callback_gate.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 
 namespace RTC {
 
@@ -88,7 +88,7 @@ struct RTObject_impl::Impl {
   std::unique_ptr<rt::ExecuteFaults> faults;  // null: none are asked for
   rt::CallbackGate gate;                      // all callbacks pass it
   std::string last_thrown{};                  // exception of the last callback; empty if it returned. Only for the thread inside the gate
-  rt::RefusalLog refusals;
+  rt::LogRateLimiter rejection_limiter;
   base::Guarded<std::thread, base::Rank::tasks> exiter;  // runs exit() when a callback asked for it
 };
 

@@ -8,12 +8,12 @@
 
 #include "corba/members/action_call.h"
 #include "corba/members/remote_participant.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/object_names.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "corba/orb/return_code.h"
 #include "core/key_limits.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 
 namespace RTC {
 
@@ -194,8 +194,8 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
   const Joining joining(impl_->shared, comp);
   if (!joining || impl_->find(comp)) return RTC::PRECONDITION_NOT_MET;
   if (impl_->context.members().size() >= rt::entry_limits.members) {
-    rt::log_refusal(rtclog, RTC::Logger::RTL_ERROR,
-                    "a further component is refused: the context has " + std::to_string(rt::entry_limits.members) + ", the maximum");
+    rt::log_rejection(rtclog, RTC::Logger::RTL_ERROR,
+                      "a further component is rejected: the context has " + std::to_string(rt::entry_limits.members) + ", the maximum");
     return RTC::RTC_ERROR;
   }
   if (const auto code = onAddingComponent(comp); code != RTC::RTC_OK) return code;
@@ -220,7 +220,7 @@ RTC::ReturnCode_t ExecutionContextBase::addComponent(RTC::LightweightRTObject_pt
         participant = std::make_shared<corba::RemoteParticipant>(comp, member.handle, impl_->member_timeout, impl_->member_watch());
     }
   } catch (const CORBA::Exception& exception) {
-    rt::log_refusal(rtclog, RTC::Logger::RTL_ERROR, "a component that is to join does not answer: " + corba::to_text(exception));
+    rt::log_rejection(rtclog, RTC::Logger::RTL_ERROR, "a component that is to join does not answer: " + corba::to_text(exception));
     if (member.handle >= 0) Impl::detach(member, rtclog);
     return RTC::RTC_ERROR;
   }

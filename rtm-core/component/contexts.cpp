@@ -9,8 +9,8 @@
 #include "base/text.h"
 #include "component/runtime_access.h"
 #include "corba/members/remote_participant.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 
 namespace RTC {
 
@@ -366,9 +366,9 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     }
   }
   if (id < 0) {
-    rt::log_refusal(
+    rt::log_rejection(
         rtclog, Logger::RTL_ERROR,
-        "a further execution context is refused: the component participates in " + std::to_string(most_memberships) + ", the maximum");
+        "a further execution context is rejected: the component participates in " + std::to_string(most_memberships) + ", the maximum");
     return -1;
   }
   chooseClock();

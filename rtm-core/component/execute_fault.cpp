@@ -20,8 +20,8 @@ base::Result<std::unique_ptr<ExecuteFaults>> ExecuteFaults::parse(const std::str
 
 bool ExecuteFaults::strike() {
   const auto& clock = base::current_clock();
-  if (const auto era = clock.era(); era != era_) {
-    era_ = era;
+  if (const auto epoch = clock.epoch(); epoch != epoch_) {
+    epoch_ = epoch;
     has_struck_.assign(faults_.size(), false);
   }
   const auto now = clock.now();

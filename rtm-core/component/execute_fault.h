@@ -24,7 +24,7 @@ class ExecuteFaults {
   explicit ExecuteFaults(std::vector<Fault> faults) : faults_(std::move(faults)), has_struck_(faults_.size()) {}
   std::vector<Fault> faults_;
   std::vector<bool> has_struck_;
-  std::uint64_t era_ = 0;
+  std::uint64_t epoch_ = 0;
 };
 
 }  // namespace rt

@@ -80,7 +80,7 @@ class LoggerConsumer final : public SdoServiceConsumerBase {
     const bool is_simulated = base::equal_ignoring_case(NVUtil::toString(profile.properties, "logger.clock"), "simulated");
     const auto courier = std::make_shared<corba::Courier>("logger service");
     courier_ = courier;
-    // What the courier itself logs would come back here for ever.
+    // Log lines of the asynchronous notifier itself would come back here without end.
     sink_ = addLogSink(level.value_or(Logger::RTL_INFO), [courier, logger, filter, is_simulated](const LogRecord& record) {
       if (!filter.empty() && std::find(filter.begin(), filter.end(), record.name) == filter.end()) return;
       OpenRTM::LogRecord wire;

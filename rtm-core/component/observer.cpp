@@ -15,9 +15,9 @@
 #include <memory>
 #include <set>
 
-#include "base/chance.h"
 #include "base/clock.h"
 #include "base/guarded.h"
+#include "base/nondeterminism.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "component/runtime_access.h"
@@ -278,7 +278,7 @@ class Listeners {
   Listeners& operator=(const Listeners&) = delete;
 
  private:
-  // What a callback that refused did not do is not told; the error state comes whatever onAborting answers.
+  // What a callback that rejected did not do is not told; the error state comes whatever onAborting answers.
   void post(PostComponentActionListenerType type, Kind kind, const char* event) {
     auto function = [link = link_, kind, event, always = type == POST_ON_ABORTING](UniqueId id, ReturnCode_t code) {
       if (always || code == RTC_OK) link->tell(kind, event + std::to_string(id));

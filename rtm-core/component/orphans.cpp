@@ -54,7 +54,8 @@ void RTObject_impl::leaveTheDead() {
     if (i < contexts.size()) {
       if (CORBA::is_nil(contexts[i]) || !is_dead(orb, contexts[i])) continue;
       const auto handle = static_cast<ExecutionContextHandle_t>(i) + foreign_offset;
-      rt::log_refusal(rtclog, Logger::RTL_WARN, "the process of execution context " + std::to_string(handle) + " exited: left the context");
+      rt::log_rejection(rtclog, Logger::RTL_WARN,
+                        "the process of execution context " + std::to_string(handle) + " exited: left the context");
       const bool was_active = impl_->shared.lock()->active_in.contains(handle);
       if (was_active) on_deactivated(handle);
       detach_context(handle);
@@ -62,7 +63,7 @@ void RTObject_impl::leaveTheDead() {
     }
     SDOPackage::Organization_var& organization = organizations[i - contexts.size()];
     if (!is_dead(orb, organization)) continue;
-    rt::log_refusal(rtclog, Logger::RTL_WARN, "the process of a composite component exited: this component uses its own context again");
+    rt::log_rejection(rtclog, Logger::RTL_WARN, "the process of a composite component exited: this component uses its own context again");
     was_member = true;
     auto data = impl_->shared.lock();
     std::erase_if(data->organizations, [&](const SDOPackage::Organization_var& known) { return known->_is_equivalent(organization); });

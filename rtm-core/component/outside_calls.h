@@ -1,9 +1,9 @@
 // Calls of other processes to a component that are accepted: the operations of RTC::ComponentAction, RTC::DataFlowComponentAction and
 // RTC::LightweightRTObject that run code of its author or change its life. The ORB calls them on its own threads. Any thread.
 //
-// Rights, for callers of other accounts and machines (corba/orb/asker.h): with manager.remote_rights `read` none of these operations does
-// anything; the answer is RTC_ERROR. The other operations of a component, its contexts, ports and configuration are open to every caller
-// that the process accepts.
+// Rights, for callers of other accounts and machines (corba/orb/principal.h): with manager.remote_rights `read` none of these operations
+// does anything; the answer is RTC_ERROR. The other operations of a component, its contexts, ports and configuration are open to every
+// caller that the process accepts.
 //
 // States, for all callers from outside. The answer is PRECONDITION_NOT_MET for everything that this table does not have:
 //   initialize        created, without a manager: a manager initializes its components itself
@@ -33,7 +33,7 @@
 // A context of this process waits as long as the component's callbacks may take when it ends (exec_cxt.callback_timeout, at least a second;
 // in lock step `simulated_timeout`). Then its call fails like a callback that returns RTC_ERROR.
 // A component that was compiled with headers before these rules passes the gate too, but all its calls count as calls of this process.
-// The log has one line per second and component about refused calls, with the number of those left out.
+// The log has one line per second and component about rejected calls, with the number of those left out.
 #pragma once
 
 #include <omniORB4/CORBA.h>

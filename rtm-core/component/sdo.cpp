@@ -2,9 +2,9 @@
 #include "component/component_impl.h"
 
 #include "base/text.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 
 namespace RTC {
 
@@ -86,8 +86,8 @@ bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
       return true;
     }
   }
-  rt::log_refusal(rtclog, Logger::RTL_ERROR,
-                  "a further organization is refused: the component is in " + std::to_string(most_memberships) + ", the maximum");
+  rt::log_rejection(rtclog, Logger::RTL_ERROR,
+                    "a further organization is rejected: the component is in " + std::to_string(most_memberships) + ", the maximum");
   return false;
 }
 

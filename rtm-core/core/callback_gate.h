@@ -4,7 +4,7 @@
 //   outside -> inside     at once while no thread is inside or waits, or if the thread itself is inside (a callback that calls another)
 //   outside -> waiting    otherwise; threads enter in the order in which they came
 //   waiting -> inside     when the one inside has left
-//   waiting -> outside    refused: see below
+//   waiting -> outside    rejected: see below
 // Rights: a thread inside runs the author's code without a lock, and leaves on the same thread. `Caller::remote` are calls from other
 // processes, `Caller::local` all others.
 // Failures, each an answer to the thread that wanted to enter:
@@ -64,7 +64,7 @@ class CallbackGate {
 
   // The calling thread runs a callback of this component.
   bool is_inside() const;
-  // Remote callers are refused from now on.
+  // Remote callers are rejected from now on.
   void close_to_remote();
   // Waits until those who are inside, and those who wait now, have left; at once on a thread that is inside. After `deadline` it gives up
   // those who are inside, and answers false; also at once if one has been given up before.

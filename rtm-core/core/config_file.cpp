@@ -84,7 +84,7 @@ void parse_line(std::string_view line, int number, ConfigText& result) {
   }
   auto key = without_escapes(base::trim(line.substr(0, at)));
   auto value = line.substr(at + 1);
-  // With a separator inside the key's blanks, `key value: x`, the key ends at the blank no classic parser would look for: refuse it.
+  // With a separator inside the key's blanks, `key value: x`, the key ends at the blank no classic parser would look for: reject it.
   if (!is_key(key)) {
     result.findings.push_back({number, "not a key: " + base::in_quotes(key) + "; ignored"});
     return;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "base/chance.h"
+#include "base/nondeterminism.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "core/key_limits.h"
@@ -42,22 +42,22 @@ Configuration::Set* Configuration::find(State& state, std::string_view id) {
 
 const Configuration::Set* Configuration::find(const State& state, std::string_view id) { return find(const_cast<State&>(state), id); }
 
-std::optional<Configuration::Moment> Configuration::arrival_now() {
+std::optional<Configuration::EpochTime> Configuration::arrival_now() {
   if (base::tick_in_lock_step()) return std::nullopt;
   const auto clock = base::lock_step_clock();
-  if (!clock || clock->moment() == 0 || clock->stands_still()) return std::nullopt;
-  return Moment{clock->era(), clock->now()};
+  if (!clock || clock->phase_counter() == 0 || clock->stands_still()) return std::nullopt;
+  return EpochTime{clock->epoch(), clock->now()};
 }
 
-std::optional<Configuration::Moment> Configuration::tick_now() {
+std::optional<Configuration::EpochTime> Configuration::tick_now() {
   const base::Tick* tick = base::tick_in_lock_step();
   const auto clock = tick ? base::lock_step_clock() : nullptr;
-  return clock ? std::optional(Moment{clock->era(), tick->time()}) : std::nullopt;
+  return clock ? std::optional(EpochTime{clock->epoch(), tick->time()}) : std::nullopt;
 }
 
 // What a tick sees, or the newest for who is in none.
-Configuration::State& Configuration::state_at(const std::optional<Moment>& tick, Data& data) {
-  if (data.arrival && tick && data.arrival->era == tick->era && data.arrival->time >= tick->time) return *data.before;
+Configuration::State& Configuration::state_at(const std::optional<EpochTime>& tick, Data& data) {
+  if (data.arrival && tick && data.arrival->epoch == tick->epoch && data.arrival->time >= tick->time) return *data.before;
   data.arrival.reset();
   data.before.reset();
   return data.state;

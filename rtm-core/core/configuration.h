@@ -87,16 +87,16 @@ class Configuration {
     bool changed = true;
   };
   // Simulated time: of a tick, or at which something came from outside.
-  struct Moment {
-    std::uint64_t era = 0;
+  struct EpochTime {
+    std::uint64_t epoch = 0;
     std::chrono::nanoseconds time{0};
-    bool operator==(const Moment&) const = default;
+    bool operator==(const EpochTime&) const = default;
   };
   struct Data {
     State state{};
     std::vector<Parameter> parameters{};
     // What came last from outside, and everything as it was before that: for ticks at the same time.
-    std::optional<Moment> arrival{};
+    std::optional<EpochTime> arrival{};
     std::optional<State> before{};
   };
   struct Assignment {
@@ -110,9 +110,9 @@ class Configuration {
   static Set* find(State& state, std::string_view id);
   static const Set* find(const State& state, std::string_view id);
   // Those of this thread; to be asked without the lock.
-  static std::optional<Moment> arrival_now();
-  static std::optional<Moment> tick_now();
-  static State& state_at(const std::optional<Moment>& tick, Data& data);
+  static std::optional<EpochTime> arrival_now();
+  static std::optional<EpochTime> tick_now();
+  static State& state_at(const std::optional<EpochTime>& tick, Data& data);
   // Calls bool change(State&).
   template <class Change>
   bool change(Change change);

@@ -54,12 +54,12 @@ class Reader {
     value = std::chrono::nanoseconds(std::llround(std::min(*seconds, longest_timeout) * 1e9));
   }
 
-  void count(std::string_view key, std::size_t& value, std::size_t least, std::size_t most) const {
+  void count(std::string_view key, std::size_t& value, std::size_t min, std::size_t max) const {
     const auto given = text(key);
     if (given.empty()) return;
     const auto number = base::parse_integer(given);
-    if (!number || *number < static_cast<std::int64_t>(least)) return warn(key, given, "an integer from " + std::to_string(least));
-    value = std::min(static_cast<std::size_t>(*number), most);
+    if (!number || *number < static_cast<std::int64_t>(min)) return warn(key, given, "an integer from " + std::to_string(min));
+    value = std::min(static_cast<std::size_t>(*number), max);
   }
 
   void flag(std::string_view key, bool& value) const {
@@ -203,7 +203,7 @@ ConnectorSettingsOutcome read_connector_settings(const KeyValues& properties, Si
                             {"none", StampPolicy::none}});
   reader.flag("allow_dup_connection", settings.allows_duplicate);
   reader.flag("sync_readwrite", settings.is_rendezvous);
-  reader.flag("looks_on", settings.looks_on);
+  reader.flag("looks_on", settings.is_of_tool);
   reader.flag("reconnect", settings.comes_back);
   reader.count("fan_out", settings.fan_out, 1, longest_buffer);
   std::chrono::nanoseconds call_timeout{};
@@ -228,8 +228,8 @@ std::optional<std::size_t> parse_size(std::string_view text) {
   if (!text.empty() && (text.back() == 'm' || text.back() == 'M')) unit = std::size_t{1} << 20;
   if (unit > 1) text.remove_suffix(1);
   const auto number = base::parse_integer(text);
-  constexpr std::int64_t most = std::int64_t{1} << 40;
-  if (!number || *number <= 0 || *number > most / static_cast<std::int64_t>(unit)) return std::nullopt;
+  constexpr std::int64_t max = std::int64_t{1} << 40;
+  if (!number || *number <= 0 || *number > max / static_cast<std::int64_t>(unit)) return std::nullopt;
   return static_cast<std::size_t>(*number) * unit;
 }
 

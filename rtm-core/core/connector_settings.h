@@ -51,13 +51,13 @@ struct ConnectorSettings {
   bool allows_duplicate = false;
   bool is_rendezvous = false;                             // dataport.sync_readwrite
   bool comes_back = false;                                // dataport.reconnect: after the other end has hung
-  bool looks_on = false;                                  // dataport.looks_on: a tool's, no part of what the system does
+  bool is_of_tool = false;                                // dataport.looks_on: the connection of a tool, which is not part of the system
   std::size_t fan_out = 100;                              // connections of the OutPort
   std::optional<std::chrono::milliseconds> call_timeout;  // dataport.call_timeout [s]: of every remote call of this connection
   std::size_t shared_memory_size = std::size_t{2} << 20;  // first size of a segment [octets]
 };
 
-// Why a connection is refused: the code of the wire and one line.
+// Why a connection is rejected: the code of the wire and one line.
 struct Refusal {
   ReturnCode code = ReturnCode::ok;
   std::string reason;

@@ -16,12 +16,12 @@ namespace rt {
 using namespace std::chrono_literals;
 
 // The threads on which members of other places are called. Whoever says that a member is elsewhere costs a thread, up to a limit.
-class Together {
+class ParallelCalls {
  public:
   static constexpr std::size_t most_threads = 64;
 
-  explicit Together(std::size_t most) : threads_(std::min(most, most_threads)) {
-    crew_.start(threads_ - 1, [this](std::size_t number, int) { work(number); });
+  explicit ParallelCalls(std::size_t most) : threads_(std::min(most, most_threads)) {
+    pool_.start(threads_ - 1, [this](std::size_t number, int) { work(number); });
   }
   // Calls work(0) here and work(1) ... work(count - 1) on the others, several on each if there are more than threads, and returns when all
   // have returned.
@@ -29,7 +29,7 @@ class Together {
     count_ = count;
     work_ = &work;
     clock_ = &base::current_clock();
-    crew_.run(0, [&] { this->work(0); });
+    pool_.run(0, [&] { this->work(0); });
   }
 
  private:
@@ -38,11 +38,11 @@ class Together {
     for (; number < count_; number += threads_) (*work_)(number);
   }
   const std::size_t threads_;  // the caller's included
-  // Written while the crew rests, which hands them over with its job.
+  // Written while the pool rests, which hands them over with its job.
   std::size_t count_ = 0;
   const std::function<void(std::size_t)>* work_ = nullptr;
   const base::Clock* clock_ = nullptr;
-  Crew crew_;
+  ThreadPool pool_;
 };
 
 ExecutionContext::ExecutionContext(std::string name, double rate) : name_(std::move(name)) { shared_.lock()->rate = rate; }
@@ -276,7 +276,7 @@ bool ExecutionContext::is_stepping_thread() const {
   return std::ranges::any_of(data->calls, [](const Call& call) { return call.is_own(); });
 }
 
-std::optional<ReturnCode> ExecutionContext::call_in_phase(Member& member, Action action) {
+std::optional<ReturnCode> ExecutionContext::call_member(Member& member, Action action) {
   {
     auto data = shared_.lock();
     if (member.removed || !may_call(*data)) return std::nullopt;
@@ -335,7 +335,7 @@ ExecutionContext::Members ExecutionContext::plan(const Group& members) const {
   }
   if (most > 1) {
     try {
-      made->together = std::make_shared<Together>(most);
+      made->parallel_calls = std::make_shared<ParallelCalls>(most);
     } catch (const std::system_error& error) {
       base::log(base::Level::error, name_, "members of other processes are called one after another: no further thread: {}", error.what());
     }
@@ -348,10 +348,10 @@ void ExecutionContext::for_all(const Plan& plan, const std::function<void(Member
     for (const auto& member : group) call(*member);
   };
   for (const Stage& stage : plan.stages) {
-    if (!plan.together || stage.size() == 1)
+    if (!plan.parallel_calls || stage.size() == 1)
       std::ranges::for_each(stage, call_group);
     else
-      plan.together->run(stage.size(), [&](std::size_t number) { call_group(stage[number]); });
+      plan.parallel_calls->run(stage.size(), [&](std::size_t number) { call_group(stage[number]); });
   }
 }
 
@@ -384,13 +384,13 @@ void ExecutionContext::transit(Member& member) {
   }
   State to = transition->to;
   if (transition->leave) {
-    const auto code = call_in_phase(member, *transition->leave);
+    const auto code = call_member(member, *transition->leave);
     if (!code) return;
     if (*code != ReturnCode::ok) to = transition->if_leave_fails;
   }
   bool failed = false;
   if (const auto enter = actions_of(to).enter; enter && to != transition->from) {
-    const auto code = call_in_phase(member, *enter);
+    const auto code = call_member(member, *enter);
     if (!code && !transition->leave) return;
     failed = code && *code != ReturnCode::ok;
   }
@@ -404,13 +404,13 @@ void ExecutionContext::transit(Member& member) {
 }
 
 template <class Select>
-void ExecutionContext::run_phase(Member& member, Select select) {
+void ExecutionContext::run_stage(Member& member, Select select) {
   std::optional<Action> action;
   {
     auto data = shared_.lock();
     if (!member.removed && may_call(*data) && !member.pending) action = select(actions_of(member.state));
   }
-  if (!action || call_in_phase(member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) return;
+  if (!action || call_member(member, *action).value_or(ReturnCode::ok) == ReturnCode::ok) return;
   auto data = shared_.lock();
   if (!member.removed && member.state == State::active) member.pending = Event::fail;
 }
@@ -422,20 +422,20 @@ constexpr auto select_update = [](const StateActions& actions) { return actions.
 
 void ExecutionContext::execute(std::size_t lane) {
   const Members members = members_of(lane);
-  for_all(*members, [this](Member& member) { run_phase(member, select_execute); });
+  for_all(*members, [this](Member& member) { run_stage(member, select_execute); });
 }
 
 void ExecutionContext::execute_one(MemberId id) {
-  if (const auto member = hold(id)) run_phase(*member, select_execute);
+  if (const auto member = hold(id)) run_stage(*member, select_execute);
 }
 
 void ExecutionContext::update_one(MemberId id) {
-  if (const auto member = hold(id)) run_phase(*member, select_update);
+  if (const auto member = hold(id)) run_stage(*member, select_update);
 }
 
 void ExecutionContext::update(std::size_t lane) {
   const Members members = members_of(lane);
-  for_all(*members, [this](Member& member) { run_phase(member, select_update); });
+  for_all(*members, [this](Member& member) { run_stage(member, select_update); });
   if (lane != 0) return;
   const auto now = std::chrono::steady_clock::now();
   std::chrono::nanoseconds took{0};

@@ -54,7 +54,7 @@ struct ContextStatistics {
   }
 };
 
-class Together;
+class ParallelCalls;
 
 class ExecutionContext {
  public:
@@ -64,7 +64,7 @@ class ExecutionContext {
     State next;  // where the pending request leads, else the state
   };
 
-  // Rates outside are refused [Hz].
+  // Rates outside are rejected [Hz].
   static constexpr double min_rate = 1e-6;
   static constexpr double max_rate = 1e6;
 
@@ -159,7 +159,7 @@ class ExecutionContext {
   using Stage = std::vector<Group>;
   struct Plan {
     std::vector<Stage> stages{};
-    std::shared_ptr<Together> together{};  // when a stage has several groups; the plan's own
+    std::shared_ptr<ParallelCalls> parallel_calls{};  // when a stage has several groups; the plan's own
   };
   using Members = std::shared_ptr<const Plan>;
   struct Lane {
@@ -196,16 +196,17 @@ class ExecutionContext {
   static State next(const Member& member);
   ReturnCode call(const Participant& participant, Action action) const;
   void call_all(Action action);
-  // Nothing when the member has left or the context is stopped: it is not called then.
-  std::optional<ReturnCode> call_in_phase(Member& member, Action action);
+  // Calls the member and lists the call as in progress. Nothing if the member has left or the context is stopped; then there is no call.
+  std::optional<ReturnCode> call_member(Member& member, Action action);
   Members begin_cycle(std::size_t lane);
   Members plan(const Group& members) const;
   static void for_all(const Plan& plan, const std::function<void(Member&)>& call);
   Members members_of(std::size_t lane) const;
   std::shared_ptr<Member> hold(MemberId id) const;
   void transit(Member& member);
+  // One stage of a cycle for one member: execute or state update, by its state.
   template <class Select>
-  void run_phase(Member& member, Select select);
+  void run_stage(Member& member, Select select);
 
   const std::string name_;
   std::function<void()> wake_;

@@ -10,38 +10,39 @@ namespace {
 
 // Of two samples that wait in channels of these names, whether this one is read first.
 bool is_before(const Sample& a, const std::string& from_a, const Sample& b, const std::string& from_b) {
-  if (a.moment != b.moment && a.moment != 0 && b.moment != 0) return a.moment < b.moment;
-  if (a.moment == b.moment && base::is_in_phase(a.moment) && from_a != from_b) return from_a < from_b;
+  if (a.phase_counter != b.phase_counter && a.phase_counter != 0 && b.phase_counter != 0) return a.phase_counter < b.phase_counter;
+  if (a.phase_counter == b.phase_counter && base::is_in_phase(a.phase_counter) && from_a != from_b) return from_a < from_b;
   return a.arrival < b.arrival;
 }
 
 }  // namespace
 
 void Mailbox::Entry::settle(std::uint64_t now) {
-  while (!aside.empty() && (!base::is_in_phase(now) || aside.front().moment < now)) {
+  while (!aside.empty() && (!base::is_in_phase(now) || aside.front().phase_counter < now)) {
     ring.push(std::move(aside.front()));
     aside.pop_front();
   }
-  if (!base::is_in_phase(now) || now <= moment) return;
-  moment = now;
+  if (!base::is_in_phase(now) || now <= phase_counter) return;
+  phase_counter = now;
   size_at_start = ring.size();
 }
 
 bool Mailbox::Entry::is_full(std::uint64_t now) const {
-  const bool is_aside = base::is_in_phase(now) && now == moment && !is_rendezvous;
+  const bool is_aside = base::is_in_phase(now) && now == phase_counter && !is_rendezvous;
   return (is_aside ? size_at_start + aside.size() : ring.size()) >= ring.length();
 }
 
 bool Mailbox::Entry::put(Sample sample) {
-  if (!base::is_in_phase(sample.moment) || sample.moment != moment || is_rendezvous) return ring.push(std::move(sample));
-  const bool loses = is_full(moment);
+  if (!base::is_in_phase(sample.phase_counter) || sample.phase_counter != phase_counter || is_rendezvous)
+    return ring.push(std::move(sample));
+  const bool loses = is_full(phase_counter);
   if (aside.size() == ring.length()) aside.pop_front();
   aside.push_back(std::move(sample));
   return loses;
 }
 
 std::size_t Mailbox::Entry::readable(std::uint64_t now) const {
-  const auto is_readable = [&](const Sample& sample) { return !base::is_in_phase(now) || sample.moment < now; };
+  const auto is_readable = [&](const Sample& sample) { return !base::is_in_phase(now) || sample.phase_counter < now; };
   return std::min(ring.length(), ring.size() + static_cast<std::size_t>(std::ranges::count_if(aside, is_readable)));
 }
 
@@ -164,10 +165,10 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
     auto state = state_.lock();
     Entry* entry = state->find_writable(channel);
     if (!entry) return {PortStatus::precondition_not_met};
-    entry->settle(sample.moment);
+    entry->settle(sample.phase_counter);
     const std::size_t octets = octets_of(sample);
     const auto is_crowded = [&] { return !entry->is_empty() && state->unread_octets() + octets > most_octets_; };
-    const auto is_full = [&] { return entry->is_full(sample.moment) || is_crowded(); };
+    const auto is_full = [&] { return entry->is_full(sample.phase_counter) || is_crowded(); };
     if (entry->settings.full == FullPolicy::do_nothing && is_full()) return {PortStatus::buffer_full};
     if (entry->settings.full == FullPolicy::block && is_full()) {
       const bool has_room = state.wait_for(freed_, std::min(entry->settings.write_timeout, most), [&] {
@@ -181,7 +182,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
     if (!lost.empty()) freed_.notify_all();
     if (state->all_octets() + octets > 2 * most_octets_) return {PortStatus::buffer_full};
     sample.arrival = ++state->arrivals;
-    if (entry->is_full(sample.moment) && !entry->ring.is_empty()) lost.push_back(entry->ring.front());
+    if (entry->is_full(sample.phase_counter) && !entry->ring.is_empty()) lost.push_back(entry->ring.front());
     result.overwrote = entry->put(std::move(sample)) || !lost.empty();
     if (!entry->is_rendezvous) {
       arrived_.notify_all();
@@ -199,21 +200,21 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
   return result;
 }
 
-ReadResult Mailbox::read(Channel channel, std::uint64_t moment, std::chrono::nanoseconds most) {
+ReadResult Mailbox::read(Channel channel, std::uint64_t phase_counter, std::chrono::nanoseconds most) {
   ReadResult result;
   {
     auto state = state_.lock();
     if (channel == Channel::any ? state->entries.empty() : !state->find(channel))
       return {PortStatus::precondition_not_met, {}, false, channel};
-    for (auto& each : state->entries) each.settle(moment);
+    for (auto& each : state->entries) each.settle(phase_counter);
     Entry* entry = state->oldest(channel);
     if (!entry) {
       if (const auto longest = state->longest_wait(channel)) {
         // Nobody brings anything for this phase any more.
-        if (base::is_in_phase(moment) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
+        if (base::is_in_phase(phase_counter) && std::ranges::none_of(state->entries, &Entry::is_rendezvous))
           return {PortStatus::buffer_timeout, {}, false, channel};
         state.wait_for(arrived_, std::min(*longest, most), [&] {
-          for (auto& each : state->entries) each.settle(moment);
+          for (auto& each : state->entries) each.settle(phase_counter);
           entry = state->oldest(channel);
           return entry || (channel == Channel::any ? state->entries.empty() : !state->find(channel));
         });
@@ -231,11 +232,11 @@ ReadResult Mailbox::read(Channel channel, std::uint64_t moment, std::chrono::nan
   return result;
 }
 
-std::size_t Mailbox::unread(Channel channel, std::uint64_t moment) const {
+std::size_t Mailbox::unread(Channel channel, std::uint64_t phase_counter) const {
   auto state = state_.lock();
   std::size_t count = 0;
   for (const auto& entry : state->entries) {
-    if (channel == Channel::any || entry.channel == channel) count += entry.readable(moment);
+    if (channel == Channel::any || entry.channel == channel) count += entry.readable(phase_counter);
   }
   return count;
 }
@@ -260,18 +261,18 @@ void Mailbox::drop_unread(Channel channel) {
   freed_.notify_all();
 }
 
-void Mailbox::drop_other_eras(std::uint64_t era) {
+void Mailbox::drop_other_epochs(std::uint64_t epoch) {
   std::vector<Sample> dropped;  // destroyed without the lock, as in close
   {
     auto state = state_.lock();
     for (auto& entry : state->entries) {
-      if (std::exchange(entry.era, era) != era) entry.moment = 0;  // moments may count anew
-      while (!entry.ring.is_empty() && entry.ring.front().era != era) dropped.push_back(entry.ring.pop());
-      while (!entry.aside.empty() && entry.aside.front().era != era) {
+      if (std::exchange(entry.epoch, epoch) != epoch) entry.phase_counter = 0;  // the phase counter may have restarted
+      while (!entry.ring.is_empty() && entry.ring.front().epoch != epoch) dropped.push_back(entry.ring.pop());
+      while (!entry.aside.empty() && entry.aside.front().epoch != epoch) {
         dropped.push_back(std::move(entry.aside.front()));
         entry.aside.pop_front();
       }
-      if (entry.last && entry.last.era != era) dropped.push_back(std::exchange(entry.last, {}));
+      if (entry.last && entry.last.epoch != epoch) dropped.push_back(std::exchange(entry.last, {}));
     }
     std::erase_if(state->entries, [](const Entry& entry) { return entry.is_finished && entry.is_empty(); });
   }

@@ -5,7 +5,7 @@
 // value and disconnect.
 //
 // Unread samples take a limited memory. A channel with unread samples is full when its next sample would exceed the limit. The first sample
-// of another channel is accepted up to twice the limit, in which the samples that were read last count as well, and refused beyond that.
+// of another channel is accepted up to twice the limit, in which the samples that were read last count as well, and rejected beyond that.
 //
 // In lock step (base/tick.h) samples of an odd phase counter are hidden until a later one: the order of the components of a phase decides
 // neither what is read nor whether a ring is full. Phase counters of readers and writers that are even, or 0, have no such rule. Among
@@ -55,21 +55,21 @@ class Mailbox {
   // As long as the channel's settings say.
   static constexpr std::chrono::nanoseconds as_set = std::chrono::nanoseconds::max();
 
-  // A full ring overwrites, refuses or waits, as the channel's settings say, and never longer than `most`. The sample has the writer's
-  // moment.
+  // A full ring overwrites, rejects or waits, according to the settings of the channel. A wait is at most `most`. The sample carries the
+  // phase counter of the writer.
   WriteResult write(Channel channel, Sample sample, std::chrono::nanoseconds most = as_set);
   // The oldest sample (of that channel). If nothing is unread: the last one again, nothing, or waits, as the settings of the channel say
-  // from which the last sample came; before the first sample one channel that waits is enough to wait. At an odd moment nobody waits but
-  // for a rendezvous: what is written in this phase is not for it. No wait is longer than `most`.
-  ReadResult read(Channel channel = Channel::any, std::uint64_t moment = 0, std::chrono::nanoseconds most = as_set);
-  std::size_t unread(Channel channel = Channel::any, std::uint64_t moment = 0) const;
+  // from which the last sample came; before the first sample one channel that waits is enough to wait. At an odd phase counter
+  // only a rendezvous waits, because samples of this phase cannot be read yet. No wait is longer than `most`.
+  ReadResult read(Channel channel = Channel::any, std::uint64_t phase_counter = 0, std::chrono::nanoseconds most = as_set);
+  std::size_t unread(Channel channel = Channel::any, std::uint64_t phase_counter = 0) const;
   // Waits until something is unread in any channel, at most `most`; true if so. For readers in real time: in lock step a tick finds what it
   // may read without waiting.
   bool wait_unread(std::chrono::nanoseconds most);
   // Throws away what is unread in that channel, and the last sample with it.
   void drop_unread(Channel channel);
-  // The same for what is of another era than this one, in all channels.
-  void drop_other_eras(std::uint64_t era);
+  // The same for what is of another epoch than this one, in all channels.
+  void drop_other_epochs(std::uint64_t epoch);
   // The last sample of that channel is not read again.
   void forget_last(Channel channel);
   // Writers wait for readers and readers for writers while this is set (dataport.sync_readwrite).
@@ -81,14 +81,14 @@ class Mailbox {
     std::string name;
     BufferSettings settings;
     Ring ring;
-    Sample last;                    // what was read last
-    std::deque<Sample> aside{};     // written in the phase `moment`
-    std::uint64_t moment = 0;       // the latest phase in which something happened here
-    std::size_t size_at_start = 0;  // of the ring, in that phase
+    Sample last;                      // what was read last
+    std::deque<Sample> aside{};       // samples that were written in the phase of `phase_counter`
+    std::uint64_t phase_counter = 0;  // the latest phase in which something happened here
+    std::size_t size_at_start = 0;    // of the ring, in that phase
     bool is_rendezvous = false;
     bool is_finished = false;
     std::uint64_t read_count = 0;
-    std::uint64_t era = 0;  // of what was dropped last
+    std::uint64_t epoch = 0;  // of what was dropped last
 
     bool is_empty() const { return ring.is_empty() && aside.empty(); }
     // Of what is unread.
@@ -96,7 +96,7 @@ class Mailbox {
     Sample drop_oldest();
     // Takes in what later moments may read.
     void settle(std::uint64_t now);
-    // As the writer of this moment may know.
+    // As a writer with this phase counter sees it.
     bool is_full(std::uint64_t now) const;
     // True if an unread sample was lost.
     bool put(Sample sample);

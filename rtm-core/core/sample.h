@@ -62,8 +62,8 @@ struct Sample {
   std::uint64_t arrival = 0;            // counts up over all connections of a port
   std::chrono::nanoseconds received{};  // when the port got it, by the clock of the thread that brought it; 0 if nobody asked
 
-  std::uint64_t era = 0;     // of the clock of the port's component, when it came or was written
-  std::uint64_t moment = 0;  // likewise
+  std::uint64_t epoch = 0;          // of the clock of the port's component, when it came or was written
+  std::uint64_t phase_counter = 0;  // likewise
 
   std::optional<std::uint64_t> hash;  // of the value as it is written down without a codec, where a tick has looked at it (base/tick.h)
 

@@ -28,7 +28,7 @@ bool Alarm::wait_until(std::chrono::steady_clock::time_point deadline) {
   return true;
 }
 
-PeriodicWorker::PeriodicWorker(ExecutionContext& context, Steps& steps, const SteadyTime& time)
+PeriodicWorker::PeriodicWorker(ExecutionContext& context, Steppable& steps, const SteadyTime& time)
     : context_(context), steps_(steps), time_(time), jump_(time.on_jump([this] { alarm_.ring(); })) {}
 
 void PeriodicWorker::run() {
@@ -190,14 +190,14 @@ void TriggeredWorker::tick_and_wait(std::chrono::nanoseconds time) {
     data.wait_until(cycles_, std::chrono::steady_clock::now() + std::chrono::hours(24), is_over);
 }
 
-void Crew::start(std::size_t threads, std::function<void(std::size_t, int)> work) {
+void ThreadPool::start(std::size_t threads, std::function<void(std::size_t, int)> work) {
   stop();
   *shared_.lock() = Data{};
   work_ = std::move(work);
   for (std::size_t i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { serve(i); });
 }
 
-void Crew::serve(std::size_t number) {
+void ThreadPool::serve(std::size_t number) {
   make_this_thread_punctual();
   std::uint64_t seen = 0;
   while (true) {
@@ -221,7 +221,7 @@ void Crew::serve(std::size_t number) {
   }
 }
 
-void Crew::run(int job, const std::function<void()>& own) {
+void ThreadPool::run(int job, const std::function<void()>& own) {
   {
     auto data = shared_.lock();
     ++data->round;
@@ -234,14 +234,14 @@ void Crew::run(int job, const std::function<void()>& own) {
   while (data->busy > 0) data.wait_until(done_, std::chrono::steady_clock::now() + std::chrono::hours(24), [&] { return data->busy == 0; });
 }
 
-void Crew::stop() {
+void ThreadPool::stop() {
   shared_.lock()->stopping = true;
   begins_.notify_all();
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
 }
 
-bool Turns::begin() {
+bool CallSerializer::begin() {
   const auto self = std::this_thread::get_id();
   auto data = shared_.lock();
   if (data->taken && data->taker == self) return false;
@@ -251,7 +251,7 @@ bool Turns::begin() {
   return true;
 }
 
-void Turns::end() {
+void CallSerializer::end() {
   shared_.lock()->taken = false;
   condition_.notify_one();
 }

@@ -1,6 +1,6 @@
-// Drivers of an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, Turns on the thread of any
-// caller; a Crew steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread. Their
-// threads are the caller's, except a Crew's. Of a context the thread is rtm/ContextThread.h.
+// Drivers of an execution context on a thread: PeriodicWorker at its rate, TriggeredWorker once per tick, CallSerializer on the thread of
+// any caller; a ThreadPool steps its lanes at the same time. run() belongs to one thread; everything else may be called from any thread.
+// Their threads are the caller's, except a ThreadPool's. Of a context the thread is rtm/ContextThread.h.
 #pragma once
 
 #include <semaphore.h>
@@ -20,10 +20,10 @@
 
 namespace rt {
 
-// The stages of a cycle, called with the owner's clock. Steps a context.
-class Steps {
+// The stages of a cycle, called with the owner's clock. Steppable a context.
+class Steppable {
  public:
-  virtual ~Steps() = default;
+  virtual ~Steppable() = default;
   // A TriggeredWorker begins the cycle of a tick that brought this time.
   virtual void begin_tick(std::chrono::nanoseconds) {}
   virtual void transit() = 0;
@@ -70,7 +70,7 @@ class PeriodicWorker final : public Worker {
  public:
   static constexpr std::int64_t most_late_periods = 10;
 
-  PeriodicWorker(ExecutionContext& context, Steps& steps, const SteadyTime& time = machine_time());
+  PeriodicWorker(ExecutionContext& context, Steppable& steps, const SteadyTime& time = machine_time());
 
   void run() override;
   void stop() override;
@@ -90,7 +90,7 @@ class PeriodicWorker final : public Worker {
   bool wait_for_deadline();
 
   ExecutionContext& context_;
-  Steps& steps_;
+  Steppable& steps_;
   const SteadyTime& time_;
   base::Guarded<Data, base::Rank::worker> shared_;
   Alarm alarm_;
@@ -105,7 +105,7 @@ class TriggeredWorker final : public Worker {
   // Ticks that wait; more of them are not taken and counted as missed.
   static constexpr std::size_t most_waiting = 100'000;
 
-  TriggeredWorker(ExecutionContext& context, Steps& steps) : context_(context), steps_(steps) {}
+  TriggeredWorker(ExecutionContext& context, Steppable& steps) : context_(context), steps_(steps) {}
 
   void run() override;
   void stop() override;
@@ -130,16 +130,16 @@ class TriggeredWorker final : public Worker {
   std::optional<std::uint64_t> take(std::chrono::nanoseconds time);
 
   ExecutionContext& context_;
-  Steps& steps_;
+  Steppable& steps_;
   base::Guarded<Data, base::Rank::worker> shared_;
   std::condition_variable condition_;
   std::condition_variable cycles_;  // for those who wait for the end of one
 };
 
 // Does jobs on several threads of its own at once. start, run and stop are called by one thread at a time.
-class Crew {
+class ThreadPool {
  public:
-  ~Crew() { stop(); }
+  ~ThreadPool() { stop(); }
   // `work` is called with the number of the thread, from 1, and the job.
   void start(std::size_t threads, std::function<void(std::size_t, int)> work);
   // Lets all threads do the job; `own` runs here meanwhile. Returns when all are done.
@@ -162,7 +162,7 @@ class Crew {
 };
 
 // Lets one thread after the other step a context.
-class Turns {
+class CallSerializer {
  public:
   // Waits for its turn and calls the function; false, and nothing is called, when this thread has its turn already.
   template <class Function>

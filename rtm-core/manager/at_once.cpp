@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "corba/orb/asker.h"
+#include "corba/orb/principal.h"
 
 namespace RTM {
 namespace {
@@ -17,8 +17,8 @@ constexpr std::size_t most_together = 64;
 
 void at_once(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
-  const auto take_part = [&, asker = corba::asker()] {
-    const corba::ForAsker same(asker);
+  const auto take_part = [&, principal = corba::principal()] {
+    const corba::OnBehalfOf same(principal);
     for (auto i = next++; i < count; i = next++) work(i);
   };
   std::vector<std::jthread> helpers;

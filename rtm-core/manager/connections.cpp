@@ -39,7 +39,7 @@ base::Result<void> ManagerImpl::connect(const std::string& text) {
     const auto other = find_port(address);
     if (!other) return complain(other.error().message);
     const auto code = CORBA_RTCUtil::connect(request->name, properties, first->in(), other->in());
-    if (code != RTC_OK) return complain("the ports refused it, code " + std::to_string(static_cast<int>(code)));
+    if (code != RTC_OK) return complain("the ports rejected it, code " + std::to_string(static_cast<int>(code)));
   }
   return {};
 }

@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/orb/asker.h"
+#include "corba/orb/principal.h"
 #include "core/config_file.h"
 #include "core/name_format.h"
 #include "core/remote_rights.h"
@@ -227,7 +227,7 @@ coil::Properties ManagerImpl::properties_of_file(const std::string& named_by, co
 coil::Properties ManagerImpl::configured_properties(const std::string& category, const std::string& name) {
   coil::Properties properties;
   if (category.empty() || name.empty()) return properties;
-  const bool is_ours = corba::asker() != corba::Asker::own && rt::is_protected_key(category + "." + name);
+  const bool is_ours = corba::principal() != corba::Principal::own && rt::is_protected_key(category + "." + name);
   if (is_ours) return properties;  // a stranger chooses the name, and sees the properties
   coil::Properties in_line;
   {

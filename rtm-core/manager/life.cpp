@@ -324,9 +324,9 @@ bool ManagerImpl::activate_all() {
 void ManagerImpl::report(const std::string& error) {
   std::string end;
   if (corba::has_caller()) {
-    const auto left_out = refusals.next();
+    const auto left_out = rejection_limiter.next();
     if (!left_out) return;
-    end = rt::RefusalLog::words_for(*left_out);
+    end = rt::LogRateLimiter::omitted_text(*left_out);
   }
   RTC_ERROR(("%s%s", error.c_str(), end.c_str()));
   const auto outputs = list("logger.file_name");

@@ -16,7 +16,7 @@
 #include "corba/orb/orb.h"
 #include "core/component_argument.h"
 #include "core/key_limits.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 #include "core/signal_watcher.h"
 #include "core/task_runner.h"
 #include "rtm/LogstreamBase.h"
@@ -138,7 +138,7 @@ class ManagerImpl {
   void subscribe_ports(const Managed& component);
   bool load_and_create(const std::string& module);
   // Logs why something could not be loaded or created. While the program starts, stderr gets the line too, unless the log goes there.
-  // Errors in calls from other processes are logged within the limit of `refusals`.
+  // Errors in calls from other processes are logged within the limit of `rejection_limiter`.
   void report(const std::string& error);
   // Where the manager of this process would find a module; empty if nowhere, or if there is no manager.
   static std::string module_file(const std::string& module);
@@ -162,7 +162,7 @@ class ManagerImpl {
   std::unique_ptr<rt::TaskRunner> cleaner;
   std::unique_ptr<rt::TaskRunner> peers;
   std::unique_ptr<NamingManager> naming;
-  rt::RefusalLog refusals{32};  // calls of other processes that are rejected or fail
+  rt::LogRateLimiter rejection_limiter{32};  // calls of other processes that are rejected or fail
   std::unique_ptr<ModuleManager> modules;
   RTM::ManagerServant* servant = nullptr;  // we hold one reference
   std::thread::id home;                    // the thread that called init

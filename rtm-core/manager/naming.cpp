@@ -9,9 +9,9 @@
 #include "base/log.h"
 #include "base/own_account.h"
 #include "base/text.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/naming.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "manager/manager_impl.h"
 #include "rtm/CORBA_IORUtil.h"
 #include "rtm/ManagerServant.h"
@@ -230,7 +230,8 @@ void NamingManager::bindUnlessTaken(const char* name, const RTM::ManagerServant*
   impl_->bindings.bind(name, servant->getObjRef(), true);
 }
 void NamingManager::bindObject(const std::string& name, CORBA::Object_ptr object) {
-  impl_->bindings.bind(name, object, corba::asker() != corba::Asker::own);  // a stranger's component takes no name from a living one
+  impl_->bindings.bind(name, object,
+                       corba::principal() != corba::Principal::own);  // a stranger's component takes no name from a living one
 }
 void NamingManager::bindPortObject(const char* name, PortService_ptr port) { bindObject(name, port); }
 void NamingManager::unbindObject(const char* name) { impl_->bindings.unbind(name); }

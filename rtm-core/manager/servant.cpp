@@ -6,10 +6,10 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/guarded_transport.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "corba/orb/sequences.h"
 #include "core/component_argument.h"
 #include "core/config_keys.h"
@@ -136,9 +136,9 @@ bool ManagerServant::may_change(const std::string& what, bool needs_everything) 
 }
 
 void ManagerServant::refuse(const std::string& what, const std::string& why) const {
-  if (const auto left_out = manager_.impl_->refusals.next())
-    base::log(base::Level::warn, "manager", "{} asked for {}: refused, {}{}", corba::caller(), what, why,
-              rt::RefusalLog::words_for(*left_out));
+  if (const auto left_out = manager_.impl_->rejection_limiter.next())
+    base::log(base::Level::warn, "manager", "{} asked for {}: rejected, {}{}", corba::caller(), what, why,
+              rt::LogRateLimiter::omitted_text(*left_out));
 }
 
 // --- modules
@@ -146,13 +146,13 @@ void ManagerServant::refuse(const std::string& what, const std::string& why) con
 // Whoever may put a file somewhere would be this account. A module of the load path was put there by somebody who is.
 bool ManagerServant::may_load(const std::string& module, const std::string& what) const {
   const bool is_said = !manager_.impl_->where("manager.modules.abs_path_allowed").empty() || may_do_everything();
-  if (module.find('/') == std::string::npos || !corba::doors_are_open() || is_said) return true;
+  if (module.find('/') == std::string::npos || !corba::accepts_other_accounts() || is_said) return true;
   refuse(what, "others than the own account may call and manager.modules.abs_path_allowed is not set");
   return false;
 }
 
 bool ManagerServant::may_set(const std::string& key, const std::string& value, const std::string& what) const {
-  const bool is_shown = corba::asker() != corba::Asker::own && rt::shows_environment(key, value);
+  const bool is_shown = corba::principal() != corba::Principal::own && rt::shows_environment(key, value);
   return may_change(what, rt::is_protected_key(key) || is_shown);
 }
 
@@ -228,7 +228,8 @@ RTC::RTObject_ptr ManagerServant::create_component(const char* module_name) {
   // A type that is not known yet is looked for as a module of that name.
   if (!may_load(argument.substr(0, argument.find('?')), "the component " + base::in_quotes(argument))) return RTC::RTObject::_nil();
   // The other one would see a caller of our account.
-  if (!address.empty() && corba::doors_are_open() && !may_change("a component at another manager", true)) return RTC::RTObject::_nil();
+  if (!address.empty() && corba::accepts_other_accounts() && !may_change("a component at another manager", true))
+    return RTC::RTObject::_nil();
   if (!address.empty()) {
     RTM::Manager_var other = manager_at(address);
     if (CORBA::is_nil(other)) {
@@ -326,7 +327,7 @@ RTM::NVList* ManagerServant::get_configuration() {
     const auto mine = manager_.impl_->config_turn.take();
     config = manager_.impl_->config;
   }
-  if (corba::asker() != corba::Asker::own) {
+  if (corba::principal() != corba::Principal::own) {
     for (const auto& key : config.propertyNames()) {
       if (rt::is_secret_key(key)) config.setProperty(key, "");
     }

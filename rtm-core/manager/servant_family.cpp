@@ -1,12 +1,12 @@
-// The masters and slaves of a manager. Slaves in a circle, which would ask each other without end, are refused, as is what does not answer
+// The masters and slaves of a manager. Slaves in a circle, which would ask each other without end, are rejected, as is what does not answer
 // as a manager. One that hangs is dropped, and may come back after a while.
 #include <algorithm>
 
 #include "base/log.h"
 #include "base/own_account.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "core/remote_rights.h"
 #include "manager/at_once.h"
 #include "manager/manager_impl.h"

@@ -86,7 +86,7 @@ void connect_by_topic(PortService_ptr port, const PortProfile& profile, CORBA::O
         std::string(is_first ? profile.name.in() : theirs->name.in()) + ":" + (is_first ? theirs->name.in() : profile.name.in());
     const auto code = CORBA_RTCUtil::connect(name, coil::Properties(), port, other);
     if (code != RTC_OK) {
-      base::log(base::Level::warn, "manager", "ports {} have a topic in common, but refuse to be connected, code {}", name,
+      base::log(base::Level::warn, "manager", "ports {} have a topic in common, but reject the connection, code {}", name,
                 static_cast<int>(code));
       return;
     }

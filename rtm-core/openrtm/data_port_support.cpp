@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "corba/orb/nv_list.h"
 #include "corba/ports/connector_keys.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 #include "manager/transport_modules.h"
 #include "openrtm/interface_plugins.h"
 #include "rtm/CORBA_SeqUtil.h"
@@ -138,12 +138,12 @@ bool converts(const ConnectorProfile& profile, const std::string& own) {
 }  // namespace
 
 void log_refused_connection(const Logger& rtclog, const std::string& why) {
-  rt::log_refusal(rtclog, Logger::RTL_WARN, "connection refused: " + why);
+  rt::log_rejection(rtclog, Logger::RTL_WARN, "connection rejected: " + why);
 }
 
 ReturnCode_t check_connection(ConnectorProfile& profile, const rt::ConnectorSettingsOutcome& outcome, rt::Side side, const Carries& own,
                               Logger& rtclog) {
-  for (const auto& warning : outcome.warnings) rt::log_refusal(rtclog, Logger::RTL_WARN, warning);
+  for (const auto& warning : outcome.warnings) rt::log_rejection(rtclog, Logger::RTL_WARN, warning);
   if (outcome.refusal.code != rt::ReturnCode::ok) {
     log_refused_connection(rtclog, outcome.refusal.reason);
     return static_cast<ReturnCode_t>(outcome.refusal.code);

@@ -36,10 +36,10 @@ bool says_when_empty(const ConnectorProfile& profile);
 // Shows the peer what this OutPort's own properties say about the connection, as dataport.outport.*, where the profile says nothing.
 void share_port_properties(ConnectorProfile& profile, const coil::Properties& port);
 
-// Logs why a connection is refused (core/refusal_log.h).
+// Logs why a connection is rejected (core/log_rate_limiter.h).
 void log_refused_connection(const Logger& rtclog, const std::string& why);
 
-// RTC_OK, or the code with which to refuse; says why in the log, and what is odd about the settings. Announces the type of this side in the
+// RTC_OK, or the code with which to reject; says why in the log, and what is odd about the settings. Announces the type of this side in the
 // profile.
 struct Carries {
   std::string type_id;

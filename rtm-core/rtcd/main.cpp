@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "base/command_line.h"
+#include "base/prefork.h"
 #include "base/text.h"
-#include "base/warm_start.h"
 #include "core/manager_arguments.h"
 #include "name_service.h"
 #include "python_host.h"
@@ -186,7 +186,7 @@ int host(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return base::is_warm_start(argc, argv) ? base::make_processes(host) : host(argc, argv);
+    return base::is_prefork_server(argc, argv) ? base::make_processes(host) : host(argc, argv);
   } catch (const std::system_error& e) {
     fail(1, std::string("out of system resources (threads or files): ") + e.what());
   } catch (const std::bad_alloc&) {

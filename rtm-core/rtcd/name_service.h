@@ -22,5 +22,5 @@ class NameService {
   NameService() = default;
   pid_t keeper_ = -1;  // the process that starts omniNames, waits for our end and tidies up
   int alive_ = -1;     // closed by our end, however it comes
-  std::thread log_;    // logs who was refused; ends with the keeper and omniNames
+  std::thread log_;    // logs who was rejected; ends with the keeper and omniNames
 };

@@ -39,7 +39,7 @@ class MeshReader {
     collect(*scene_.mRootNode, aiMatrix4x4(), false);
     if (lost_) return *lost_;
     for (auto& [index, indices] : indices_by_material_) {
-      mend_normals(indices);
+      repair_normals(indices);
       MeshPart part{
           static_cast<std::uint32_t>(out_.mesh.indices.size()), static_cast<std::uint32_t>(indices.size()), material(index), {}, false};
       out_.mesh.indices.insert(out_.mesh.indices.end(), indices.begin(), indices.end());
@@ -177,7 +177,7 @@ class MeshReader {
   }
 
   // Normals that the file, or its triangles without area, left useless are made from the triangles about them.
-  void mend_normals(const std::vector<std::uint32_t>& indices) {
+  void repair_normals(const std::vector<std::uint32_t>& indices) {
     auto& vertices = out_.mesh.vertices;
     const auto is_bad = [&](std::uint32_t i) {
       const Eigen::Map<const Eigen::Vector3f> n(vertices[i].normal.data());

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-// What a COLLADA image without a file is said to be: Assimp refuses the whole mesh otherwise.
+// What a COLLADA image without a file is said to be: Assimp rejects the whole mesh otherwise.
 inline constexpr std::string_view no_image = "no_image";
 std::string with_named_images(const std::string& collada);
 

@@ -63,7 +63,7 @@ base::Result<void> check_line(std::string_view line, const Element& element, std
     if (!is_list) continue;
     std::uint32_t count = 0;  // 0 if the word is not a number in range
     std::from_chars(word.data(), word.data() + word.size(), count);
-    if (count > most_invented_corners && count > file_size)
+    if (count > max_unchecked_corners && count > file_size)
       return damaged("a list of " + base::in_quotes(element.name) + " counts " + std::to_string(count) + " numbers, the file has " +
                      std::to_string(file_size) + " bytes");
     while (count > 0 && at < line.size()) {

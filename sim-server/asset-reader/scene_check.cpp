@@ -24,7 +24,7 @@ bool has_items(T* const* items, unsigned count) {
 
 // A polygon whose holes are joined to its outline has fewer corners than twice its vertices.
 bool has_invented_corners(const aiMesh& mesh, const aiFace& face) {
-  return face.mNumIndices > most_invented_corners && face.mNumIndices / 2 > mesh.mNumVertices;
+  return face.mNumIndices > max_unchecked_corners && face.mNumIndices / 2 > mesh.mNumVertices;
 }
 
 Fault fault_of_faces(const aiMesh& mesh) {

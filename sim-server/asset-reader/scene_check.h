@@ -11,10 +11,10 @@
 namespace sim {
 
 // Checks that indexes of vertices, meshes and bones are in range, that declared arrays exist, and that nodes nest at most deepest_node
-// deep. Rejects a face with more than most_invented_corners corners if its mesh is too small for them: Assimp fills a list that declares
+// deep. Rejects a face with more than max_unchecked_corners corners if its mesh has too few vertices: Assimp fills a list that declares
 // more numbers than its file has with zeros. It triangulates 65536 corners in 6 s, and this number in 1 s. The error is one line.
 inline constexpr unsigned deepest_node = 1000;
-inline constexpr unsigned most_invented_corners = 1 << 15;
+inline constexpr unsigned max_unchecked_corners = 1 << 15;
 base::Result<void> check_scene(const aiScene& scene);
 
 // The error of a triangle with a corner that is not a number or too far away.

@@ -87,10 +87,10 @@ class Device {
   // State that later steps depend on. Of a device that does not follow the steps it is always the same; never of what subscribers get.
   virtual void add_to(StateHash&) const {}
 
-  // Of position devices; others refuse.
+  // Of position devices; others reject.
   virtual bool set_odometry(const Eigen::Isometry3d&) { return false; }
   virtual bool set_motors(bool) { return false; }
-  // Of readers of RFID tags; others refuse. The tag must be in reach now.
+  // Of readers of RFID tags; others reject. The tag must be in reach now.
   virtual base::Result<void> write_tag(const std::string& id, const std::string& data);
 
   // Of devices with motors, after a step: whether a motor has been told to work.

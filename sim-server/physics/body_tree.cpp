@@ -216,15 +216,15 @@ bool BodyTree::bind_joints(bool one_at_a_time) {
   for (Node& node : nodes()) {
     Eigen::Index free = 0;
     for (TreeRow& row : node.rows) {
-      double left_over = 0;
+      double residual = 0;
       if (row.is_free()) {
         row.impulse = node.share[free++];
       } else {
-        left_over = row.own.dot(node.velocity) + row.give * row.impulse - row.target;
-        if (node.parent >= 0) left_over += row.parent.dot(at(node.parent).velocity);
+        residual = row.own.dot(node.velocity) + row.give * row.impulse - row.target;
+        if (node.parent >= 0) residual += row.parent.dot(at(node.parent).velocity);
       }
       if (one_at_a_time && has_changed) continue;
-      const Bound better = better_bound(row.bound, row.impulse, left_over, row.low, row.high, 1e-12 + 1e-9 * std::abs(row.target));
+      const Bound better = better_bound(row.bound, row.impulse, residual, row.low, row.high, 1e-12 + 1e-9 * std::abs(row.target));
       if (better == row.bound) continue;
       has_changed = true;
       row.bound = better;

@@ -17,26 +17,26 @@ void BoundedSystem::resize(Eigen::Index size) {
   high.setZero(size);
   x.setZero(size);
   stride_ = size + block;
-  if (part_.size() < size * stride_) part_.resize(size * stride_), found_.resize(size);
+  if (factor_.size() < size * stride_) factor_.resize(size * stride_), solution_.resize(size);
   bounds.assign(static_cast<std::size_t>(size), Bound::free);
   solved_.clear();
   factored_.clear();
 }
 
-Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance) {
+Bound better_bound(Bound bound, double x, double residual, double low, double high, double tolerance) {
   if (bound == Bound::free) {
     const double slack = 1e-9 * std::abs(x);
     return x < low - slack ? Bound::low : x > high + slack ? Bound::high : Bound::free;
   }
   if (low == high) return bound;
-  return (bound == Bound::low ? left_over < -tolerance : left_over > tolerance) ? Bound::free : bound;
+  return (bound == Bound::low ? residual < -tolerance : residual > tolerance) ? Bound::free : bound;
 }
 
 // Subtracts the effect of the rows at bounds from the right side.
-void BoundedSystem::find_rest() {
-  rest_ = b;
+void BoundedSystem::compute_right_side() {
+  right_side_ = b;
   for (Eigen::Index k = 0; k < x.size(); ++k) {
-    if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) rest_.noalias() -= x[k] * a.col(k);
+    if (bounds[static_cast<std::size_t>(k)] != Bound::free && x[k] != 0) right_side_.noalias() -= x[k] * a.col(k);
   }
 }
 
@@ -47,43 +47,43 @@ void BoundedSystem::factor_free() {
   const auto count = static_cast<Eigen::Index>(free_.size());
   const Eigen::Index stride = stride_;
   for (Eigen::Index j = 0; j < count; ++j) {
-    double* to = column(j);
+    double* to = factor_column(j);
     const double* from = a.col(free_[static_cast<std::size_t>(j)]).data();
     for (Eigen::Index i = j; i < count; ++i) to[i] = from[free_[static_cast<std::size_t>(i)]];
-    to[count] = rest_[free_[static_cast<std::size_t>(j)]];
+    to[count] = right_side_[free_[static_cast<std::size_t>(j)]];
     std::fill_n(to + count + 1, block - 1, 0.0);
     for (Eigen::Index i = j; i <= count; i += block) {
       Block sum = Eigen::Map<const Block>(to + i);
-      const double* share = part_.data() + j;
-      const double* rows = part_.data() + i;
+      const double* share = factor_.data() + j;
+      const double* rows = factor_.data() + i;
       for (Eigen::Index k = j; k > 0; --k, share += stride, rows += stride) sum -= *share * Eigen::Map<const Block>(rows);
       Eigen::Map<Block>(to + i) = sum;
     }
     const double inverse = 1 / std::sqrt(to[j]);
     for (Eigen::Index i = j + 1; i <= count; i += 1) to[i] *= inverse;
     to[j] = inverse;
-    found_[j] = to[count];
+    solution_[j] = to[count];
   }
   factored_ = free_;
 }
 
 // Forward substitution with the existing factor.
-void BoundedSystem::find_forward() {
+void BoundedSystem::substitute_forward() {
   const auto count = static_cast<Eigen::Index>(free_.size());
-  for (Eigen::Index j = 0; j < count; ++j) found_[j] = rest_[free_[static_cast<std::size_t>(j)]];
+  for (Eigen::Index j = 0; j < count; ++j) solution_[j] = right_side_[free_[static_cast<std::size_t>(j)]];
   for (Eigen::Index j = 0; j < count; ++j) {
-    found_[j] *= column(j)[j];
+    solution_[j] *= factor_column(j)[j];
     const Eigen::Index below = count - j - 1;
-    found_.segment(j + 1, below).noalias() -= found_[j] * Eigen::Map<const Eigen::VectorXd>(column(j) + j + 1, below);
+    solution_.segment(j + 1, below).noalias() -= solution_[j] * Eigen::Map<const Eigen::VectorXd>(factor_column(j) + j + 1, below);
   }
 }
 
-void BoundedSystem::find_backward() {
+void BoundedSystem::substitute_backward() {
   const auto count = static_cast<Eigen::Index>(free_.size());
   for (Eigen::Index j = count - 1; j >= 0; --j) {
     const Eigen::Index below = count - j - 1;
-    const Eigen::Map<const Eigen::VectorXd> factor(column(j) + j + 1, below);
-    found_[j] = (found_[j] - factor.dot(found_.segment(j + 1, below))) * column(j)[j];
+    const Eigen::Map<const Eigen::VectorXd> factor(factor_column(j) + j + 1, below);
+    solution_[j] = (solution_[j] - factor.dot(solution_.segment(j + 1, below))) * factor_column(j)[j];
   }
 }
 
@@ -102,19 +102,19 @@ void BoundedSystem::solve_free() {
   }
   if (!has_moved) return;
   solved_ = bounds;
-  find_rest();
-  free_ == factored_ ? find_forward() : factor_free();
-  find_backward();
-  for (std::size_t i = 0; i < free_.size(); ++i) x[free_[i]] = found_[static_cast<Eigen::Index>(i)];
+  compute_right_side();
+  free_ == factored_ ? substitute_forward() : factor_free();
+  substitute_backward();
+  for (std::size_t i = 0; i < free_.size(); ++i) x[free_[i]] = solution_[static_cast<Eigen::Index>(i)];
 }
 
 // Changes the bounds of wrong rows. Returns the number of wrong rows.
-std::size_t BoundedSystem::turn_wrong(bool one_at_a_time) {
+std::size_t BoundedSystem::change_wrong_bounds(bool one_at_a_time) {
   std::size_t wrong = 0;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     Bound& bound = bounds[static_cast<std::size_t>(i)];
-    const double left_over = bound == Bound::free ? 0 : a.row(i).dot(x) - b[i];
-    const Bound better = better_bound(bound, x[i], left_over, low[i], high[i], 1e-12 + 1e-9 * std::abs(b[i]));
+    const double residual = bound == Bound::free ? 0 : a.row(i).dot(x) - b[i];
+    const Bound better = better_bound(bound, x[i], residual, low[i], high[i], 1e-12 + 1e-9 * std::abs(b[i]));
     if (better == bound) continue;
     ++wrong;
     if (!one_at_a_time || wrong == 1) bound = better;
@@ -127,7 +127,7 @@ bool BoundedSystem::solve() {
   const int most = at_once + 10 * static_cast<int>(x.size());
   for (int round = 0; round < most; ++round) {
     solve_free();
-    if (turn_wrong(round >= at_once) == 0) return true;
+    if (change_wrong_bounds(round >= at_once) == 0) return true;
   }
   return false;
 }

@@ -23,24 +23,24 @@ struct BoundedSystem {
   bool solve();
 
  private:
-  void find_rest();
+  void compute_right_side();
   void factor_free();
-  void find_forward();
-  void find_backward();
+  void substitute_forward();
+  void substitute_backward();
   void solve_free();
-  std::size_t turn_wrong(bool one_at_a_time);
-  double* column(Eigen::Index free) { return part_.data() + free * stride_; }
+  std::size_t change_wrong_bounds(bool one_at_a_time);
+  double* factor_column(Eigen::Index free) { return factor_.data() + free * stride_; }
 
   std::vector<Bound> solved_;                  // bounds for which `x` was computed, with their values
-  std::vector<Eigen::Index> free_, factored_;  // rows; the rows of the factor `part_`
+  std::vector<Eigen::Index> free_, factored_;  // rows; the rows of the factor `factor_`
   // Cholesky factor of the free rows, with 1 / the diagonal. Below it a row with the right side, then zeros that fill the last block of
   // rows. The storage is reused.
-  Eigen::VectorXd part_;
+  Eigen::VectorXd factor_;
   Eigen::Index stride_ = 0;
-  Eigen::VectorXd found_, rest_;
+  Eigen::VectorXd solution_, right_side_;
 };
 
 // The bound to which a row at `bound` should change, for its force x and its remaining velocity.
-Bound better_bound(Bound bound, double x, double left_over, double low, double high, double tolerance);
+Bound better_bound(Bound bound, double x, double residual, double low, double high, double tolerance);
 
 }  // namespace sim

@@ -71,7 +71,7 @@ void JointInstance::put_stops(int i, double low, double high, double erp) {
   if (erp != stops.erp_in_ode) set_stop_parameter(i, dParamStopERP, stops.erp_in_ode = erp);
   if (low == stops.low_in_ode && high == stops.high_in_ode) return;
   stops.low_in_ode = low, stops.high_in_ode = high;
-  // ODE refuses a low stop above the high one that is there, so that the low one is set again.
+  // ODE rejects a low stop above the high one that is there, so that the low one is set again.
   set_stop_parameter(i, dParamLoStop, low);
   set_stop_parameter(i, dParamHiStop, high);
   set_stop_parameter(i, dParamLoStop, low);

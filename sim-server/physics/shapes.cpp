@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "world/told_faults.h"
+#include "world/reported_files.h"
 
 namespace sim {
 
@@ -50,7 +50,7 @@ void fill(ShapeStore::Mesh& mesh, const TriangleMesh& from) {
 
 // The line about a collision is the one about its file.
 base::Error missed(const std::string& path, const base::Error& why) {
-  static_cast<void>(is_first_fault(path));
+  static_cast<void>(is_first_report(path));
   return why;
 }
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstring>
 
-#include "world/told_faults.h"
+#include "world/reported_files.h"
 
 namespace sim {
 namespace {
@@ -107,7 +107,7 @@ Geometry make_geometry(RTCDevice device, const GeometryDef& g, const Eigen::Isom
   const auto mesh = cache.triangles(g);
   if (!mesh) {
     const auto* file = std::get_if<MeshShape>(&g);
-    if (file == nullptr || is_first_fault(file->path)) notes.push_back(mesh.error().message + "; rays do not see it");
+    if (file == nullptr || is_first_report(file->path)) notes.push_back(mesh.error().message + "; rays do not see it");
     return nullptr;
   }
   return triangles(device, (*mesh)->vertices, (*mesh)->triangles, pose);

@@ -11,7 +11,7 @@
 
 #include "reader/asset_reader.h"
 #include "render/mesh_arrays.h"
-#include "world/told_faults.h"
+#include "world/reported_files.h"
 
 namespace sim {
 namespace {
@@ -176,7 +176,7 @@ std::shared_ptr<const Mesh> Assets::load(const MeshShape& shape) {
   if (kept) return kept;
   auto file = read_mesh_file(shape, model_path_);
   if (!file) {
-    if (is_first_fault(shape.path)) complaints_.push_back(file.error().message + "; a stand-in is drawn");
+    if (is_first_report(shape.path)) complaints_.push_back(file.error().message + "; a stand-in is drawn");
     return kept = missing_mesh_;
   }
   keep_images(std::move(file->images), file->files);
@@ -218,7 +218,7 @@ std::shared_ptr<const Mesh> Assets::load(const HeightmapShape& shape) {
   if (kept) return kept;
   auto grid = triangles_.heights(shape);
   if (!grid) {
-    if (is_first_fault(shape.path)) complaints_.push_back(grid.error().message + "; a stand-in is drawn");
+    if (is_first_report(shape.path)) complaints_.push_back(grid.error().message + "; a stand-in is drawn");
     return kept = missing_mesh_;
   }
   const HeightGrid& g = **grid;

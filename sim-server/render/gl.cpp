@@ -116,7 +116,7 @@ base::Result<std::unique_ptr<Context>> Context::open() {
   std::unique_ptr<Context> context(new Context);
   context->handle_ = OSMesaCreateContextAttribs(attributes, nullptr);
   if (context->handle_ == nullptr) return base::Error{"render: OSMesa makes no GL 3.3 core context"};
-  if (!context->make_current()) return base::Error{"render: OSMesa refuses its own context"};
+  if (!context->make_current()) return base::Error{"render: OSMesa cannot make its own context current"};
   if (const char* missing = load_all(context->functions_)) return base::Error{std::string("render: this OSMesa has no ") + missing};
   return context;
 }

@@ -98,7 +98,7 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  // Makes this context the calling thread's own; cheap when it is already. False when OSMesa refuses.
+  // Makes this context the calling thread's own; cheap when it is already. False when OSMesa rejects.
   bool make_current();
   const Functions& functions() const { return functions_; }
 

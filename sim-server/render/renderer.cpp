@@ -240,7 +240,7 @@ void Renderer::Impl::draw_triangles(const std::vector<OverlayVertex>& triangles,
 base::Result<void> Renderer::Impl::draw(const std::shared_ptr<const Scene>& scene, std::span<const Eigen::Isometry3d> poses,
                                         const View& view, const Overlay* overlay) {
   if (auto checked = check(*scene, poses, view); !checked) return checked;
-  if (!context_->make_current()) return base::Error{"render: OSMesa refuses its own context"};
+  if (!context_->make_current()) return base::Error{"render: OSMesa cannot make its own context current"};
   if (scene_ != scene) {
     store_.enter(*scene);
     shadow_.forget();

@@ -16,9 +16,9 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/output_name.h"
+#include "base/prefork.h"
 #include "base/terminal.h"
 #include "base/text.h"
-#include "base/warm_start.h"
 #include "base/whole_file.h"
 #include "render/assets.h"
 #include "render/scene.h"
@@ -348,7 +348,7 @@ int serve(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (base::is_warm_start(argc, argv)) {
+  if (base::is_prefork_server(argc, argv)) {
     // The specification of SDFormat is read with the first world: more than half of a start, with the libraries.
     static_cast<void>(sim::load_world_text("<sdf version='1.6'><world name='none'/></sdf>", "/", "none", sim::ModelPath{}));
     return base::make_processes(serve);

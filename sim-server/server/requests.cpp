@@ -206,9 +206,9 @@ struct ServerLoop::Handler {
     if (request.is_path && request.sdf.starts_with(deleted)) return restore(request.sdf.substr(deleted.size()));
     // What is asked for others is made of what the model path offers to everybody.
     const ModelPath& path = loop.model_path_;
-    if (!loop.spawn_desk_) loop.spawn_desk_ = std::make_unique<SpawnDesk>([board = &loop.board_] { board->wake(); });
-    loop.spawn_desk_->take({ticket, request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path,
-                            simulation.world().model_path, simulation.pictures().contents(), request.gains, request.joints});
+    if (!loop.spawn_loader_) loop.spawn_loader_ = std::make_unique<SpawnLoader>([board = &loop.board_] { board->wake(); });
+    loop.spawn_loader_->take({ticket, request.sdf, request.name, pose, loop.is_shared() || request.is_confined ? path.confined() : path,
+                              simulation.world().model_path, simulation.pictures().contents(), request.gains, request.joints});
     return {};
   }
   // As models that have been read: between two steps, under its old name.
@@ -241,7 +241,7 @@ struct ServerLoop::Handler {
       return no_model(physics, request.follow);
     auto plan = plan_picture(simulation, request);
     if (!plan) return failed(plan.error());
-    order(PictureDesk::Picture{std::move(*plan), request.path, request.as_pixels}, {});
+    order(ScreenshotWorker::Picture{std::move(*plan), request.path, request.as_pixels}, {});
     return {};
   }
   shm::Reply operator()(const shm::ExportRequest& request) {
@@ -270,10 +270,10 @@ struct ServerLoop::Handler {
   }
   template <class Work>
   void order(Work work, shm::Reply reply) {
-    if (!loop.desk_) loop.desk_ = std::make_unique<PictureDesk>([board = &loop.board_] { board->wake(); });
+    if (!loop.screenshots_) loop.screenshots_ = std::make_unique<ScreenshotWorker>([board = &loop.board_] { board->wake(); });
     reply.sim_time_ns = simulation.time().count();
     reply.steps = simulation.steps();
-    loop.desk_->take({ticket, std::move(work), std::move(reply)});
+    loop.screenshots_->take({ticket, std::move(work), std::move(reply)});
   }
   shm::Reply operator()(const shm::StatsRequest&) {
     shm::Reply reply;
@@ -346,7 +346,7 @@ struct ServerLoop::Handler {
   }
 };
 
-shm::Reply ServerLoop::spawn(SpawnDesk::Done&& done) {
+shm::Reply ServerLoop::spawn(SpawnLoader::Done&& done) {
   if (!done.model) return failed(done.model.error());
   ModelDef& model = done.model.value().model;
   if (done.has_own_name) {  // one that nobody asked for gives way
@@ -402,11 +402,11 @@ bool ServerLoop::are_files_read(const shm::Request& request) {
 }
 
 void ServerLoop::handle_requests(When when) {
-  if (desk_) {
-    for (const auto& done : desk_->finished()) board_.reply(done.ticket, done.reply);
+  if (screenshots_) {
+    for (const auto& done : screenshots_->finished()) board_.reply(done.ticket, done.reply);
   }
-  if (spawn_desk_) {
-    for (auto& done : spawn_desk_->finished()) loaded_.push_back({std::move(done), Clock::now()});
+  if (spawn_loader_) {
+    for (auto& done : spawn_loader_->finished()) loaded_.push_back({std::move(done), Clock::now()});
   }
   auto waiting = std::exchange(postponed_, {});
   for (auto& asked : board_.poll()) waiting.push_back({std::move(asked), Clock::now()});

@@ -262,7 +262,7 @@ void ServerLoop::keep_pace() {
 bool ServerLoop::is_watched() const {
   const auto& devices = simulation_.devices();
   return barrier_->refresh() > 0 || iface_.is_subscribed() || std::any_of(devices.begin(), devices.end(), [](const auto& device) {
-           return device->iface().is_subscribed() || device->iface().commander() != 0;
+           return device->iface().is_subscribed() || device->iface().commanding_pid() != 0;
          });
 }
 
@@ -279,7 +279,7 @@ void ServerLoop::finish_step_request() {
 }
 
 void ServerLoop::note_death(const shm::BarrierEvent& event) {
-  if (!step_ticket_ || !ends_at_death_ || event.looks_on) return;
+  if (!step_ticket_ || !ends_at_death_ || event.is_tool) return;
   if (!death_) death_.emplace(Death{.pid = event.pid, .in_tick = {}});
   if (death_->pid != event.pid || !event.was_in_tick) return;
   death_->in_tick.push_back(event.name);

@@ -15,10 +15,10 @@
 #include "server/memory_log.h"
 #include "server/mode.h"
 #include "server/pace.h"
-#include "server/picture_desk.h"
 #include "server/recorder.h"
+#include "server/screenshot_worker.h"
 #include "server/simulation.h"
-#include "server/spawn_desk.h"
+#include "server/spawn_loader.h"
 #include "server/world_hashes.h"
 #include "shm/lockstep.h"
 #include "shm/request_board.h"
@@ -76,9 +76,9 @@ class ServerLoop {
   void finish_step_request();
   // Models that have been read come into the world, in the order in which they were asked for.
   void spawn_loaded(When when);
-  shm::Reply spawn(SpawnDesk::Done&& done);
+  shm::Reply spawn(SpawnLoader::Done&& done);
   // In lock step time waits for the files of a model that is spawned: when it comes must not depend on how fast they are read.
-  bool waits_for_spawn() const { return options_.is_lockstep && spawn_desk_ && spawn_desk_->under_way() > 0; }
+  bool waits_for_spawn() const { return options_.is_lockstep && spawn_loader_ && spawn_loader_->under_way() > 0; }
   std::string late_participants() const;
   // Ends the steps that a client has asked for before they are all done, and tells it why.
   void end_steps(const std::string& why, shm::Reply reply = {});
@@ -127,11 +127,11 @@ class ServerLoop {
     shm::RequestBoard::Asked asked;
     std::chrono::steady_clock::time_point since;
   };
-  std::vector<Postponed> postponed_;       // until the tick is over
-  std::unique_ptr<PictureDesk> desk_;      // made with the first picture
-  std::unique_ptr<SpawnDesk> spawn_desk_;  // made with the first model that is spawned
+  std::vector<Postponed> postponed_;               // until the tick is over
+  std::unique_ptr<ScreenshotWorker> screenshots_;  // made with the first picture
+  std::unique_ptr<SpawnLoader> spawn_loader_;      // made with the first model that is spawned
   struct Loaded {
-    SpawnDesk::Done done;
+    SpawnLoader::Done done;
     std::chrono::steady_clock::time_point since;
   };
   std::vector<Loaded> loaded_;  // models that wait for the end of a tick

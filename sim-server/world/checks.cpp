@@ -49,7 +49,7 @@ struct NumberCheck {
   }
 
   // Three numbers where a pose is expected are a place.
-  void mend_position(pugi::xml_node pose) {
+  void repair_position(pugi::xml_node pose) {
     const std::optional<std::vector<double>> numbers = parse_numbers(text_of(pose));
     if (!numbers || numbers->size() != 3) return;
     const bool is_quaternion = std::string_view(pose.attribute("rotation_format").value()) == "quat_xyzw";
@@ -63,7 +63,7 @@ struct NumberCheck {
       if (child.type() != pugi::node_element || is_one_of(child.name(), {"plugin", "state"})) continue;
       const std::string_view name = child.name();
       if (name == "pose") {
-        mend_position(child);
+        repair_position(child);
         const std::optional<Eigen::Isometry3d> pose = parse_pose(child);
         if (!pose || pose->translation().cwiseAbs().maxCoeff() > largest_length) {
           const bool is_quaternion = std::string_view(child.attribute("rotation_format").value()) == "quat_xyzw";
@@ -179,7 +179,7 @@ void rename_references(pugi::xml_node model, const std::string& from, const std:
   }
 }
 
-void mend_names(pugi::xml_node model, Complaints& complaints) {
+void repair_names(pugi::xml_node model, Complaints& complaints) {
   TakenNames taken;
   // Joints last: when they clash with a link it is their name that nobody else refers to.
   for (const char* kind : {"link", "model", "frame", "joint"}) {
@@ -252,7 +252,7 @@ void swap_with_world(pugi::xml_node joint, const std::string& link) {
   }
 }
 
-// Why the joint cannot be, or empty. Mends what can be mended.
+// Why the joint cannot be, or empty. Repairs what can be repaired.
 std::string fault_of(pugi::xml_node joint, const std::set<std::string>& names, Complaints& complaints) {
   static const std::map<std::string_view, int> axes{{"fixed", 0}, {"ball", 0},      {"revolute", 1},  {"continuous", 1}, {"prismatic", 1},
                                                     {"screw", 1}, {"universal", 2}, {"revolute2", 2}, {"gearbox", 2}};
@@ -284,7 +284,7 @@ std::string fault_of(pugi::xml_node joint, const std::set<std::string>& names, C
   return {};
 }
 
-void mend_joints(pugi::xml_node model, const std::set<std::string>& names, Complaints& complaints) {
+void repair_joints(pugi::xml_node model, const std::set<std::string>& names, Complaints& complaints) {
   for (pugi::xml_node joint = model.child("joint"), next; joint; joint = next) {
     next = joint.next_sibling("joint");
     const std::string fault = fault_of(joint, names, complaints);
@@ -296,10 +296,10 @@ void mend_joints(pugi::xml_node model, const std::set<std::string>& names, Compl
 
 }  // namespace
 
-bool mend_model(pugi::xml_node model, Complaints& complaints) {
+bool repair_model(pugi::xml_node model, Complaints& complaints) {
   for (pugi::xml_node nested = model.child("model"), next; nested; nested = next) {
     next = nested.next_sibling("model");
-    if (!mend_model(nested, complaints)) model.remove_child(nested);
+    if (!repair_model(nested, complaints)) model.remove_child(nested);
   }
   const bool has_lost_include = model.remove_attribute(lost_include_mark);
   if (!model.child("link") && !model.child("model")) {
@@ -307,10 +307,10 @@ bool mend_model(pugi::xml_node model, Complaints& complaints) {
     if (!has_lost_include) complaints.drop(model, describe_in_context(model) + " has no link and is left out");
     return false;
   }
-  mend_names(model, complaints);
+  repair_names(model, complaints);
   std::set<std::string> names;
   collect_names(model, {}, names);
-  mend_joints(model, names, complaints);
+  repair_joints(model, names, complaints);
   names.clear();
   collect_names(model, {}, names);  // without the joints that are gone
   visit_references(model, [&](pugi::xml_node node, pugi::xml_attribute reference) {
@@ -320,7 +320,7 @@ bool mend_model(pugi::xml_node model, Complaints& complaints) {
                               base::in_quotes(reference.value()) + ", which does not exist; it is ignored");
     node.remove_attribute(reference);
   });
-  mend_circular_references(model, complaints);
+  repair_circular_references(model, complaints);
   for (const char* key : {"canonical_link", "placement_frame"}) {
     const pugi::xml_attribute reference = model.attribute(key);
     if (reference && !std::string_view(reference.value()).empty() && !names.contains(reference.value())) {

@@ -47,7 +47,7 @@ Step step_from(const NamedPlace& place, bool is_of_poses) {
 
 }  // namespace
 
-void mend_missing_references(const std::vector<NamedPlace>& places, Complaints& complaints) {
+void repair_missing_references(const std::vector<NamedPlace>& places, Complaints& complaints) {
   std::set<std::string> names{"world"};
   for (const NamedPlace& place : places) names.insert(place.name);
   names.erase("");
@@ -60,7 +60,7 @@ void mend_missing_references(const std::vector<NamedPlace>& places, Complaints& 
   }
 }
 
-void mend_circular_references(const std::vector<NamedPlace>& places, Complaints& complaints) {
+void repair_circular_references(const std::vector<NamedPlace>& places, Complaints& complaints) {
   std::map<std::string, const NamedPlace*> by_name;
   for (const NamedPlace& place : places) {
     if (!place.name.empty()) by_name.emplace(place.name, &place);
@@ -85,7 +85,7 @@ void mend_circular_references(const std::vector<NamedPlace>& places, Complaints&
   }
 }
 
-void mend_circular_references(pugi::xml_node model, Complaints& complaints) {
+void repair_circular_references(pugi::xml_node model, Complaints& complaints) {
   std::vector<NamedPlace> places;
   for (const char* kind : {"link", "model", "frame", "joint"}) {
     const bool is_frame = std::string_view(kind) == "frame", is_joint = std::string_view(kind) == "joint";
@@ -94,7 +94,7 @@ void mend_circular_references(pugi::xml_node model, Complaints& complaints) {
                         is_joint ? text_of(node.child("child")) : ""});
     }
   }
-  mend_circular_references(places, complaints);
+  repair_circular_references(places, complaints);
 }
 
 }  // namespace sim

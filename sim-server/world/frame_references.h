@@ -1,4 +1,4 @@
-// References from frames and poses to each other that lead nowhere or round in a circle: libsdformat refuses all that it reads with one of
+// References from frames and poses to each other that lead nowhere or round in a circle: libsdformat rejects all that it reads with one of
 // them, so they are taken out before, with a line each. One thread at a time.
 #pragma once
 
@@ -19,10 +19,10 @@ struct NamedPlace {
 };
 
 // The places of a world, all of them: a name that is none of theirs, with what comes before its first "::", leads nowhere.
-void mend_missing_references(const std::vector<NamedPlace>& places, Complaints& complaints);
+void repair_missing_references(const std::vector<NamedPlace>& places, Complaints& complaints);
 
 // Of each circle one reference is taken out: of the places of a world, or within a model.
-void mend_circular_references(const std::vector<NamedPlace>& places, Complaints& complaints);
-void mend_circular_references(pugi::xml_node model, Complaints& complaints);
+void repair_circular_references(const std::vector<NamedPlace>& places, Complaints& complaints);
+void repair_circular_references(pugi::xml_node model, Complaints& complaints);
 
 }  // namespace sim

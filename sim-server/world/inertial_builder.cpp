@@ -20,7 +20,7 @@ constexpr double largest_mass = 1e12;
 
 }  // namespace
 
-Eigen::Matrix3d mended_inertia(const Eigen::Matrix3d& inertia, double mass, std::string& why) {
+Eigen::Matrix3d repaired_inertia(const Eigen::Matrix3d& inertia, double mass, std::string& why) {
   const Eigen::Matrix3d small_ball = Eigen::Matrix3d::Identity() * (0.4 * mass * 0.01);
   if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > 1e15) {
     why = "is not finite";
@@ -107,7 +107,7 @@ void build_inertial(LinkDef& link, pugi::xml_node node, bool is_static, BuildCon
     inertia << entry("ixx", 1), xy, xz, xy, entry("iyy", 1), yz, xz, yz, entry("izz", 1);
   }
   std::string why;
-  inertia = mended_inertia(inertia, link.mass, why);
+  inertia = repaired_inertia(inertia, link.mass, why);
   if (!why.empty() && !is_static)
     context.complaints.warn(node, "inertia of " + describe_in_context(node.parent()) + " " + why + "; it is corrected");
   link.center_of_mass = pose.translation();

@@ -12,6 +12,6 @@ void build_inertial(LinkDef& link, pugi::xml_node inertial, bool is_static, Buil
 // From the volumes of the collisions; as it was, with a finding, when there is nothing to weigh.
 void take_automatic_inertia(LinkDef& link, pugi::xml_node inertial, BuildContext& context);
 // Positive definite and possible for a body of positive density; `why` says what was wrong.
-Eigen::Matrix3d mended_inertia(const Eigen::Matrix3d& inertia, double mass, std::string& why);
+Eigen::Matrix3d repaired_inertia(const Eigen::Matrix3d& inertia, double mass, std::string& why);
 
 }  // namespace sim

@@ -335,7 +335,7 @@ class ModelBuilder {
     const std::optional<Eigen::Matrix3d> inertia = inertia_of_shapes(link.collisions, link.mass, context_.triangles);
     if (!inertia) return;
     std::string why;
-    link.inertia = mended_inertia(*inertia, link.mass, why);
+    link.inertia = repaired_inertia(*inertia, link.mass, why);
     if (weighed_++ == 0) first_weighed_ = inertial;
   }
 

@@ -25,7 +25,7 @@ class ModelFiles {
   // All three outlive the object.
   ModelFiles(const ModelPath& model_path, SdfLibrary& library, Complaints& complaints);
 
-  // A document in the current version: parsed, mended, translated; not yet checked. Fails for what is no SDFormat (or URDF) at all.
+  // A document in the current version: parsed, repaired, translated; not yet checked. Fails for what is no SDFormat (or URDF) at all.
   base::Result<pugi::xml_document> open_text(const std::string& text, const std::string& file_name);
 
   // Checks an entity of a document, makes its file names absolute and puts the models that it includes inside models in their places.

@@ -162,7 +162,7 @@ std::string expectation(const NumberRule& rule) {
     case Form::number:
       return "a number";
     case Form::within:
-      return "a number from " + base::format_number(rule.least) + " to " + base::format_number(rule.most);
+      return "a number from " + base::format_number(rule.min) + " to " + base::format_number(rule.max);
     case Form::pose:
       return "six finite numbers";
     case Form::vector2:
@@ -204,7 +204,7 @@ bool fits(const NumberRule& rule, const std::string& text) {
     case Form::number:
       return all(1, [](double value) { return !std::isnan(value); });
     case Form::within:
-      return all(1, [&rule](double value) { return value >= rule.least && value <= rule.most; });
+      return all(1, [&rule](double value) { return value >= rule.min && value <= rule.max; });
     case Form::pose:
       return all(6, sane);
     case Form::vector2:

@@ -14,7 +14,7 @@ struct NumberRule {
   enum class Remedy { drop_owner, ignore };
   Form form;
   Remedy remedy;
-  double least = 0, most = 0;  // of Form::within
+  double min = 0, max = 0;  // of Form::within
 };
 
 // The rule of <element> in <parent>; null: none. The prefix of a parent (<gz:dvl>) does not count.

@@ -29,7 +29,7 @@ enum class Must {
   vector_not_negative,
   push,
   ratio,
-  own  // refused by the plugin's own reader alone: it has no default, or what is default depends on others
+  own  // rejected by the plugin's own reader alone: it has no default, or what is default depends on others
 };
 
 struct NumberRow {

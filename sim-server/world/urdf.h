@@ -12,7 +12,7 @@ namespace sim {
 
 // The robot as the library gets it. Joints on a massless link that a fixed joint holds hang on what holds it; links that move and have no
 // mass get 0.1 kg, and those of less than 2e-6 kg that, with a finding; infinite limits are 1e16. Numbers of joints that mean nothing are
-// replaced, with a finding. The library would leave out such links with everything on them, and refuse the
+// replaced, with a finding. The library would leave out such links with everything on them, and reject the
 // others.
 std::string urdf_for_library(pugi::xml_node robot, Complaints& complaints);
 

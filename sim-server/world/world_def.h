@@ -422,7 +422,7 @@ Eigen::AlignedBox3d box_of(const ModelDef& model, const Eigen::Isometry3d& pose)
 struct Finding {
   enum class Severity {
     note,     // taken in another way than written ("ellipsoid is approximated"), nothing lost
-    warning,  // mended or ignored without a loss for the simulation
+    warning,  // repaired or ignored without a loss for the simulation
     dropped,  // an object or element is missing from the world because of this
   };
   Severity severity = Severity::warning;

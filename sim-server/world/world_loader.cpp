@@ -39,7 +39,7 @@ constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred
 
 // A model as it is written, however often it stands in the world.
 struct DistinctModel {
-  pugi::xml_node node;  // checked and mended
+  pugi::xml_node node;  // checked and repaired
   bool is_usable = false;
   std::size_t elements = 0;  // as element_count() counts
   std::string skeleton;
@@ -87,7 +87,7 @@ class Loader {
   std::size_t distinct_for(const std::string& key, pugi::xml_node node);
   bool is_too_large() const { return elements_ > most_elements_of_world; }
   static bool has_world_frames(pugi::xml_node world);
-  void mend_world_references(pugi::xml_node world);
+  void repair_world_references(pugi::xml_node world);
   bool resolve_whole_world(pugi::xml_node world);
   void resolve_models();
   void resolve_batch(const std::vector<std::pair<std::string, std::size_t>>& batch);
@@ -117,7 +117,7 @@ std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
   if (!is_new) return found->second;
   DistinctModel& model = distinct_.emplace_back();
   model.node = node;
-  model.is_usable = mend_model(node, complaints_);
+  model.is_usable = repair_model(node, complaints_);
   model.elements = element_count(node);
   if (model.is_usable && frames_of(node) > most_frames) {
     complaints_.drop(node, describe(node) + " has more than " + std::to_string(most_frames) +
@@ -215,15 +215,15 @@ bool Loader::has_world_frames(pugi::xml_node world) {
   return false;
 }
 
-void Loader::mend_world_references(pugi::xml_node world) {
+void Loader::repair_world_references(pugi::xml_node world) {
   std::vector<NamedPlace> places;
   for (pugi::xml_node frame : world.children("frame")) places.push_back({frame.attribute("name").value(), frame, frame.child("pose"), {}});
   for (const Instance& instance : instances_) places.push_back({instance.name, {}, instance.pose_node, {}});
   for (const char* kind : {"light", "actor"}) {
     for (pugi::xml_node thing : world.children(kind)) places.push_back({{}, {}, thing.child("pose"), {}});
   }
-  mend_missing_references(places, complaints_);
-  mend_circular_references(places, complaints_);
+  repair_missing_references(places, complaints_);
+  repair_circular_references(places, complaints_);
 }
 
 // Models that stand relative to each other or to frames of the world are resolved in one go.
@@ -235,7 +235,7 @@ bool Loader::resolve_whole_world(pugi::xml_node world) {
                                 "; poses are taken relative to the world");
     return false;
   }
-  mend_world_references(world);
+  repair_world_references(world);
   pugi::xml_document document;
   pugi::xml_node sdf = document.append_child("sdf");
   sdf.append_attribute("version") = current_sdf_version;

@@ -5,7 +5,7 @@
 
 #include "base/plain_file.h"
 #include "base/text.h"
-#include "world/text_mender.h"
+#include "world/xml_repair.h"
 
 namespace sim {
 
@@ -153,11 +153,11 @@ base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::s
   if (parsed.status == pugi::status_out_of_memory) return base::Error{file_name + ": is too large for the memory"};
   LineTable lines(text);
   if (!parsed && is_bytes) {
-    const MendedText mended = mend_xml_text(text);
-    if (!mended.changes.empty()) {
-      parsed = document.load_buffer(mended.text.data(), mended.text.size(), pugi::parse_default, pugi::encoding_utf8);
-      lines = LineTable(mended.text);
-      for (const MendedText::Change& change : mended.changes) {
+    const RepairedText repaired = repair_xml_text(text);
+    if (!repaired.changes.empty()) {
+      parsed = document.load_buffer(repaired.text.data(), repaired.text.size(), pugi::parse_default, pugi::encoding_utf8);
+      lines = LineTable(repaired.text);
+      for (const RepairedText::Change& change : repaired.changes) {
         if (parsed) complaints.add(Finding::Severity::warning, {file_name, LineTable(text).line_at(change.offset)}, change.message);
       }
     }

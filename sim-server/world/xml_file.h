@@ -19,8 +19,8 @@ bool is_lfs_pointer(std::string_view text);
 bool is_lfs_pointer_file(const std::filesystem::path& path);
 inline constexpr std::string_view lfs_pointer_fault = "is a Git LFS pointer in place of the file (fetch it with: git lfs pull)";
 
-// Fails for what is not XML (after mending quotes and stray end tags), too deep, or has too many elements. Entities of a document type are
-// not expanded.
+// Fails for what is not XML (after repairing quotes and stray end tags), too deep, or has too many elements. Entities of a document type
+// are not expanded.
 base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::string& file_name, Complaints& complaints);
 
 // The element and all in it as one line of XML. Without the marks it is the text that libsdformat gets and by which equal models are known.

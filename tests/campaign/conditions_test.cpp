@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/run/deeds_runner.h"
+#include "campaign/run/action_runner.h"
 #include "run/fake_simulator.h"
 
 namespace campaign {
@@ -34,7 +34,7 @@ struct Scene {
                         }};
 
   // After ten steps, so at the first look.
-  Result<void> look(DeedsRunner& runner, double time_s) { return runner.act(scene, std::llround(time_s / simulator.step())); }
+  Result<void> look(ActionRunner& runner, double time_s) { return runner.act(scene, std::llround(time_s / simulator.step())); }
 };
 
 Condition condition(const std::string& yaml) { return to_condition(YAML::Load(yaml)); }
@@ -43,12 +43,12 @@ Condition contact(const std::string& model, const std::string& touched) {
   return condition("{model: " + model + ", touches: " + touched + "}");
 }
 
-std::string problem(DeedsRunner& runner) { return runner.verdicts().at(0).problem; }
+std::string problem(ActionRunner& runner) { return runner.verdicts().at(0).problem; }
 
 TEST(Conditions, a_model_in_a_region_is_seen_at_the_next_look) {
   Scene s;
   s.simulator.poses["robot"] = {0, 0, 0, 1, 0, 0, 0};
-  DeedsRunner runner({.never = {region("robot")}}, 1, 10);
+  ActionRunner runner({.never = {region("robot")}}, 1, 10);
   ASSERT_TRUE(runner.begin(s.scene));
   ASSERT_TRUE(s.look(runner, 0.1));
   EXPECT_EQ(problem(runner), "");
@@ -60,7 +60,7 @@ TEST(Conditions, a_model_in_a_region_is_seen_at_the_next_look) {
 TEST(Conditions, nothing_is_true_of_a_model_that_does_not_exist_yet) {
   Scene s;
   s.simulator.poses["ground_plane"] = shm::identity_pose;
-  DeedsRunner runner({.eventually = {region("box")}}, 1, 10);
+  ActionRunner runner({.eventually = {region("box")}}, 1, 10);
   ASSERT_TRUE(runner.begin(s.scene));
   ASSERT_TRUE(s.look(runner, 0.1));
   EXPECT_EQ(problem(runner), "never became true");
@@ -71,7 +71,7 @@ TEST(Conditions, nothing_is_true_of_a_model_that_does_not_exist_yet) {
 
 TEST(Conditions, a_simulator_that_does_not_answer_ends_the_run) {
   Scene s;
-  DeedsRunner runner({.never = {region("robot")}}, 1, 10);
+  ActionRunner runner({.never = {region("robot")}}, 1, 10);
   ASSERT_TRUE(runner.begin(s.scene));
   s.simulator.broken = Error{"server 42 did not answer in time"};
   const auto looked = s.look(runner, 0.1);
@@ -83,7 +83,7 @@ TEST(Conditions, any_contact_leaves_out_the_ground) {
   Scene s;
   s.simulator.poses["robot"] = shm::identity_pose;
   s.simulator.touching["robot"] = {{"robot::base::hull", "ground_plane::link::plane"}};
-  DeedsRunner any({.never = {contact("robot", "any")}}, 1, 10), wall({.never = {contact("robot", "wall")}}, 1, 10);
+  ActionRunner any({.never = {contact("robot", "any")}}, 1, 10), wall({.never = {contact("robot", "wall")}}, 1, 10);
   ASSERT_TRUE(any.begin(s.scene));
   ASSERT_TRUE(wall.begin(s.scene));
   ASSERT_TRUE(s.look(any, 0.1));
@@ -97,7 +97,7 @@ TEST(Conditions, any_contact_leaves_out_the_ground) {
 
 TEST(Conditions, a_state_or_a_port_without_a_value_is_false_and_not_an_error) {
   Scene s;
-  DeedsRunner runner({.never = {condition("{component: A0, is: Error}"), condition("{port: 'A0:out', member: data, max: 1}")}}, 1, 10);
+  ActionRunner runner({.never = {condition("{component: A0, is: Error}"), condition("{port: 'A0:out', member: data, max: 1}")}}, 1, 10);
   ASSERT_TRUE(runner.begin(s.scene));
   ASSERT_TRUE(s.look(runner, 0.1));
   for (const auto& verdict : runner.verdicts()) EXPECT_EQ(verdict.problem, "") << verdict.expectation;

@@ -91,7 +91,7 @@ class Worlds : public testing::Test {
     return std::move(survey.value());
   }
   static std::string file() { return std::string(paths::source_dir) + "/worlds/obstacle_course.sdf"; }
-  static std::map<std::string, StandingModel> models() { return survey(file()).models; }
+  static std::map<std::string, SurveyedModel> models() { return survey(file()).models; }
   static WorldFile world() {
     static const auto here = survey(file());
     auto read = WorldFile::read(file(), here);

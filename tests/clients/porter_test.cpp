@@ -1,5 +1,5 @@
 // The rule by which Porter drives.
-#include "errand_rule.h"
+#include "delivery_rule.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 
 namespace {
 
@@ -49,7 +49,7 @@ TEST(OutsideCalls, the_life_cycle_of_a_context_is_allowed_whatever_fails) {
 }
 
 TEST(OutsideCalls, the_log_has_one_line_a_second_and_counts_the_others) {
-  rt::RefusalLog log;
+  rt::LogRateLimiter log;
   const std::chrono::steady_clock::time_point start{};
   EXPECT_EQ(log.next(start), 0u);
   for (int i = 0; i < 1999; ++i) EXPECT_EQ(log.next(start + 100us * i), std::nullopt);
@@ -58,7 +58,7 @@ TEST(OutsideCalls, the_log_has_one_line_a_second_and_counts_the_others) {
 }
 
 TEST(OutsideCalls, a_log_with_a_burst_has_so_many_lines_at_once_and_again_after_so_many_quiet_seconds) {
-  rt::RefusalLog log(3);
+  rt::LogRateLimiter log(3);
   const std::chrono::steady_clock::time_point start{};
   const auto lines = [&](std::chrono::seconds at) {
     int count = 0;
@@ -74,10 +74,10 @@ TEST(OutsideCalls, a_log_with_a_burst_has_so_many_lines_at_once_and_again_after_
 
 TEST(OutsideCalls, each_object_has_lines_about_refusals_of_its_own) {
   int lines = 0;
-  for (int i = 0; i < 1000; ++i) lines += rt::refusal_line_end("a.port") ? 1 : 0;
+  for (int i = 0; i < 1000; ++i) lines += rt::rejection_line_end("a.port") ? 1 : 0;
   EXPECT_GE(lines, 10);
   EXPECT_LT(lines, 500) << "ten, and one per second";
-  EXPECT_EQ(rt::refusal_line_end("another.port"), "");
+  EXPECT_EQ(rt::rejection_line_end("another.port"), "");
 }
 
 }  // namespace

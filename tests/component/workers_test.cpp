@@ -25,7 +25,7 @@ namespace {
 
 using ExecutionContextTest = support::ContextFixture;
 
-struct PlainSteps final : Steps {
+struct PlainSteps final : Steppable {
   explicit PlainSteps(ExecutionContext& stepped) : context(stepped) {}
   void transit() override { context.transit(); }
   void execute_and_update() override {
@@ -188,7 +188,7 @@ TEST_F(ExecutionContextTest, every_tick_is_a_cycle_also_those_that_come_while_on
 }
 
 TEST(Turns, a_thread_does_not_get_a_second_turn_inside_its_first) {
-  Turns turns;
+  CallSerializer turns;
   int inner = 0;
   EXPECT_TRUE(turns.take([&] { EXPECT_FALSE(turns.take([&] { ++inner; })); }));
   EXPECT_EQ(inner, 0);

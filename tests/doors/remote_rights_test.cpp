@@ -66,7 +66,7 @@ TEST_F(RemoteRightsOf, a_caller_sets_no_protected_key_and_the_log_says_who_tried
     EXPECT_EQ(manager_->set_configuration(key, "YES"), RTC::RTC_ERROR) << key;
     EXPECT_EQ(value(key), before) << key;
     EXPECT_TRUE(
-        eventually([&] { return rtcd_->output().find("asked for the key \"" + std::string(key) + "\": refused") != std::string::npos; }));
+        eventually([&] { return rtcd_->output().find("asked for the key \"" + std::string(key) + "\": rejected") != std::string::npos; }));
   }
   EXPECT_EQ(manager_->set_configuration("my.key", "x"), RTC::RTC_OK);
   EXPECT_FALSE(can_create("SinkAll?config_file=/etc/hostname"));
@@ -81,12 +81,12 @@ TEST_F(RemoteRightsOf, a_caller_that_is_refused_again_and_again_does_not_fill_th
   const std::string text = rtcd_->output();
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(std::chrono::steady_clock::now() - begun).count();
   std::ptrdiff_t lines = 0;
-  for (std::size_t at = text.find(": refused"); at != std::string::npos; at = text.find(": refused", at + 1)) ++lines;
+  for (std::size_t at = text.find(": rejected"); at != std::string::npos; at = text.find(": rejected", at + 1)) ++lines;
   EXPECT_GT(lines, 0);
   EXPECT_LE(lines, 32 + seconds) << "a burst, then one a second";
   EXPECT_TRUE(eventually([&] {
     static_cast<void>(manager_->set_configuration("config_file", "YES"));
-    return rtcd_->output().find("more refused calls are not in the log") != std::string::npos;
+    return rtcd_->output().find("more rejected calls are not in the log") != std::string::npos;
   }));
 }
 
@@ -96,11 +96,11 @@ TEST_F(RemoteRightsOf, a_caller_of_an_open_process_loads_no_file_and_reaches_no_
   for (const std::string argument :
        {"/tmp/nobody/x.so", "../../../tmp/nobody/x", "RTC:v:c:/tmp/nobody/x.so:C++:1.0", "/tmp/nobody/x.so?my.key=1"}) {
     EXPECT_FALSE(can_create(argument));
-    EXPECT_TRUE(eventually([&] { return rtcd_->output().find("the component \"" + argument + "\": refused") != std::string::npos; }))
+    EXPECT_TRUE(eventually([&] { return rtcd_->output().find("the component \"" + argument + "\": rejected") != std::string::npos; }))
         << argument;
   }
   EXPECT_FALSE(can_create("SinkAll?manager_address=127.0.0.1:" + std::to_string(port_)));
-  EXPECT_TRUE(eventually([&] { return rtcd_->output().find("a component at another manager: refused") != std::string::npos; }));
+  EXPECT_TRUE(eventually([&] { return rtcd_->output().find("a component at another manager: rejected") != std::string::npos; }));
   EXPECT_TRUE(can_create("SinkAll"));
 }
 

@@ -1,4 +1,4 @@
-#include "door.h"
+#include "access_policy.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 TEST(Door, only_the_whole_key_fits) {
-  const Door door{false, "open sesame"};
+  const AccessPolicy door{false, "open sesame"};
   EXPECT_TRUE(door.fits("open sesame"));
   for (const auto wrong : {"", "open", "open sesame ", "Open sesame", "xxxxxxxxxxx"}) EXPECT_FALSE(door.fits(wrong)) << wrong;
   EXPECT_FALSE(door.fits(std::string(1000, 'x')));
@@ -17,22 +17,22 @@ TEST(Door, only_the_whole_key_fits) {
 }
 
 TEST(Door, without_a_key_none_fits) {
-  EXPECT_FALSE(Door{}.fits(""));
-  EXPECT_FALSE(Door{}.fits("x"));
+  EXPECT_FALSE(AccessPolicy{}.fits(""));
+  EXPECT_FALSE(AccessPolicy{}.fits("x"));
 }
 
 TEST(Door, no_socket_is_welcome_unless_it_is_open) {
-  EXPECT_EQ(Door{}.entry(-1), Entry::refused);
-  EXPECT_EQ((Door{false, "k"}).entry(-1), Entry::needs_key);
-  EXPECT_EQ((Door{true, ""}).entry(-1), Entry::welcome);
+  EXPECT_EQ(AccessPolicy{}.entry(-1), Entry::refused);
+  EXPECT_EQ((AccessPolicy{false, "k"}).entry(-1), Entry::needs_key);
+  EXPECT_EQ((AccessPolicy{true, ""}).entry(-1), Entry::welcome);
 }
 
 TEST(Door, says_what_is_open) {
   EXPECT_EQ(describe({}, "127.0.0.1"), "");
   EXPECT_EQ(describe({}, "127.9.9.9"), "");
   EXPECT_EQ(describe({}, "::1"), "");
-  EXPECT_NE(describe({}, "0.0.0.0").find("are refused"), std::string::npos);
-  EXPECT_NE(describe({}, "::").find("are refused"), std::string::npos);
+  EXPECT_NE(describe({}, "0.0.0.0").find("are rejected"), std::string::npos);
+  EXPECT_NE(describe({}, "::").find("are rejected"), std::string::npos);
   EXPECT_NE(describe({false, "k"}, "127.0.0.1").find("send the key"), std::string::npos);
   EXPECT_NE(describe({true, ""}, "127.0.0.1").find("every client"), std::string::npos);
 }

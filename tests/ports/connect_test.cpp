@@ -6,7 +6,7 @@
 #include "base/id.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/nv_list.h"
-#include "corba/ports/farewell.h"
+#include "corba/ports/disconnect_notice.h"
 #include "ports/support.h"
 #include "support/memory_limit.h"
 
@@ -176,10 +176,10 @@ TEST_F(Connecting, a_port_for_whose_farewell_there_is_no_thread_costs_nothing_bu
   ASSERT_EQ(in.connect(plan), RTC::RTC_OK);
   {
     const sim::test::MemoryLimit limit(std::size_t{4} << 20);
-    EXPECT_NO_THROW(corba::take_leave_when_awake(in.getPortRef(), "left"));
+    EXPECT_NO_THROW(corba::notify_disconnect_later(in.getPortRef(), "left"));
   }
   EXPECT_EQ(in.connectors().size(), 1u);
-  corba::take_leave_when_awake(in.getPortRef(), "left");
+  corba::notify_disconnect_later(in.getPortRef(), "left");
   EXPECT_TRUE(ports::eventually([&] { return in.connectors().empty(); })) << "a later one gets through";
 }
 

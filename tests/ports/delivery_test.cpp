@@ -10,13 +10,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Sample sample(int number, std::uint64_t moment = 0) {
+Sample sample(int number, std::uint64_t phase_counter = 0) {
   auto block = std::make_shared<Block>(1);
   block->set_size(1);
   *block->data() = static_cast<std::byte>(number);
   Sample made;
   made.block = block;
-  made.moment = moment;
+  made.phase_counter = phase_counter;
   return made;
 }
 int number(const Sample& of) { return of.block ? static_cast<int>(*of.block->data()) : -1; }
@@ -106,9 +106,9 @@ TEST(Delivery, a_lock_step_that_counts_anew_after_a_restart_keeps_the_rule) {
   Mailbox box;
   const auto channel = box.open(buffer(FullPolicy::overwrite));
   box.write(channel, sample(1, 1001));
-  box.drop_other_eras(1);
+  box.drop_other_epochs(1);
   auto fresh = sample(2, phase_1);
-  fresh.era = 1;
+  fresh.epoch = 1;
   box.write(channel, fresh);
   EXPECT_EQ(box.read(Channel::any, phase_1).status, PortStatus::buffer_empty);
   EXPECT_EQ(number(box.read(Channel::any, phase_2).sample), 2);
@@ -117,7 +117,7 @@ TEST(Delivery, a_lock_step_that_counts_anew_after_a_restart_keeps_the_rule) {
 class FakeTick final : public base::Tick {
  public:
   std::chrono::nanoseconds time() const override { return now; }
-  std::uint64_t moment() const override { return 1; }
+  std::uint64_t phase_counter() const override { return 1; }
   void at_end(std::function<void(Tick&)> work) override { work_.push_back(std::move(work)); }
   bool keeps_data() const override { return false; }
   void passed(const base::Passage&) override {}

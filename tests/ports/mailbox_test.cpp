@@ -64,20 +64,20 @@ TEST(Mailbox, a_full_ring_refuses_or_times_out) {
 TEST(Mailbox, what_is_of_another_era_is_thrown_away_also_what_was_read_last) {
   Mailbox box;
   const auto channel = box.open(buffer(FullPolicy::overwrite, EmptyPolicy::readback, 8));
-  const auto of_era = [](int number, std::uint64_t era) {
+  const auto of_epoch = [](int number, std::uint64_t epoch) {
     auto made = sample(number);
-    made.era = era;
+    made.epoch = epoch;
     return made;
   };
-  for (const int i : {1, 2, 3}) box.write(channel, of_era(i, 4));
+  for (const int i : {1, 2, 3}) box.write(channel, of_epoch(i, 4));
   EXPECT_EQ(number(box.read().sample), 1);
-  box.drop_other_eras(4);
+  box.drop_other_epochs(4);
   EXPECT_EQ(box.unread(), 2u);
-  box.write(channel, of_era(4, 5));
-  box.drop_other_eras(5);
+  box.write(channel, of_epoch(4, 5));
+  box.drop_other_epochs(5);
   EXPECT_EQ(box.unread(), 1u);
   EXPECT_EQ(number(box.read().sample), 4);
-  box.drop_other_eras(6);
+  box.drop_other_epochs(6);
   EXPECT_EQ(box.read().status, PortStatus::buffer_empty);
 }
 

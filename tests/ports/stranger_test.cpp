@@ -1,7 +1,7 @@
-// This thread works for another account, and the peer is a process of ours that is closed (corba/orb/asker.h).
+// This thread works for another account, and the peer is a process of ours that is closed (corba/orb/principal.h).
 #include <gtest/gtest.h>
 
-#include "corba/orb/asker.h"
+#include "corba/orb/principal.h"
 #include "ports/support.h"
 
 namespace {
@@ -19,7 +19,7 @@ class Stranger : public testing::Test {
 
 TEST_F(Stranger, no_call_is_let_in_and_the_next_one_of_ours_is) {
   {
-    const corba::ForAsker stranger(corba::Asker::host);
+    const corba::OnBehalfOf stranger(corba::Principal::host);
     EXPECT_THROW(RTC::PortProfile_var(theirs->get_port_profile()), CORBA::NO_PERMISSION);
     EXPECT_FALSE(corba::may_keep(theirs));
     EXPECT_TRUE(corba::may_keep(out.getPortRef()));
@@ -32,13 +32,13 @@ TEST_F(Stranger, no_call_is_let_in_and_the_next_one_of_ours_is) {
 // One of this process is nobody's gift, and one that was refused may be one of ours.
 TEST_F(Stranger, only_what_is_taken_from_strangers_is_theirs) {
   {
-    const corba::ForAsker stranger(corba::Asker::network);
+    const corba::OnBehalfOf stranger(corba::Principal::network);
     EXPECT_TRUE(corba::may_keep(out.getPortRef()));
     EXPECT_FALSE(corba::may_keep(theirs));
   }
-  EXPECT_EQ(corba::giver_of(out.getPortRef()), corba::Asker::own);
-  EXPECT_EQ(corba::giver_of(theirs), corba::Asker::own);
-  EXPECT_EQ(corba::giver_of(CORBA::Object::_nil()), corba::Asker::own);
+  EXPECT_EQ(corba::sender_of(out.getPortRef()), corba::Principal::own);
+  EXPECT_EQ(corba::sender_of(theirs), corba::Principal::own);
+  EXPECT_EQ(corba::sender_of(CORBA::Object::_nil()), corba::Principal::own);
 }
 
 TEST_F(Stranger, no_connection_leads_there) {
@@ -46,7 +46,7 @@ TEST_F(Stranger, no_connection_leads_there) {
   auto back = profile({theirs, out.getPortRef()});
   auto told = profile({theirs, out.getPortRef()}, {}, "told");
   {
-    const corba::ForAsker stranger(corba::Asker::network);
+    const corba::OnBehalfOf stranger(corba::Principal::network);
     EXPECT_NE(out.connect(plan), RTC::RTC_OK);
     EXPECT_NE(out.connect(back), RTC::RTC_OK);
     EXPECT_NE(out.notify_connect(told), RTC::RTC_OK);  // as the last of the chain
@@ -70,7 +70,7 @@ TEST_F(Stranger, no_reference_in_a_profile_leads_there) {
     return other.notify_connect(plan);
   };
   {
-    const corba::ForAsker stranger(corba::Asker::certificate);
+    const corba::OnBehalfOf stranger(corba::Principal::certificate);
     EXPECT_NE(told("theirs"), RTC::RTC_OK);
   }
   EXPECT_EQ(told("ours"), RTC::RTC_OK);

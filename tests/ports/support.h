@@ -27,7 +27,7 @@ namespace ports {
 class LookingTick : public base::Tick {
  public:
   std::chrono::nanoseconds time() const override { return std::chrono::nanoseconds(0); }
-  std::uint64_t moment() const override { return 0; }
+  std::uint64_t phase_counter() const override { return 0; }
   void at_end(std::function<void(Tick&)>) override {}
   bool keeps_data() const override { return true; }
 };

@@ -56,7 +56,7 @@ class Doors(unittest.TestCase):
         host = self.host()
         self.assertEqual(ask_as(0, host.port), "GIOP")
         self.assertEqual(ask_as(65534, host.port), "")
-        self.assertIn("(account 65534) refused", host.text())
+        self.assertIn("(account 65534) rejected", host.text())
         self.assertTrue(host.answers())
 
     @unittest.skipUnless(os.geteuid() == 0, "needs a second account, so root")
@@ -75,9 +75,9 @@ class Doors(unittest.TestCase):
         self.assertEqual(ask_as(0, port, root), "GIOP")
         self.assertEqual(ask_as(65534, port, root), "")
         until = time.monotonic() + watchdog
-        while "name server: account 65534 refused" not in host.text() and time.monotonic() < until:
+        while "name server: account 65534 rejected" not in host.text() and time.monotonic() < until:
             time.sleep(0.01)
-        self.assertIn("name server: account 65534 refused: it serves account 0 alone", host.text())
+        self.assertIn("name server: account 65534 rejected: it serves account 0 alone", host.text())
 
     def test_a_naming_service_that_stands_does_not_hold_the_end_of_rtcd(self):
         with socket.socket() as probe:

@@ -196,7 +196,7 @@ class Strangers(unittest.TestCase):
             self.assertEqual(call(stranger, ours.port, operation, handle, key).number(), refused, operation)
         for operation in ("on_initialize", "on_finalize", "initialize", "finalize", "exit"):
             self.assertEqual(call(stranger, ours.port, operation, b"", key).number(), refused, operation)
-        self.assertIn("for onExecute: refused, manager.remote_rights is read", ours.text().replace("on_execute", "onExecute"))
+        self.assertIn("for onExecute: rejected, manager.remote_rights is read", ours.text().replace("on_execute", "onExecute"))
         context = SentOn(ours.port, b"manager", 0)
         self.addCleanup(context.close)
         self.assertEqual(call(stranger, ours.port, "attach_context", reference(context.port, b"context"), key).number(), -1)

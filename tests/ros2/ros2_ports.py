@@ -173,7 +173,7 @@ def keys():
             words = [word for one in ("interface_type=ros2", *wrong) for word in ("-p", one)]
             for port in ("Long_out", "Long_in"):
                 done = rig.try_rtse("con", f"TopicRelay0:{port}", *words)
-                assert done.returncode != 0 and f"connection refused: TopicRelay0.{port}: {line}" in rig.log(host), (wrong, rig.log(host))
+                assert done.returncode != 0 and f"connection rejected: TopicRelay0.{port}: {line}" in rig.log(host), (wrong, rig.log(host))
 
         def connections():
             rig.rtse("save", f"{rig.work}/system.yaml")

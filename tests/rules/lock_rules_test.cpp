@@ -49,7 +49,7 @@ const std::map<std::string, std::string> detaching = {
     {"rtm-core/coil/PeriodicTask.cpp", "when the function of the task destroys the task"},
     {"rtm-core/core/publisher.cpp", "when the publisher is destroyed by its own thread, or a peer hangs in a call"},
     {"rtm-core/core/signal_watcher.cpp", "the call may be the end of the process"},
-    {"rtm-core/corba/ports/farewell.cpp", "a peer may hang; the end of the ORB waits for the count of these threads"},
+    {"rtm-core/corba/ports/disconnect_notice.cpp", "a peer may hang; the end of the ORB waits for the count of these threads"},
     {"rtm-core/manager/end.cpp", "the end of the process is bounded, also when a stream or a call is not"},
     {"rtm-core/openrtm/include/coil/Async.h", "an author's call that nobody waits for"},
     {"rtm-core/openrtm/rtm/RTObject.cpp", "when the component is destroyed by the thread of its own exit"},

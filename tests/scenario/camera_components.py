@@ -122,7 +122,7 @@ def camera_jpeg():
     for y in range(16):
         close(list(rgb[(y * 24 + 18) * 3 : (y * 24 + 24) * 3]), plain["pixels"][(y * 24 + 18) * 3 : (y * 24 + 24) * 3], 6)
     log = rig.log(rig.running[-1])
-    assert " 0 refused" in log, log
+    assert " 0 rejected" in log, log
 
 
 def depth_camera():

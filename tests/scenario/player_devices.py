@@ -58,11 +58,11 @@ def identity():
             for device in ((POSITION2D, 0), (LASER, 3), (77, 0)):
                 assert not client.access(*device, OPEN)
         log = rig.log(rig.process)
-        assert log.count("subscription refused: there is no position2d:0; there are laser:0 laser:1") == 1, log
+        assert log.count("subscription rejected: there is no position2d:0; there are laser:0 laser:1") == 1, log
         assert log.count("there is no laser:3;") == 1 and log.count("interface 77 is not served;") == 1, log
         for index in range(3, 100):
             assert not client.access(LASER, index, OPEN)
-        assert rig.log(rig.process).count("subscription refused") == 20
+        assert rig.log(rig.process).count("subscription rejected") == 20
 
 
 def laser_config(min_angle=0, max_angle=0, resolution=0, range_resolution=0, intensity=1, rate=0, max_range=math.nan):

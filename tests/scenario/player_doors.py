@@ -56,10 +56,10 @@ def accounts():
         if os.geteuid() != 0:
             return
         assert listed(rig.ports[0]) == "refused"
-        await_("a line", lambda: "refused: of another account or host" in rig.log(rig.process))
+        await_("a line", lambda: "rejected: of another account or host" in rig.log(rig.process))
         for _ in range(30):
             assert listed(rig.ports[0]) == "refused"
-        assert rig.log(rig.process).count("refused: of another account") < 25
+        assert rig.log(rig.process).count("rejected: of another account") < 25
         Client(rig.ports[0]).devices()
         rig.process.terminate()
         assert rig.process.wait(20) == 0
@@ -69,7 +69,7 @@ def accounts():
         rig.process.terminate()
         assert rig.process.wait(20) == 0
         rig.gateway("--port", "0", "--address", "0.0.0.0")
-        assert "listening on 0.0.0.0, but clients of other hosts and accounts are refused" in rig.log(rig.process)
+        assert "listening on 0.0.0.0, but clients of other hosts and accounts are rejected" in rig.log(rig.process)
         assert listed(rig.ports[0]) == "refused"
         Client(rig.ports[0]).devices()
 
@@ -164,8 +164,8 @@ def exhausted():
             except (AssertionError, Closed, ConnectionResetError):
                 refused += 1
         assert 20 <= len(clients) <= 40 and refused == 10, (len(clients), refused)
-        await_("a line", lambda: "refused: too many clients" in rig.log(rig.process))
-        assert rig.log(rig.process).count("refused: too many clients") < 10
+        await_("a line", lambda: "rejected: too many clients" in rig.log(rig.process))
+        assert rig.log(rig.process).count("rejected: too many clients") < 10
         good.read_until(LASER)
         for one in (*clients, *others):
             one.close()

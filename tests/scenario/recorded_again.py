@@ -38,7 +38,7 @@ def replayed():
     refused(*call, "--link", "A:b=range", code=2, says='link "A:b=range": the recording has no channel "/A/b"')
     refused(*call, "--link", "RTCLaser0:range=c", says='has no InPort "c"; it has range')
     refused(*call, "--set", "speed_gain=abc", says='parameter default.speed_gain cannot be "abc", expected a number')
-    refused("replay", path, "--into", "RTCLaser0", says="refuses to be activated alone; one that uses the simulator's devices finds none")
+    refused("replay", path, "--into", "RTCLaser0", says="cannot be activated alone; one that uses the simulator's devices finds none")
 
 
 # Contexts of real time: their ticks are not in the recording, which is said.

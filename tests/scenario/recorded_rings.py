@@ -77,7 +77,7 @@ def again():
     assert "of an earlier ring that was not put together, replaced" in second.stderr.readline()
     seconds(0.5)
     for words in (["recording", "repair", file], ["record", "-o", file, "RTCLaser0:range", "--last", "1"]):
-        refused(*words, says=f'"{rig.path("run-001.mcap")}": is a piece of a ring that is still being recorded')
+        refused(*words, says=f'"{rig.path("run-001.mcap")}": is a segment of a ring that is still being recorded')
     said = ended(second)
     assert f'in "{file}"' in said and pieces() == [], (said, pieces())
     times = scan_times("run.mcap")
@@ -101,20 +101,20 @@ def taken():
     own = rig.path("run-077.mcap")
     with open(own, "w") as out:
         out.write("somebody's own")
-    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{own}": is no piece of a ring, and has a name that a piece of this one may take')
+    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{own}": is not a segment of a ring recording, but has a name that a segment of this one may take')
     os.remove(own)
     split = recording("RTCLaser0:range", "--split", "1s")
     seconds(2.5)
     ended(split)
     before = {name: open(rig.path(name), "rb").read() for name in pieces()}
-    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{rig.path("run-001.mcap")}": is no piece of a ring')
+    refused("record", "-o", file, "RTCLaser0:range", "--last", "1", says=f'"{rig.path("run-001.mcap")}": is not a segment of a ring')
     assert before == {name: open(rig.path(name), "rb").read() for name in pieces()} and len(before) >= 2, list(before)
     for name in before:
         os.remove(rig.path(name))
     ring = recording("RTCLaser0:range", "--last", "1")
     seconds(1.5)
     await_("two pieces are there", lambda: len(pieces()) == 2)
-    live = f'"{rig.path("run-002.mcap")}": is a piece of a ring that is still being recorded'
+    live = f'"{rig.path("run-002.mcap")}": is a segment of a ring that is still being recorded'
     for words in ([file], [file, "--split", "10m"], [rig.path("run-001.mcap")], [rig.path("run-002.mcap")]):
         refused("record", "RTCLaser0:range", "-o", *words, says=live)
     said = ended(ring)

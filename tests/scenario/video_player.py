@@ -133,7 +133,7 @@ def keys():
     send(32, 24, second)
     system.until("a recorded frame", lambda: pixels.png(f"{system.work}/frames/frame-000003.png") == (32, 24, second))
     system.rtse("deact", "VideoPlayer0")
-    says(host, "3 frames shown", "0 refused, 1 passed while it paused")
+    says(host, "3 frames shown", "0 rejected, 1 passed while it paused")
     system.rtse("conf", "VideoPlayer0", "set", "record_dir", "")
     # Nothing to do without window and records: each way to close the window ends it, and it can start again.
     for close in (("key", "q"), ("key", "Escape"), ("close",)):
@@ -189,7 +189,7 @@ def bad_images():
     send(24, 32, rgb)
     shows(24, 32, rgb)
     system.rtse("deact", "VideoPlayer0")
-    says(host, "2 frames shown", "6 refused")
+    says(host, "2 frames shown", "6 rejected")
 
 
 def no_display():
@@ -301,7 +301,7 @@ def slow_recording():
     system.rtse("conf", "VideoPlayer0", "set", "record_dir", f"{frames}/more")
     system.until("the other folder", lambda: os.path.exists(f"{frames}/more/frame-000001.png"))
     system.rtse("deact", "VideoPlayer0")
-    says(host, "frames shown", "dropped", "0 refused")
+    says(host, "frames shown", "dropped", "0 rejected")
     assert state() == "Inactive"
 
 

@@ -144,7 +144,7 @@ TEST(Faults, clients_killed_at_random_points_leave_nothing_behind) {
   board.wake();
   loop.join();
   EXPECT_FALSE(laser->is_subscribed());
-  EXPECT_EQ(base->commander(), 0);
+  EXPECT_EQ(base->commanding_pid(), 0);
   RecordProperty("commands", commands.load());
   EXPECT_GT(commands, 0);
   EXPECT_GT(lost, 0);

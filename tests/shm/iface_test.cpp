@@ -244,10 +244,10 @@ TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
   EXPECT_EQ(command.values[2], 3);
   EXPECT_EQ(command.kind, CommandKind::velocity);
   EXPECT_EQ(writer->poll_command(command), CommandChange::none);
-  EXPECT_EQ(writer->commander(), getpid());
-  EXPECT_TRUE(a.is_commander());
+  EXPECT_EQ(writer->commanding_pid(), getpid());
+  EXPECT_TRUE(a.is_commanding());
   ASSERT_TRUE(b.command_velocity(4, 0, 0));
-  EXPECT_FALSE(a.is_commander());
+  EXPECT_FALSE(a.is_commanding());
   EXPECT_EQ(writer->poll_command(command), CommandChange::fresh);
   EXPECT_EQ(command.values[0], 4);
   a = f.open(IfaceType::position2d, "base");  // the former commander goes: nothing happens
@@ -255,7 +255,7 @@ TEST(Iface, the_latest_command_counts_and_its_end_is_told_once) {
   b = f.open(IfaceType::position2d, "base");
   EXPECT_EQ(writer->poll_command(command), CommandChange::lost);
   EXPECT_EQ(writer->poll_command(command), CommandChange::none);
-  EXPECT_EQ(writer->commander(), 0);
+  EXPECT_EQ(writer->commanding_pid(), 0);
 }
 
 TEST(Iface, a_command_that_is_dropped_before_it_is_taken_never_comes) {

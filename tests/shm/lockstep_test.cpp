@@ -90,7 +90,7 @@ TEST(Barrier, turns_of_a_phase_run_in_order_and_are_one_moment) {
     ASSERT_TRUE(participant) << participant.error().message;
     threads.push_back(run(std::move(*participant), [&, name = std::string(name)](const Tick& tick) {
       const std::lock_guard lock(mutex);
-      order.emplace_back(name, tick.moment);
+      order.emplace_back(name, tick.phase_counter);
     }));
   }
   std::vector<std::pair<std::string, std::uint64_t>> expected;

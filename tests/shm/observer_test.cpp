@@ -22,7 +22,7 @@ TEST(Observer, comes_last_and_is_waited_for_when_samples_are_to_be_written) {
   std::vector<std::string> order;  // unguarded on purpose, as everything below
   auto client = run(f.join("client", 15, 10ms), [&](const Tick&) { order.emplace_back("client"); });
   auto observer = run(join_observer(f), [&](const Tick& tick) {
-    EXPECT_EQ(tick.moment % 2, 0U);
+    EXPECT_EQ(tick.phase_counter % 2, 0U);
     order.emplace_back("observer");
   });
   std::vector<std::string> expected;
@@ -40,7 +40,7 @@ TEST(Observer, comes_last_and_is_waited_for_when_samples_are_to_be_written) {
 TEST(Observer, no_tool_that_looks_on_has_a_turn_whether_it_is_waited_for_or_not) {
   BarrierFixture f;
   std::atomic<int> ticks = 0;
-  auto tool = Participant::join(f.id, {.name = "tool", .period = 10ms, .looks_on = true});
+  auto tool = Participant::join(f.id, {.name = "tool", .period = 10ms, .is_tool = true});
   ASSERT_TRUE(tool);
   auto thread = run(std::move(*tool), [&](const Tick&) { ++ticks; });
   const auto observer = join_observer(f, 1h);
@@ -139,9 +139,9 @@ TEST(Observer, to_observe_or_not_counts_from_the_next_tick_on) {
   a.set_observing(false);  // and still this tick is one of an observer
   Tick tick;
   ASSERT_EQ(a.wait(tick, 60s), State::tick);
-  EXPECT_EQ(tick.moment % 2, 0U);
+  EXPECT_EQ(tick.phase_counter % 2, 0U);
   std::vector<std::uint64_t> moments;  // unguarded on purpose
-  auto thread = run(std::move(a), [&](const Tick& one) { moments.push_back(one.moment % 2); });
+  auto thread = run(std::move(a), [&](const Tick& one) { moments.push_back(one.phase_counter % 2); });
   ASSERT_TRUE(f.barrier->tick(10ms, 0));
   EXPECT_EQ(moments, std::vector<std::uint64_t>{1});
   f.barrier.reset();

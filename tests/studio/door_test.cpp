@@ -1,5 +1,5 @@
 // Who is let in to rtm-studio, and which requests are read at all.
-#include "studio/door.h"
+#include "studio/access_policy.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 
 namespace {
 
+using studio::AccessDecision;
+using studio::AccessPolicy;
 using studio::Caller;
-using studio::Door;
-using studio::Verdict;
 
-Door door() { return {"0123456789abcdef0123456789abcdef", {"robots.example"}, {"https://viewer.example"}}; }
+AccessPolicy door() { return {"0123456789abcdef0123456789abcdef", {"robots.example"}, {"https://viewer.example"}}; }
 
-Verdict judge(Caller caller) {
+AccessDecision judge(Caller caller) {
   if (caller.host.empty()) caller.host = "127.0.0.1:8700";
   return door().judge(caller);
 }
@@ -21,50 +21,50 @@ Verdict judge(Caller caller) {
 constexpr const char* good_query = "token=0123456789abcdef0123456789abcdef";
 
 TEST(Door, lets_in_by_header_by_subprotocol_and_by_the_url_of_a_socket) {
-  EXPECT_EQ(judge({.query = good_query}), Verdict::granted);
-  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef"}), Verdict::granted);
-  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, token.0123456789abcdef0123456789abcdef"}), Verdict::granted);
-  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcdef,rtmsim.studio.v1"}), Verdict::granted);
+  EXPECT_EQ(judge({.query = good_query}), AccessDecision::granted);
+  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef"}), AccessDecision::granted);
+  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, token.0123456789abcdef0123456789abcdef"}), AccessDecision::granted);
+  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcdef,rtmsim.studio.v1"}), AccessDecision::granted);
 }
 
 TEST(Door, keeps_out_without_a_token_and_with_a_wrong_one) {
-  EXPECT_EQ(judge({}), Verdict::no_token);
-  EXPECT_EQ(judge({.authorization = "Basic 0123456789abcdef0123456789abcdef"}), Verdict::no_token);
-  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, 0123456789abcdef0123456789abcdef"}), Verdict::no_token);
-  EXPECT_EQ(judge({.query = "token=0123456789abcdef0123456789abcdee"}), Verdict::wrong_token);
-  EXPECT_EQ(judge({.query = "token=0123"}), Verdict::wrong_token);
-  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcde"}), Verdict::wrong_token);
+  EXPECT_EQ(judge({}), AccessDecision::no_token);
+  EXPECT_EQ(judge({.authorization = "Basic 0123456789abcdef0123456789abcdef"}), AccessDecision::no_token);
+  EXPECT_EQ(judge({.protocols = "rtmsim.studio.v1, 0123456789abcdef0123456789abcdef"}), AccessDecision::no_token);
+  EXPECT_EQ(judge({.query = "token=0123456789abcdef0123456789abcdee"}), AccessDecision::wrong_token);
+  EXPECT_EQ(judge({.query = "token=0123"}), AccessDecision::wrong_token);
+  EXPECT_EQ(judge({.protocols = "token.0123456789abcdef0123456789abcde"}), AccessDecision::wrong_token);
 }
 
 TEST(Door, each_token_that_is_brought_must_be_right) {
-  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef", .query = "token=old"}), Verdict::wrong_token);
-  EXPECT_EQ(judge({.authorization = "Bearer old", .query = good_query}), Verdict::wrong_token);
+  EXPECT_EQ(judge({.authorization = "Bearer 0123456789abcdef0123456789abcdef", .query = "token=old"}), AccessDecision::wrong_token);
+  EXPECT_EQ(judge({.authorization = "Bearer old", .query = good_query}), AccessDecision::wrong_token);
 }
 
 TEST(Door, the_page_itself_is_for_all_whose_host_and_origin_are_known) {
-  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700"}), Verdict::granted);
-  EXPECT_EQ(door().judge_sender({.host = "evil.example"}), Verdict::wrong_host);
-  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700", .origin = "http://evil.example"}), Verdict::wrong_origin);
+  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700"}), AccessDecision::granted);
+  EXPECT_EQ(door().judge_sender({.host = "evil.example"}), AccessDecision::wrong_host);
+  EXPECT_EQ(door().judge_sender({.host = "127.0.0.1:8700", .origin = "http://evil.example"}), AccessDecision::wrong_origin);
 }
 
 TEST(Door, knows_numbers_localhost_and_the_names_it_was_told) {
   for (const char* host : {"127.0.0.1:8700", "127.0.0.1", "[::1]:8700", "localhost:9000", "LOCALHOST", "10.0.0.7:1", "robots.example:8700"})
-    EXPECT_EQ(judge({.host = host, .query = good_query}), Verdict::granted) << host;
+    EXPECT_EQ(judge({.host = host, .query = good_query}), AccessDecision::granted) << host;
   for (const char* host : {"evil.example", "evil.example:8700", "localhost.evil.example", "127.0.0.1.evil.example", "127.0.0.1:8700:1",
                            "[::1", "[evil]:1", "localhost:80x", "1.2.3.4@evil.example"})
-    EXPECT_EQ(judge({.host = host, .query = good_query}), Verdict::wrong_host) << host;
-  EXPECT_EQ(door().judge({.query = good_query}), Verdict::wrong_host);
+    EXPECT_EQ(judge({.host = host, .query = good_query}), AccessDecision::wrong_host) << host;
+  EXPECT_EQ(door().judge({.query = good_query}), AccessDecision::wrong_host);
 }
 
 TEST(Door, refuses_pages_of_other_origins_even_with_the_token) {
-  EXPECT_EQ(judge({.origin = "http://127.0.0.1:8700", .query = good_query}), Verdict::granted);
-  EXPECT_EQ(judge({.origin = "https://viewer.example", .query = good_query}), Verdict::granted);
+  EXPECT_EQ(judge({.origin = "http://127.0.0.1:8700", .query = good_query}), AccessDecision::granted);
+  EXPECT_EQ(judge({.origin = "https://viewer.example", .query = good_query}), AccessDecision::granted);
   for (const char* origin : {"http://evil.example", "null", "http://127.0.0.1:8701", "http://127.0.0.1:8700.evil.example", "file://"})
-    EXPECT_EQ(judge({.origin = origin, .query = good_query}), Verdict::wrong_origin) << origin;
+    EXPECT_EQ(judge({.origin = origin, .query = good_query}), AccessDecision::wrong_origin) << origin;
 }
 
 TEST(Door, makes_secrets_of_128_bits_that_differ) {
-  const auto one = Door::make_secret(), other = Door::make_secret();
+  const auto one = AccessPolicy::make_secret(), other = AccessPolicy::make_secret();
   ASSERT_TRUE(one && other);
   EXPECT_EQ(one->size(), 32u);
   EXPECT_NE(*one, *other);

@@ -12,12 +12,12 @@
 #include "studio/client_message.h"
 #include "studio/connection_graph.h"
 #include "studio/foxglove.h"
-#include "studio/hall.h"
 #include "studio/late_models.h"
 #include "studio/outbox.h"
 #include "studio/parameters.h"
 #include "studio/pose_board.h"
 #include "studio/services.h"
+#include "studio/session_hub.h"
 #include "studio/signal_book.h"
 #include "studio/signals.h"
 
@@ -403,7 +403,7 @@ TEST(LateModels, are_those_that_the_scene_does_not_have_and_those_that_have_gone
   EXPECT_TRUE(late.frames().empty());
 }
 
-TEST(Hall, only_what_is_in_the_folder_is_opened) {
+TEST(SessionHub, only_what_is_in_the_folder_is_opened) {
   namespace fs = std::filesystem;
   std::string top = (fs::temp_directory_path() / "hall-XXXXXX").string();
   ASSERT_NE(mkdtemp(top.data()), nullptr);

@@ -14,7 +14,7 @@
 #include "render/mesh_arrays.h"
 #include "support/paths.h"
 #include "support/world_files.h"
-#include "world/told_faults.h"
+#include "world/reported_files.h"
 #include "world/triangle_arrays.h"
 
 namespace sim {
@@ -272,11 +272,11 @@ TEST(AssetReader, a_gltf_face_that_names_a_vertex_that_is_not_there_is_told) {
 TEST(AssetReader, the_first_fault_of_a_file_is_told_until_it_changes) {
   const WorldFiles files;
   const auto path = files.write("a.obj", "v");
-  EXPECT_TRUE(is_first_fault(path));
-  EXPECT_FALSE(is_first_fault(path));
+  EXPECT_TRUE(is_first_report(path));
+  EXPECT_FALSE(is_first_report(path));
   std::filesystem::remove(path);
-  EXPECT_TRUE(is_first_fault(path));  // another state of it
-  EXPECT_FALSE(is_first_fault(path));
+  EXPECT_TRUE(is_first_report(path));  // another state of it
+  EXPECT_FALSE(is_first_report(path));
 }
 
 // Physics and rays fail to read the same file, one after the other.
@@ -284,8 +284,8 @@ TEST(AssetReader, a_fault_is_told_once_however_many_there_were_before) {
   const WorldFiles files;
   for (int i = 0; i < 10000; ++i) {
     const auto path = (files.folder() / ("none" + std::to_string(i))).string();
-    EXPECT_TRUE(is_first_fault(path));
-    EXPECT_FALSE(is_first_fault(path)) << i;
+    EXPECT_TRUE(is_first_report(path));
+    EXPECT_FALSE(is_first_report(path)) << i;
   }
 }
 

@@ -38,7 +38,7 @@ std::uint64_t idle_ticks() {
 
 FollowedRun::FollowedRun(double share) : share_(share), idle_ticks_(idle_ticks()) {}
 
-Recorded FollowedRun::wait(studio::Json& summary) {
+RecordingState FollowedRun::wait(studio::Json& summary) {
   pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
   for (auto limit = 0ms;; limit = period) {
     while (::poll(&input, 1, static_cast<int>(limit.count())) > 0) {
@@ -48,13 +48,13 @@ Recorded FollowedRun::wait(studio::Json& summary) {
       if (count <= 0) return end(summary);
       text_.append(octets.data(), static_cast<std::size_t>(count));
     }
-    if (may_work()) return Recorded::growing;
+    if (may_work()) return RecordingState::growing;
   }
 }
 
-Recorded FollowedRun::end(studio::Json& summary) const {
+RecordingState FollowedRun::end(studio::Json& summary) const {
   summary = studio::Json::parse(text_, nullptr, false);
-  return summary.is_object() ? Recorded::whole : Recorded::given_up;
+  return summary.is_object() ? RecordingState::complete : RecordingState::abandoned;
 }
 
 bool FollowedRun::may_work() {

@@ -16,12 +16,12 @@ class FollowedRun {
   // `share`: of the time of one processor.
   explicit FollowedRun(double share);
   // Returns when there is time for some more work, or at the end of the run.
-  Recorded wait(studio::Json& summary);
+  RecordingState wait(studio::Json& summary);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  Recorded end(studio::Json& summary) const;
+  RecordingState end(studio::Json& summary) const;
   bool may_work();
   bool are_processors_idle();
 

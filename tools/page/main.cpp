@@ -5,9 +5,9 @@
 #include <new>
 
 #include "base/command_line.h"
-#include "base/good_file.h"
 #include "base/output_name.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "page/followed_run.h"
 #include "page/run_page.h"
 #include "recording/ring.h"
@@ -28,8 +28,8 @@ struct Settings {
 void add_options(base::Command& app, Settings& settings) {
   app.add_option("RECORDING", settings.page.recording, "Recording (MCAP)")->required();
   app.add_option("-o,--output", settings.page.file, "HTML file to write")->required()->check(base::output_name());
-  app.add_option("--other", settings.page.other, "Recording to compare with (MCAP); its models are shown as ghosts")
-      ->check(base::good_file(recorder::recording_problem));
+  app.add_option("--other", settings.page.second, "Recording to compare with (MCAP); its models are shown as ghosts")
+      ->check(base::valid_file(recorder::recording_format_problem));
   app.add_option("--page-camera-rate", settings.page.camera_rate, "Images of each camera per simulated second; 0: none")
       ->check(base::number_between(0, 1000.0))
       ->capture_default_str();
@@ -56,7 +56,7 @@ int write_page(Settings& settings) {
     settings.page.summary = studio::Json::parse(std::cin, nullptr, false);
     if (!settings.page.summary.is_object()) return fail({"the result of the run is not a JSON object"});
   }
-  const auto problem = settings.share == 0 ? recorder::recording_problem(settings.page.recording) : std::string();
+  const auto problem = settings.share == 0 ? recorder::recording_format_problem(settings.page.recording) : std::string();
   if (!problem.empty()) return fail({problem}, 2);
   page::FollowedRun run(settings.share);
   if (settings.share > 0) {

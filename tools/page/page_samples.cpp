@@ -46,14 +46,14 @@ void add(std::string& samples, const std::string& sample) {
 
 }  // namespace
 
-std::string Part::text() const {
-  const auto rest = studio::to_text(more);
+std::string PagePart::text() const {
+  const auto rest = studio::to_text(members);
   std::string text = "{\"samples\":[";
-  text.reserve(samples.size() + rest.size() + other.size() + 32);
+  text.reserve(samples.size() + rest.size() + second.size() + 32);
   text += samples;
   text += rest.size() > 2 ? "]," : "]";  // "{}"
   text.append(rest, 1, rest.size() - 2);
-  if (!other.empty()) text.append(",\"other\":").append(other);
+  if (!second.empty()) text.append(",\"other\":").append(second);
   return text += '}';
 }
 
@@ -65,7 +65,7 @@ Result<std::unique_ptr<PageSamples>> PageSamples::open(std::shared_ptr<const stu
   return samples;
 }
 
-Result<void> PageSamples::go_on(std::shared_ptr<const studio::RecordingFacts> facts, nanoseconds from) {
+Result<void> PageSamples::resume(std::shared_ptr<const studio::RecordingFacts> facts, nanoseconds from) {
   auto reader = mcap::Reader::open(facts->file);
   if (!reader) return reader.error();
   facts_ = std::move(facts);
@@ -107,15 +107,15 @@ void PageSamples::find_channels(nanoseconds from) {
   reader_.seek(query);
 }
 
-Result<Part> PageSamples::part_until(nanoseconds to) {
-  Part part{.samples = {}, .more = {{"images", Json::object()}}, .other = {}};
+Result<PagePart> PageSamples::part_until(nanoseconds to) {
+  PagePart part{.samples = {}, .members = {{"images", Json::object()}}, .second = {}};
   for (const auto& [topic, sample] : newest_) add(part.samples, sample);
-  for (const auto& [topic, image] : images_) part.more["images"][topic] = Json::array({Json::array({image.first, image.second})});
+  for (const auto& [topic, image] : images_) part.members["images"][topic] = Json::array({Json::array({image.first, image.second})});
   if (ahead_ && studio::to_nanoseconds(ahead_->first.log_time) < to) {
     auto [message, data] = std::move(*ahead_);
     ahead_.reset();
     message.data = data;
-    if (const auto taken = take(message, part); !taken) return taken.error();
+    if (const auto taken = add_message(message, part); !taken) return taken.error();
   }
   while (!ahead_ && !is_at_end_) {
     const auto message = reader_.next();
@@ -124,14 +124,14 @@ Result<Part> PageSamples::part_until(nanoseconds to) {
       is_at_end_ = true;
     } else if (studio::to_nanoseconds((*message)->log_time) >= to) {
       ahead_ = std::make_unique<std::pair<mcap::Message, std::string>>(**message, std::string((*message)->data));
-    } else if (const auto taken = take(**message, part); !taken) {
+    } else if (const auto taken = add_message(**message, part); !taken) {
       return taken.error();
     }
   }
   return part;
 }
 
-Result<void> PageSamples::take(const mcap::Message& message, Part& part) {
+Result<void> PageSamples::add_message(const mcap::Message& message, PagePart& part) {
   Signal& signal = signals_.at(message.channel);
   const auto time = studio::to_nanoseconds(message.log_time);
   const bool ends_ring = signal.number + 1 >= signal.of_ring;  // true without a ring
@@ -139,7 +139,7 @@ Result<void> PageSamples::take(const mcap::Message& message, Part& part) {
     if (ends_ring) ++thinned_[signal.topic];
     return {};
   }
-  if (signal.is_image) return take_image(message, signal, part);
+  if (signal.is_image) return add_image(message, signal, part);
   if (message.data.size() > most_bytes) {  // its values alone would take many times as much memory
     signal.next = time + bulk_interval - 1ms;
     ++too_large_[signal.topic];
@@ -150,7 +150,7 @@ Result<void> PageSamples::take(const mcap::Message& message, Part& part) {
   if (signal.of_ring > 0) {
     auto& ring = rings_.at(signal.topic);
     ring["ranges"][signal.number] = value->value("range", 0.0);
-    if (ends_ring) keep(signal.topic, facts_->seconds(time), ring, part);
+    if (ends_ring) add_sample(signal.topic, facts_->seconds(time), ring, part);
     return {};
   }
   bool is_rounded = false;
@@ -160,23 +160,23 @@ Result<void> PageSamples::take(const mcap::Message& message, Part& part) {
   if (numbers > most_numbers) {
     ++too_large_[signal.topic];
   } else {
-    keep(signal.topic, facts_->seconds(time), std::move(*value), part);
+    add_sample(signal.topic, facts_->seconds(time), std::move(*value), part);
   }
   return {};
 }
 
-Result<void> PageSamples::take_image(const mcap::Message& message, Signal& signal, Part& part) {
+Result<void> PageSamples::add_image(const mcap::Message& message, Signal& signal, PagePart& part) {
   const auto schema = reader_.schemas().find(reader_.channels().at(message.channel).schema);
   const auto jpeg = studio::jpeg_in_message(schema == reader_.schemas().end() ? "" : schema->second.name, message.data);
   if (!jpeg) return Error{signal.topic + ": " + jpeg.error().message};
   const auto time = studio::to_nanoseconds(message.log_time);
   signal.next = time + nanoseconds(static_cast<std::int64_t>(1e9 / camera_rate_)) - 1ms;
   const auto& image = images_[signal.topic] = {facts_->seconds(time), base::to_base64(*jpeg)};
-  part.more["images"][signal.topic].push_back(Json::array({image.first, image.second}));
+  part.members["images"][signal.topic].push_back(Json::array({image.first, image.second}));
   return {};
 }
 
-void PageSamples::keep(const std::string& topic, double time, Json value, Part& part) {
+void PageSamples::add_sample(const std::string& topic, double time, Json value, PagePart& part) {
   auto& sample = newest_[topic];
   sample = studio::to_text(Json::array({topic, time, std::move(value)}));
   add(part.samples, sample);

@@ -19,11 +19,11 @@ namespace page {
 using studio::Json;
 
 // One JSON object. Its samples are text, since their JSON takes up to ten times as much memory.
-struct Part {
+struct PagePart {
   std::string samples;  // "[TOPIC, s, sample],..." in the order of time, so that a scan and the sample of the port that carries it compress
                         // together
-  Json more;            // the other members
-  std::string other;    // text of the part of a second recording; empty: none
+  Json members;         // the other members of the object
+  std::string second;   // text of the part of a second recording; empty: none
 
   std::string text() const;
 };
@@ -34,9 +34,9 @@ class PageSamples {
   static base::Result<std::unique_ptr<PageSamples>> open(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate);
 
   // The samples up to and without `to`, and "images":{TOPIC:[[s, JPEG in base64]]}. Call with growing times.
-  base::Result<Part> part_until(std::chrono::nanoseconds to);
+  base::Result<PagePart> part_until(std::chrono::nanoseconds to);
   // Continues after the file has grown: with its new facts, and the samples from the end of the last part on.
-  base::Result<void> go_on(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
+  base::Result<void> resume(std::shared_ptr<const studio::RecordingFacts> facts, std::chrono::nanoseconds from);
   // Chunks of the file that could not be read so far.
   const std::vector<mcap::Reader::BrokenChunk>& broken_chunks() const { return reader_.broken_chunks(); }
   // A line for each signal with omitted or rounded samples.
@@ -54,9 +54,9 @@ class PageSamples {
 
   PageSamples(std::shared_ptr<const studio::RecordingFacts> facts, double camera_rate, mcap::Reader reader);
   void find_channels(std::chrono::nanoseconds from);
-  base::Result<void> take(const mcap::Message& message, Part& part);
-  base::Result<void> take_image(const mcap::Message& message, Signal& signal, Part& part);
-  void keep(const std::string& topic, double time, Json value, Part& part);
+  base::Result<void> add_message(const mcap::Message& message, PagePart& part);
+  base::Result<void> add_image(const mcap::Message& message, Signal& signal, PagePart& part);
+  void add_sample(const std::string& topic, double time, Json value, PagePart& part);
 
   std::shared_ptr<const studio::RecordingFacts> facts_;
   const double camera_rate_;

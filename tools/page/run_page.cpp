@@ -88,13 +88,13 @@ class RunPage {
       wanted = static_cast<std::uintmax_t>(static_cast<double>(size) * growth_share);
       if (const auto done = put_settled(); !done) return done;
     }
-    return recorded_ == Recorded::given_up ? Error{"the run ended without a result"} : Result<void>();
+    return recorded_ == RecordingState::abandoned ? Error{"the run ended without a result"} : Result<void>();
   }
 
   // Waits until there is time for more work.
   bool is_growing() {
-    if (recorded_ == Recorded::growing) recorded_ = options_.follow ? options_.follow(summary_) : Recorded::whole;
-    return recorded_ == Recorded::growing;
+    if (recorded_ == RecordingState::growing) recorded_ = options_.follow ? options_.follow(summary_) : RecordingState::complete;
+    return recorded_ == RecordingState::growing;
   }
 
   Result<void> put_settled() {
@@ -110,15 +110,15 @@ class RunPage {
     auto facts = read(options_.recording);
     if (!facts) return facts.error();
     facts_ = std::move(*facts);
-    if (!options_.other.empty()) {
-      auto other = read(options_.other);
-      if (!other) return other.error();
-      other_ = std::move(*other);
+    if (!options_.second.empty()) {
+      auto second = read(options_.second);
+      if (!second) return second.error();
+      second_ = std::move(*second);
     }
-    to_ = other_ ? std::max(facts_->to, facts_->zero + (other_->to - other_->zero)) : facts_->to;
+    to_ = second_ ? std::max(facts_->to, facts_->zero + (second_->to - second_->zero)) : facts_->to;
     if (const auto opened = open_playhead(); !opened) return opened;
     if (!scene_ && !has_written_scene_) put_scene();
-    if (const auto opened = open_other(); !opened) return opened;
+    if (const auto opened = open_second(); !opened) return opened;
     if (const auto done = put_parts(to_, true); !done) return done;
     if (are_images_left_out_) left_out_.emplace_back("images: the page has reached its limit");
     for (auto& line : samples_->left_out()) left_out_.push_back(std::move(line));
@@ -126,11 +126,11 @@ class RunPage {
     if (!reader) return reader.error();
     reader->leave_out_broken_chunks();
     if (!facts_->damage.empty()) note_damage(facts_->damage);
-    if (other_ && !other_->damage.empty()) note_damage(other_->damage);
+    if (second_ && !second_->damage.empty()) note_damage(second_->damage);
     note_broken(samples_->broken_chunks(), *facts_);
     note_broken(playhead_->broken_chunks(), *facts_);
-    if (other_) note_broken(other_samples_->broken_chunks(), *other_);
-    if (other_) note_broken(other_playhead_->broken_chunks(), *other_);
+    if (second_) note_broken(second_samples_->broken_chunks(), *second_);
+    if (second_) note_broken(second_playhead_->broken_chunks(), *second_);
     return put_rest(*reader);
   }
 
@@ -198,7 +198,7 @@ class RunPage {
   }
 
   Result<void> open_samples() {
-    if (samples_) return samples_->go_on(facts_, at_);
+    if (samples_) return samples_->resume(facts_, at_);
     auto samples = PageSamples::open(facts_, options_.camera_rate);
     if (!samples) return samples.error();
     samples_ = std::move(*samples);
@@ -209,8 +209,8 @@ class RunPage {
   Result<void> put_part(nanoseconds from, nanoseconds to) {
     auto part = samples_->part_until(to);
     if (!part) return part.error();
-    if (const auto posed = add_poses(part->more, *facts_, *playhead_, from, to); !posed) return posed;
-    if (const auto added = add_other(*part, from, to); !added) return added;
+    if (const auto posed = add_poses(part->members, *facts_, *playhead_, from, to); !posed) return posed;
+    if (const auto added = add_second(*part, from, to); !added) return added;
     const auto begin = file_.size();
     const auto size = put_text(*part);
     if (!size) {
@@ -227,42 +227,42 @@ class RunPage {
   }
 
   // The size of its text; nothing: the page has reached its limit.
-  std::optional<std::size_t> put_text(Part& part) {
+  std::optional<std::size_t> put_text(PagePart& part) {
     const auto id = std::to_string(parts_.size());
     const auto text = part.text();
     if (file_.put_data({{id, text}})) return text.size();
-    part.more.erase("images");
+    part.members.erase("images");
     if (!file_.put_data({{id, part.text()}})) return std::nullopt;
     are_images_left_out_ = true;
     return text.size();
   }
 
-  Result<void> open_other() {
-    if (!other_) return {};
-    auto samples = PageSamples::open(other_, 0);
+  Result<void> open_second() {
+    if (!second_) return {};
+    auto samples = PageSamples::open(second_, 0);
     if (!samples) return samples.error();
-    other_samples_ = std::move(*samples);
-    auto playhead = studio::Playhead::open(other_);
+    second_samples_ = std::move(*samples);
+    auto playhead = studio::Playhead::open(second_);
     if (!playhead) return playhead.error();
-    other_playhead_ = std::move(*playhead);
-    if (scene_) other_playhead_->set_scene(scene_);
+    second_playhead_ = std::move(*playhead);
+    if (scene_) second_playhead_->set_scene(scene_);
     return {};
   }
 
   // The poses and samples of the second recording, whose frames name the links of the first one's world.
-  Result<void> add_other(Part& part, nanoseconds from, nanoseconds to) {
-    if (!other_) return {};
-    const auto there = [&](nanoseconds time) { return other_->zero + (time - facts_->zero); };
-    auto other = other_samples_->part_until(there(to));
-    if (!other) return other.error();
-    if (const auto posed = add_poses(other->more, *other_, *other_playhead_, there(from), there(to)); !posed) return posed.error();
-    other->more.erase("images");
-    other->more.erase("late");  // models that the first world does not have from its beginning have no ghosts
-    part.other = other->text();
+  Result<void> add_second(PagePart& part, nanoseconds from, nanoseconds to) {
+    if (!second_) return {};
+    const auto there = [&](nanoseconds time) { return second_->zero + (time - facts_->zero); };
+    auto second = second_samples_->part_until(there(to));
+    if (!second) return second.error();
+    if (const auto posed = add_poses(second->members, *second_, *second_playhead_, there(from), there(to)); !posed) return posed.error();
+    second->members.erase("images");
+    second->members.erase("late");  // models that the first world does not have from its beginning have no ghosts
+    part.second = second->text();
     return {};
   }
 
-  // "poses" and "late": the frames and events that a viewer is sent, [s, base64] and [s, event]; the first of a part is whole.
+  // "poses" and "late": the frames and events that a viewer is sent, [s, base64] and [s, event]; the first of a part is complete.
   static Result<void> add_poses(Json& part, const studio::RecordingFacts& facts, studio::Playhead& playhead, nanoseconds from,
                                 nanoseconds to) {
     part["poses"] = part["late"] = Json::array();
@@ -322,7 +322,7 @@ class RunPage {
     hello["recording"]["to"] = facts_->seconds(until_.value_or(to_));
     Json summary = summary_;
     mark_failures(summary, *facts_, scene_ ? scene_->models : Json::array());
-    if (other_) summary["other"] = std::filesystem::path(other_->file).filename().string();
+    if (second_) summary["other"] = std::filesystem::path(second_->file).filename().string();
     summary["left_out"] = left_out();
     hello["page"] = std::move(summary);
     const Json index{{"hello", std::move(hello)},
@@ -343,12 +343,12 @@ class RunPage {
 
   const PageOptions& options_;
   Json summary_;
-  Recorded recorded_ = Recorded::growing;
+  RecordingState recorded_ = RecordingState::growing;
   PageFile file_;
-  Facts facts_, other_;
+  Facts facts_, second_;
   nanoseconds to_{0};  // the end of the longer recording, in times of the first
-  std::unique_ptr<PageSamples> samples_, other_samples_;
-  std::unique_ptr<studio::Playhead> other_playhead_;
+  std::unique_ptr<PageSamples> samples_, second_samples_;
+  std::unique_ptr<studio::Playhead> second_playhead_;
   std::unique_ptr<studio::Playhead> playhead_;
   std::shared_ptr<const studio::RecordedScene> scene_;
   std::string scene_problem_;

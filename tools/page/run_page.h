@@ -14,18 +14,19 @@
 
 namespace page {
 
-enum class Recorded { growing, whole, given_up };
+enum class RecordingState { growing, complete, abandoned };
 
 struct PageOptions {
   std::string recording;                          // MCAP
-  std::string other;                              // a second recording, shown as ghosts; empty: none
+  std::string second;                             // a second recording, shown as ghosts; empty: none
   std::string file;                               // the page
   std::string viewer;                             // run.html of the built page of rtm-studio
   double camera_rate = 1;                         // images of each camera per simulated second; 0: none
   std::uint64_t limit = 64ULL << 20U;             // of the page [bytes]
   studio::Json summary = studio::Json::object();  // of the run, see failure_marks.h; all optional
-  // Returns when there is time for work on a recording that grows, or when it is whole, with the summary of the run. Null: it is whole.
-  std::function<Recorded(studio::Json& summary)> follow;
+  // Returns when there is time for work on a recording that grows, or when it is complete, with the summary of the run. Null: it is
+  // complete.
+  std::function<RecordingState(studio::Json& summary)> follow;
 };
 
 struct PageReport {

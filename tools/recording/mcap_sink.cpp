@@ -57,7 +57,7 @@ base::Result<void> McapSink::begin_file(channels::Time begun) {
   if (split_.is_ring && files_ > 2) std::remove(numbered_path(path_, files_ - 2).c_str());
   const std::string path = split_.is_one() ? path_ : numbered_path(path_, files_);
   auto writer = make_(path);
-  if (!writer && split_.is_ring) std::remove(path.c_str());  // what has no metadata yet is no piece
+  if (!writer && split_.is_ring) std::remove(path.c_str());  // what has no metadata yet is no segment
   if (!writer) return writer.error();
   writer_.emplace(std::move(*writer));
   if (split_.is_ring) {

@@ -18,7 +18,7 @@ namespace recorder {
 struct Split {
   std::uint64_t octets = 0;
   std::chrono::nanoseconds time{0};  // by the samples' own clock
-  bool is_ring = false;              // only the latest two stay, with the metadata of pieces, see ring.h
+  bool is_ring = false;              // only the latest two stay, with the metadata of segments, see ring.h
   std::string compression = "zstd";  // of a ring, once it is put together
   bool is_one() const { return octets == 0 && time.count() == 0; }
 };

@@ -32,21 +32,21 @@ std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
 }
 
 // An error when the file is none, or none that can be read.
-base::Result<RingPiece> read_piece(const std::string& path) {
+base::Result<RingSegment> read_segment(const std::string& path) {
   auto reader = mcap::Reader::open(path);
   if (!reader) return reader.error();
   for (std::size_t n = 0; n < reader->metadata_count(); ++n) {
     const auto one = reader->metadata(n);
     if (!one || one->name != record_name) continue;
     const auto compression = one->texts.find("compression");
-    return RingPiece{path, number_at(one->texts, "number"), number_at(one->texts, "resets"),
-                     std::chrono::nanoseconds(number_at(one->texts, "span_ns")),
-                     compression == one->texts.end() ? "zstd" : compression->second};
+    return RingSegment{path, number_at(one->texts, "number"), number_at(one->texts, "resets"),
+                       std::chrono::nanoseconds(number_at(one->texts, "span_ns")),
+                       compression == one->texts.end() ? "zstd" : compression->second};
   }
   return base::Error{base::in_quotes(path) + ": is not marked as a segment of a ring recording"};
 }
 
-// The files with names of pieces, by the numbers in these.
+// The files with names of segments, by the numbers in these.
 std::map<std::uint64_t, std::string> files_with_numbers(const std::string& path) {
   const fs::path whole(path);
   const fs::path folder = whole.parent_path();
@@ -64,19 +64,19 @@ std::map<std::uint64_t, std::string> files_with_numbers(const std::string& path)
   return files;
 }
 
-// Puts messages of the pieces into one file.
-class Joint {
+// Puts messages of the segments into one file.
+class RingMerge {
  public:
-  Joint(mcap::Writer& writer, mcap::Time from) : writer_(writer), from_(from) {}
+  RingMerge(mcap::Writer& writer, mcap::Time from) : writer_(writer), from_(from) {}
 
-  base::Result<void> describe(const mcap::Reader& piece);
-  base::Result<void> copy(mcap::Reader& piece, const std::string& path);
-  // What could not be read, a line for each piece.
+  base::Result<void> describe(const mcap::Reader& segment);
+  base::Result<void> copy(mcap::Reader& segment, const std::string& path);
+  // What could not be read, a line for each segment.
   const std::vector<std::string>& losses() const { return losses_; }
   std::uint64_t samples_lost() const { return samples_lost_; }
 
  private:
-  // The number and the time of a sample tell it from a repetition, with which each piece begins.
+  // The number and the time of a sample tell it from a repetition, with which each segment begins.
   using Mark = std::pair<std::uint32_t, mcap::Time>;
   struct Held {
     mcap::Message message;
@@ -87,30 +87,30 @@ class Joint {
   base::Result<void> hold(std::uint16_t channel, const mcap::Message& message);
   base::Result<void> put_held();
   base::Result<void> put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time);
-  void note_losses(const mcap::Reader& piece, const std::string& path, std::uint64_t read, const std::optional<std::string>& damage);
+  void note_losses(const mcap::Reader& segment, const std::string& path, std::uint64_t read, const std::optional<std::string>& damage);
 
   mcap::Writer& writer_;
   const mcap::Time from_;
   std::optional<mcap::Time> first_;  // that was kept
   std::vector<std::string> losses_;
   std::uint64_t samples_lost_ = 0;
-  std::map<std::pair<std::string, std::uint16_t>, std::uint16_t> known_;  // by topic and number in the pieces, which all give it the same
+  std::map<std::pair<std::string, std::uint16_t>, std::uint16_t> known_;  // by topic and number in the segments, which all give it the same
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
-  std::map<std::uint16_t, std::uint16_t> ids_;                            // of the piece that is copied
+  std::map<std::uint16_t, std::uint16_t> ids_;                            // of the segment that is copied
   std::set<std::uint16_t> latched_;                                       // by their new numbers, as all below
   std::map<std::uint16_t, Held> held_;
   std::size_t held_octets_ = 0;
   std::map<std::uint16_t, Mark> seen_;
 };
 
-base::Result<void> Joint::describe(const mcap::Reader& piece) {
+base::Result<void> RingMerge::describe(const mcap::Reader& segment) {
   ids_.clear();
-  for (const auto& [id, channel] : piece.channels()) {
+  for (const auto& [id, channel] : segment.channels()) {
     auto& known = known_[{channel.topic, id}];
     if (known == 0) {
-      const auto schema = piece.schemas().find(channel.schema);
+      const auto schema = segment.schemas().find(channel.schema);
       std::uint16_t new_schema = 0;
-      if (schema != piece.schemas().end()) {
+      if (schema != segment.schemas().end()) {
         auto& one = schemas_[{schema->second.name, schema->second.data}];
         if (one == 0) {
           const auto added = writer_.add_schema(schema->second.name, schema->second.encoding, schema->second.data);
@@ -129,12 +129,12 @@ base::Result<void> Joint::describe(const mcap::Reader& piece) {
   return {};
 }
 
-base::Result<void> Joint::put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time) {
+base::Result<void> RingMerge::put(std::uint16_t channel, const mcap::Message& message, std::string_view data, mcap::Time time) {
   return writer_.write({channel, message.sequence, time, message.publish_time, data});
 }
 
 // What held before the time that is kept still holds in it.
-base::Result<void> Joint::put_held() {
+base::Result<void> RingMerge::put_held() {
   held_octets_ = 0;
   for (const auto& [channel, held] : std::exchange(held_, {})) {
     if (const auto done = put(channel, held.message, held.data, std::max(held.message.log_time, *first_)); !done) return done;
@@ -142,7 +142,7 @@ base::Result<void> Joint::put_held() {
   return {};
 }
 
-base::Result<void> Joint::hold(std::uint16_t channel, const mcap::Message& message) {
+base::Result<void> RingMerge::hold(std::uint16_t channel, const mcap::Message& message) {
   Held& held = held_[channel];
   held_octets_ += message.data.size();
   held_octets_ -= held.data.size();
@@ -152,7 +152,7 @@ base::Result<void> Joint::hold(std::uint16_t channel, const mcap::Message& messa
   return {};
 }
 
-base::Result<void> Joint::take(const mcap::Message& message) {
+base::Result<void> RingMerge::take(const mcap::Message& message) {
   const auto channel = ids_.at(message.channel);
   if (latched_.contains(channel)) {
     const Mark mark{message.sequence, message.publish_time};
@@ -166,45 +166,46 @@ base::Result<void> Joint::take(const mcap::Message& message) {
 }
 
 // An end that is missing costs nothing: a kill leaves it so.
-void Joint::note_losses(const mcap::Reader& piece, const std::string& path, std::uint64_t read, const std::optional<std::string>& damage) {
-  const auto unread = piece.unread();
-  const std::uint64_t told = piece.statistics().messages;
+void RingMerge::note_losses(const mcap::Reader& segment, const std::string& path, std::uint64_t read,
+                            const std::optional<std::string>& damage) {
+  const auto unread = segment.unread();
+  const std::uint64_t told = segment.statistics().messages;
   const std::uint64_t samples = unread.messages + told - std::min(told, read);
   if (!damage && samples == 0 && unread.octets == 0) return;
   std::string line = base::in_quotes(path) + ": not all can be read:";
   if (samples > 0) line += " " + std::to_string(samples) + " samples are lost;";
   if (unread.octets > 0) line += " " + std::to_string(unread.octets) + " bytes are lost;";
   samples_lost_ += samples;
-  losses_.push_back(line + " " + damage.value_or(piece.damage().value_or("it has fewer samples than its summary lists")));
+  losses_.push_back(line + " " + damage.value_or(segment.damage().value_or("it has fewer samples than its summary lists")));
 }
 
-// What of a piece cannot be read is left out and told.
-base::Result<void> Joint::copy(mcap::Reader& piece, const std::string& path) {
-  if (const auto done = describe(piece); !done) return done;
+// What of a segment cannot be read is left out and told.
+base::Result<void> RingMerge::copy(mcap::Reader& segment, const std::string& path) {
+  if (const auto done = describe(segment); !done) return done;
   std::optional<std::string> damage;
   for (std::uint64_t read = 0;; ++read) {
-    auto message = piece.next();
-    for (; !message; message = piece.next()) {
+    auto message = segment.next();
+    for (; !message; message = segment.next()) {
       if (!damage) damage = message.error().message;
     }
     if (!message->has_value()) {
-      note_losses(piece, path, read, damage);
+      note_losses(segment, path, read, damage);
       return first_ ? put_held() : base::Result<void>();
     }
     if (const auto done = take(**message); !done) return done;
   }
 }
 
-// Each piece has all of them; what cannot be read of the newest one is told.
-base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer, std::vector<std::string>& losses) {
-  for (std::size_t n = 0; n < piece.metadata_count(); ++n) {
-    const auto one = piece.metadata(n);
+// Each segment has all of them; what cannot be read of the newest one is told.
+base::Result<void> copy_surroundings(mcap::Reader& segment, mcap::Writer& writer, std::vector<std::string>& losses) {
+  for (std::size_t n = 0; n < segment.metadata_count(); ++n) {
+    const auto one = segment.metadata(n);
     if (!one) losses.push_back(one.error().message);
     if (!one || one->name == record_name) continue;
     if (const auto done = writer.add_metadata(*one); !done) return done;
   }
-  for (std::size_t n = 0; n < piece.attachments().size(); ++n) {
-    const auto attachment = piece.attachment(n);
+  for (std::size_t n = 0; n < segment.attachments().size(); ++n) {
+    const auto attachment = segment.attachment(n);
     if (!attachment) {
       losses.push_back(attachment.error().message);
     } else if (const auto done = writer.attach(*attachment); !done) {
@@ -214,9 +215,9 @@ base::Result<void> copy_surroundings(mcap::Reader& piece, mcap::Writer& writer, 
   return {};
 }
 
-// A file that a recorder has created and was killed before it wrote what it is a piece of: empty, or a few bytes of an MCAP file without
+// A file that a recorder has created and was killed before it wrote what it is a segment of: empty, or a few bytes of an MCAP file without
 // its end. No sample is in it.
-bool is_unbegun(const std::string& path) {
+bool is_empty_segment(const std::string& path) {
   constexpr std::string_view magic = "\x89MCAP0\r\n";
   constexpr std::size_t most = 512;
   std::ifstream in(path, std::ios::binary);
@@ -227,12 +228,12 @@ bool is_unbegun(const std::string& path) {
   return bytes.size() <= magic.size() ? magic.starts_with(bytes) : bytes.starts_with(magic) && !bytes.ends_with(magic);
 }
 
-// Files that stand where the ring had another piece: only the two latest are there, so that it is next to the others.
-std::vector<std::string> left_out(const std::string& path, const std::vector<RingPiece>& pieces) {
+// Files that stand where the ring had another segment: only the two latest are there, so that it is next to the others.
+std::vector<std::string> left_out(const std::string& path, const std::vector<RingSegment>& segments) {
   std::vector<std::string> lines;
   for (const auto& [number, file] : files_with_numbers(path)) {
-    if (number + 1 < pieces.front().number || number > pieces.back().number + 1) continue;
-    if (const auto piece = read_piece(file); !piece) lines.push_back(piece.error().message + "; it is left out");
+    if (number + 1 < segments.front().number || number > segments.back().number + 1) continue;
+    if (const auto segment = read_segment(file); !segment) lines.push_back(segment.error().message + "; it is left out");
   }
   return lines;
 }
@@ -246,41 +247,42 @@ std::string numbered_path(const std::string& path, std::size_t number) {
   return (whole.parent_path() / (whole.stem().string() + text + whole.extension().string())).string();
 }
 
-mcap::Metadata ring_metadata(const RingPiece& piece) {
+mcap::Metadata ring_metadata(const RingSegment& segment) {
   return {record_name,
-          {{"span_ns", std::to_string(piece.span.count())},
-           {"number", std::to_string(piece.number)},
-           {"resets", std::to_string(piece.resets)},
-           {"compression", piece.compression}}};
+          {{"span_ns", std::to_string(segment.span.count())},
+           {"number", std::to_string(segment.number)},
+           {"resets", std::to_string(segment.resets)},
+           {"compression", segment.compression}}};
 }
 
-std::vector<RingPiece> ring_pieces(const std::string& path) {
-  std::vector<RingPiece> pieces;
+std::vector<RingSegment> ring_segments(const std::string& path) {
+  std::vector<RingSegment> segments;
   for (const auto& [number, file] : files_with_numbers(path)) {
-    if (auto piece = read_piece(file)) pieces.push_back(std::move(*piece));
+    if (auto segment = read_segment(file)) segments.push_back(std::move(*segment));
   }
-  std::ranges::stable_sort(pieces, {}, &RingPiece::number);
-  return pieces;
+  std::ranges::stable_sort(segments, {}, &RingSegment::number);
+  return segments;
 }
 
 base::Result<void> check_names(const std::string& path) {
   for (const auto& [number, file] : files_with_numbers(path)) {
-    if (!read_piece(file) && !is_unbegun(file))
-      return base::Error{base::in_quotes(file) + ": is no piece of a ring, and has a name that a piece of this one may take; " +
+    if (!read_segment(file) && !is_empty_segment(file))
+      return base::Error{base::in_quotes(file) +
+                         ": is not a segment of a ring recording, but has a name that a segment of this one may take; " +
                          "give the ring another name"};
   }
   return {};
 }
 
-void remove_unbegun_pieces(const std::string& path) {
+void remove_empty_segments(const std::string& path) {
   std::error_code ignored;  // a file that stays is written over
   for (const auto& [number, file] : files_with_numbers(path)) {
-    if (is_unbegun(file) && !mcap::File::is_being_written(file)) fs::remove(file, ignored);
+    if (is_empty_segment(file) && !mcap::File::is_being_written(file)) fs::remove(file, ignored);
   }
 }
 
 base::Result<void> check_no_live_ring(const std::string& path) {
-  if (const auto at_rest = check_at_rest(ring_pieces(path)); !at_rest) return at_rest;
+  if (const auto at_rest = check_not_recording(ring_segments(path)); !at_rest) return at_rest;
   const fs::path whole(path);
   const std::string stem = whole.stem().string();
   const auto dash = stem.rfind('-');
@@ -288,38 +290,38 @@ base::Result<void> check_no_live_ring(const std::string& path) {
   const auto number = base::parse_integer(stem.substr(dash + 1));
   const std::string ring = (whole.parent_path() / (stem.substr(0, dash) + whole.extension().string())).string();
   if (!number || *number < 1 || numbered_path(ring, static_cast<std::size_t>(*number)) != whole.string()) return {};
-  return check_at_rest(ring_pieces(ring));
+  return check_not_recording(ring_segments(ring));
 }
 
-base::Result<void> check_at_rest(const std::vector<RingPiece>& pieces) {
-  for (const auto& piece : pieces) {
-    if (mcap::File::is_being_written(piece.path))
-      return base::Error{base::in_quotes(piece.path) + ": is a piece of a ring that is still being recorded"};
+base::Result<void> check_not_recording(const std::vector<RingSegment>& segments) {
+  for (const auto& segment : segments) {
+    if (mcap::File::is_being_written(segment.path))
+      return base::Error{base::in_quotes(segment.path) + ": is a segment of a ring that is still being recorded"};
   }
   return {};
 }
 
-void remove_pieces(const std::vector<RingPiece>& pieces) {
-  for (const auto& piece : pieces) std::remove(piece.path.c_str());
+void remove_ring_segments(const std::vector<RingSegment>& segments) {
+  for (const auto& segment : segments) std::remove(segment.path.c_str());
 }
 
-std::string names_of(const std::vector<RingPiece>& pieces) {
+std::string segment_names(const std::vector<RingSegment>& segments) {
   std::vector<std::string> names;
-  for (const auto& piece : pieces) names.push_back(base::in_quotes(piece.path));
+  for (const auto& segment : segments) names.push_back(base::in_quotes(segment.path));
   return base::join(names, " and ");
 }
 
-base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const std::string& ring, const std::string& path) {
-  if (pieces.empty()) return base::Error{base::in_quotes(path) + ": has no pieces of a ring"};
+base::Result<MergedRing> merge_ring(const std::vector<RingSegment>& segments, const std::string& ring, const std::string& path) {
+  if (segments.empty()) return base::Error{base::in_quotes(path) + ": has no segments of a ring"};
   std::vector<mcap::Reader> readers;
-  std::vector<std::string> paths, losses = left_out(ring, pieces);
-  const RingPiece& newest = pieces.back();
-  for (const auto& piece : pieces) {
-    if (piece.resets != newest.resets) continue;  // its time is another one
-    auto reader = mcap::Reader::open(piece.path);
+  std::vector<std::string> paths, losses = left_out(ring, segments);
+  const RingSegment& newest = segments.back();
+  for (const auto& segment : segments) {
+    if (segment.resets != newest.resets) continue;  // its time is another one
+    auto reader = mcap::Reader::open(segment.path);
     if (!reader) return reader.error();
     readers.push_back(std::move(*reader));
-    paths.push_back(piece.path);
+    paths.push_back(segment.path);
   }
   std::uint64_t last = 0;
   for (const auto& reader : readers) last = std::max(last, reader.statistics().last.count());
@@ -336,28 +338,28 @@ base::Result<JoinedRing> join_ring(const std::vector<RingPiece>& pieces, const s
   auto writer = mcap::Writer::create(whole, {.profile = "", .compression = compression});
   if (!writer) return writer.error();
   if (const auto done = copy_surroundings(readers.back(), *writer, losses); !done) return give_up(done.error());
-  Joint joint(*writer, mcap::Time(last > span ? last - span : 0));
+  RingMerge merge(*writer, mcap::Time(last > span ? last - span : 0));
   for (std::size_t n = 0; n < readers.size(); ++n) {
-    if (const auto done = joint.copy(readers[n], paths[n]); !done) return give_up(done.error());
+    if (const auto done = merge.copy(readers[n], paths[n]); !done) return give_up(done.error());
   }
   if (const auto done = writer->close(); !done) return give_up(done.error());
   if (std::rename(whole.c_str(), path.c_str()) != 0)
     return give_up({base::in_quotes(path) + ": cannot be written: " + std::strerror(errno)});
-  losses.insert(losses.end(), joint.losses().begin(), joint.losses().end());
-  return JoinedRing{writer->statistics().messages, writer->statistics().channels, joint.samples_lost(), std::move(losses)};
+  losses.insert(losses.end(), merge.losses().begin(), merge.losses().end());
+  return MergedRing{writer->statistics().messages, writer->statistics().channels, merge.samples_lost(), std::move(losses)};
 }
 
 base::Result<mcap::Reader> open_recording(const std::string& path) {
   auto reader = mcap::Reader::open(path);
   std::error_code error;
   if (reader || fs::exists(path, error)) return reader;
-  const auto pieces = ring_pieces(path);
-  if (pieces.empty()) return reader;
-  return base::Error{base::in_quotes(path) + ": is not there, but " + names_of(pieces) + " of its ring; rtse recording repair " + path +
-                     " puts them together"};
+  const auto segments = ring_segments(path);
+  if (segments.empty()) return reader;
+  return base::Error{base::in_quotes(path) + ": is not there, but " + segment_names(segments) + " of its ring; rtse recording repair " +
+                     path + " puts them together"};
 }
 
-std::string check_recording(const std::string& path) {
+std::string recording_absence_problem(const std::string& path) {
   std::error_code error;
   if (fs::exists(path, error)) return "";
   const auto reader = open_recording(path);
@@ -370,9 +372,9 @@ bool is_recording(const std::string& path) {
   return begin == mcap::magic;
 }
 
-std::string recording_problem(const std::string& path) {
+std::string recording_format_problem(const std::string& path) {
   if (is_recording(path)) return "";
-  if (!ring_pieces(path).empty()) return check_recording(path);
+  if (!ring_segments(path).empty()) return recording_absence_problem(path);
   if (const auto problem = base::file_problem(path); !problem.empty()) return "recording " + base::in_quotes(path) + ": " + problem;
   return base::in_quotes(path) + ": is not an MCAP file: it does not start with the magic bytes";
 }

@@ -139,10 +139,10 @@ std::optional<std::vector<base::Offer>> offered(const Session& session, const st
     if (words.size() == 3 && (action == "use" || action == "act")) return configuration(session, words, true);
     return words.size() == 3 && (action == "get" || action == "set") ? configuration(session, words, false) : std::vector<base::Offer>();
   }
-  const auto errand = words.size() > 1 ? words[1] : std::string();
-  if (value == "ARGUMENT" && errand == "delete") return names(session, current, {EntryKind::component});
-  if (value == "ARGUMENT" && errand == "create") return types(session, before);
-  if (value == "ARGUMENT" && errand == "list") return std::vector<base::Offer>();
+  const auto subcommand = words.size() > 1 ? words[1] : std::string();
+  if (value == "ARGUMENT" && subcommand == "delete") return names(session, current, {EntryKind::component});
+  if (value == "ARGUMENT" && subcommand == "create") return types(session, before);
+  if (value == "ARGUMENT" && subcommand == "list") return std::vector<base::Offer>();
   return std::nullopt;
 }
 

@@ -116,8 +116,8 @@ void ForeignLinks::take(Port& port, std::span<const unsigned char> payload, bool
     resets = stamp.resets;
     now = std::chrono::nanoseconds(stamp.sim_time_ns);
   }
-  const auto moment = shm::moment_of(*simulation_);
-  if (moment != 0 && !base::is_in_phase(moment) && !port.between_ticks) port.between_ticks = now;
+  const auto phase_counter = shm::phase_counter_of(*simulation_);
+  if (phase_counter != 0 && !base::is_in_phase(phase_counter) && !port.between_ticks) port.between_ticks = now;
   if (!log_) return;
   if (resets_ != resets || time_ != now) write();
   resets_ = resets;
@@ -129,7 +129,7 @@ void ForeignLinks::take(Port& port, std::span<const unsigned char> payload, bool
     port.value.assign(reinterpret_cast<const char*>(octets.data()), octets.size());
 }
 
-std::vector<std::string> ForeignLinks::chances() {
+std::vector<std::string> ForeignLinks::nondeterministic_events() {
   const auto mine = turn_.take();
   std::vector<std::string> found;
   for (const Port& port : ports_) {

@@ -34,7 +34,7 @@ class ForeignLinks {
   Result<std::vector<std::string>> listen(CORBA::ORB_ptr orb, const Session& session, const SavedSystem& system,
                                           const ForeignProcesses& foreign, const std::string& simulator, const std::string& log);
   // Samples that came while no phase ran. One line for each port, with the time.
-  std::vector<std::string> chances();
+  std::vector<std::string> nondeterministic_events();
   // Listens no more. An error when not all of the log could be written. Peers that hang cost a second each.
   Result<void> end();
 

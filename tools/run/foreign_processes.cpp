@@ -125,8 +125,8 @@ void ForeignProcesses::order_calls(const SavedSystem& system, std::vector<Compon
   for (auto& member : members_) {
     member.turn = order.turn_of(member.instance);
     if (member.how == TimeMember::How::clock && member.turn > 0)
-      chances_.push_back("component " + member.instance +
-                         ": OpenHRP's clock ticks it together with its receivers in the phase: give it another phase");
+      nondeterministic_events_.push_back("component " + member.instance +
+                                         ": OpenHRP's clock ticks it together with its receivers in the phase: give it another phase");
   }
   for (const auto& component : system.components) {
     if (const int turn = order.turn_of(component.instance); turn > 0 && !has(component.instance))
@@ -215,8 +215,9 @@ Result<void> ForeignProcesses::join(const Session& session, SavedSystem& system,
     const auto view = session.component(path, {.contexts = true});
     if (!view) return view.error();
     if (member.how == TimeMember::How::tick && ticks_on_its_own(*view))
-      chances_.push_back("component " + member.instance +
-                         ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick: join it as a member");
+      nondeterministic_events_.push_back(
+          "component " + member.instance +
+          ": its context, an ExtTrigExecutionContext, runs it on a thread of its own after each tick: join it as a member");
     if (const auto* context = simulated_context(*view)) use_context(system, member.instance, std::to_string(context->handle));
   }
   return {};

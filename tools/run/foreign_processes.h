@@ -70,7 +70,7 @@ class ForeignProcesses {
   // Those to whom late components of others send, who may hang in taking it: "; Alien.out sends to Other.in". Empty: nobody.
   std::string who_may_be_waited_for(const SavedSystem& system, const std::vector<std::string>& late) const;
   // What depends on chance because it cannot be ordered; known after join().
-  const std::vector<std::string>& chances() const { return chances_; }
+  const std::vector<std::string>& nondeterministic_events() const { return nondeterministic_events_; }
 
  private:
   struct Running {
@@ -85,7 +85,7 @@ class ForeignProcesses {
   std::vector<ForeignProcess> processes_;
   std::vector<std::string> open_;  // those of --start, of whom nobody knows from which process
   std::vector<TimeMember> members_;
-  std::vector<std::string> in_a_circle_, chances_;
+  std::vector<std::string> in_a_circle_, nondeterministic_events_;
   std::vector<Running> running_;
 };
 

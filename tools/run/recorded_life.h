@@ -42,7 +42,7 @@ class LifePlayer {
  public:
   explicit LifePlayer(RecordedLife life) : life_(std::move(life)) {}
 
-  // The component as it was at first, before time moves. An error names what it refuses.
+  // The component as it was at first, before time moves. An error names what it rejects.
   base::Result<void> begin(const tools::ComponentView& component);
   // The time of the change that is to be made next.
   std::optional<std::chrono::nanoseconds> next() const;

@@ -10,7 +10,7 @@
 //         - {name: Filter0, phase: 2, rate: 50, join: tick}
 //
 // phase: default 1; rate [Hz]: default that of the profile; join: how they take part in simulated time (TimeMember::How). Unknown keys,
-// wrong kinds and values are refused with one line that names the file, the place and what was expected.
+// wrong kinds and values are rejected with one line that names the file, the place and what was expected.
 #pragma once
 
 #include <map>

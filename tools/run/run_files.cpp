@@ -83,7 +83,7 @@ std::string complaint(const std::string& file) {
 std::string last_output(const std::string& file) {
   constexpr std::size_t most = 3;
   auto lines = lines_of(file);
-  std::erase_if(lines, [](const std::string& line) { return line.empty() || base::parse_sudden_end(line).has_value(); });
+  std::erase_if(lines, [](const std::string& line) { return line.empty() || base::parse_abnormal_exit(line).has_value(); });
   auto begin = lines.end();
   while (begin != lines.begin() && level_of(*std::prev(begin)) == LogLevel::none && lines.end() - begin < static_cast<std::ptrdiff_t>(most))
     --begin;
@@ -108,9 +108,9 @@ std::string last_line_of_traceback(const std::string& file) {
   return last;
 }
 
-std::optional<base::SuddenEnd> sudden_end_in(const std::string& file) {
+std::optional<base::AbnormalExit> abnormal_exit_in(const std::string& file) {
   for (const auto& line : lines_of(file)) {
-    if (auto end = base::parse_sudden_end(line)) return end;
+    if (auto end = base::parse_abnormal_exit(line)) return end;
   }
   return std::nullopt;
 }

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/abnormal_exit.h"
 #include "base/scratch_folder.h"
-#include "base/sudden_end.h"
 
 namespace tools {
 
@@ -46,8 +46,8 @@ std::string complaint(const std::string& file);
 std::string last_output(const std::string& file);
 // "ValueError: no scan", of the last traceback of Python; empty: there is none.
 std::string last_line_of_traceback(const std::string& file);
-// The callback in which the process ended, if it has said so; see base/sudden_end.h.
-std::optional<base::SuddenEnd> sudden_end_in(const std::string& file);
+// The callback in which the process ended, if it has said so; see base/abnormal_exit.h.
+std::optional<base::AbnormalExit> abnormal_exit_in(const std::string& file);
 // The last 40 lines, each with its end.
 std::string tail_of(const std::vector<std::string>& lines);
 // The last lines of a log under its name; nothing for one that is empty.

@@ -12,10 +12,10 @@
 #include "corba/members/remote_participant.h"
 #include "corba/transport/transport.h"
 #include "run/module_files.h"
+#include "run/prefork_server.h"
 #include "run/same_math.h"
 #include "run/stopped_process.h"
 #include "run/time_members.h"
-#include "run/warm_program.h"
 
 namespace tools {
 namespace {
@@ -82,7 +82,7 @@ Result<void> RunHosts::start(const std::vector<std::string>& creations, const Me
                               .creations = creations};
   std::map<std::string, std::string> environment = {{"RTMSIM_SERVER_ID", simulator_.id()}, {"TMPDIR", place_.scratch("tmp")}, same_math()};
   environment.merge(same_python());
-  auto started = start_program(hooks_.warm, {host_words(settings), environment, log});
+  auto started = start_program(hooks_.prefork, {host_words(settings), environment, log});
   if (!started) return started.error();
   hosts_.push_back({std::move(*started), members, names, log});
   return {};
@@ -139,7 +139,7 @@ Result<void> RunHosts::check() {
 // Where it was when it ended its last words say, and the lock step: which of its components had not finished their tick, and when.
 Error RunHosts::end_of(const Host& host) {
   auto text = "host of " + host.components + " " + host.process.how_it_ended();
-  const auto callback = sudden_end_in(host.log);
+  const auto callback = abnormal_exit_in(host.log);
   const auto loss = simulator_.await_loss(end_of_steps);
   const bool is_known = loss && loss->pid == host.process.pid();
   if (callback) {
@@ -277,7 +277,7 @@ std::string RunHosts::last_words() const {
 }
 
 void RunHosts::kill() const {
-  if (hooks_.warm) return;  // somebody else's, whose numbers may belong to others already
+  if (hooks_.prefork) return;  // somebody else's, whose numbers may belong to others already
   for (const auto& host : hosts_) ::kill(host.process.pid(), SIGKILL);
 }
 

@@ -7,8 +7,8 @@
 
 #include "base/child_process.h"
 #include "base/text.h"
-#include "run/chance_report.h"
 #include "run/expectation_check.h"
+#include "run/nondeterminism_report.h"
 #include "run/run_script.h"
 
 namespace tools {
@@ -89,7 +89,7 @@ Result<void> RunJudge::watch() {
   return simulator_.read_events(record_);
 }
 
-Result<void> RunJudge::look(const Session& session, const std::vector<std::string>& chances, RunResult& result) {
+Result<void> RunJudge::look(const Session& session, const std::vector<std::string>& nondeterministic_events, RunResult& result) {
   if (const auto watched = watch(); !watched) return watched;
   const auto state = simulator_.state();
   if (!state) return state.error();
@@ -115,24 +115,24 @@ Result<void> RunJudge::look(const Session& session, const std::vector<std::strin
     result.verdicts.push_back(
         {.expectation = "no connection is lost", .problem = lost, .failure = lost.empty() ? "" : "connection lost: " + lost});
   }
-  check_chances(chances, result);
+  check_determinism(nondeterministic_events, result);
   return {};
 }
 
 // What a next run may do otherwise: a failure when the run is to be strict, a note for each in a CI job.
-void RunJudge::check_chances(const std::vector<std::string>& known, RunResult& result) const {
-  if (!tells_of_chance(options_)) return;
-  const auto places = places_in_time(simulator_);
-  auto chances = chances_in(hosts_.logs(), places);
-  for (const auto& one : known) chances.push_back(with_tick(one, places));
-  for (auto& pair : services_of_one_phase(system_, places)) chances.push_back(std::move(pair));
-  for (auto& pair : callers_of_one_phase(system_, places, providers_)) chances.push_back(std::move(pair));
+void RunJudge::check_determinism(const std::vector<std::string>& known, RunResult& result) const {
+  if (!reports_nondeterminism(options_)) return;
+  const auto places = read_schedule(simulator_);
+  auto nondeterministic_events = nondeterministic_events_in(hosts_.logs(), places);
+  for (const auto& one : known) nondeterministic_events.push_back(with_tick(one, places));
+  for (auto& pair : services_of_one_phase(system_, places)) nondeterministic_events.push_back(std::move(pair));
+  for (auto& pair : callers_of_one_phase(system_, places, providers_)) nondeterministic_events.push_back(std::move(pair));
   if (options_.strict) {
-    const auto found = base::join(chances, "; ");
+    const auto found = base::join(nondeterministic_events, "; ");
     result.verdicts.push_back(
         {.expectation = "no nondeterministic event", .problem = found, .failure = found.empty() ? "" : "nondeterministic: " + found});
   } else {
-    for (const auto& chance : chances) result.notes.push_back("nondeterministic: " + chance);
+    for (const auto& event : nondeterministic_events) result.notes.push_back("nondeterministic: " + event);
   }
 }
 

@@ -38,8 +38,8 @@ class RunJudge {
   // What was seen on ports, by "port member".
   void take_values(std::map<std::string, SeenValue> values) { seen_.values = std::move(values); }
   // What can be seen only while everything still runs: states, poses, the picture, the hash. Fails when the simulator does not answer.
-  // `chances`: what is known already to depend on chance.
-  Result<void> look(const Session& session, const std::vector<std::string>& chances, RunResult& result);
+  // `nondeterministic_events`: what is known already to depend on chance.
+  Result<void> look(const Session& session, const std::vector<std::string>& nondeterministic_events, RunResult& result);
   // The user's commands. Fails after an interrupt, and when a command cannot be started; its exit code is for the verdict.
   Result<void> run_commands(const std::string& naming);
   // The record against the expectations. Fails when the record does not reach to the end of the run.
@@ -51,7 +51,7 @@ class RunJudge {
   std::vector<const Expectation*> looked_at() const;
   void want_joints();
   Result<void> look_at_grips();
-  void check_chances(const std::vector<std::string>& known, RunResult& result) const;
+  void check_determinism(const std::vector<std::string>& known, RunResult& result) const;
   void check_states(RunResult& result) const;
   Error in_file(const Error& error) const;  // of expectations
   std::string why_error(const std::string& component) const;

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/text.h"
+#include "run/prefork_server.h"
 #include "run/same_math.h"
-#include "run/warm_program.h"
 
 namespace tools {
 namespace {
@@ -65,7 +65,7 @@ Result<void> RunSimulator::try_start(std::uint32_t id, const Wait& wait_until, b
   call.words.insert(call.words.end(), {"--rolling", options_.rolling});
   for (const auto& path : options_.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});
   call.words.insert(call.words.end(), hooks_.simulator_options.begin(), hooks_.simulator_options.end());
-  auto started = start_program(hooks_.warm, call);
+  auto started = start_program(hooks_.prefork, call);
   if (!started) return started.error();
   process_.emplace(std::move(*started));
   return wait_until("simulator", [&] { return is_in_memory(id) && control_.attach(id, process_->pid()).ok(); });

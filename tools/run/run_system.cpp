@@ -11,10 +11,10 @@
 
 #include "base/interrupt.h"
 #include "base/text.h"
-#include "run/chance_report.h"
 #include "run/foreign_links.h"
 #include "run/foreign_processes.h"
 #include "run/lost_members.h"
+#include "run/nondeterminism_report.h"
 #include "run/port_values.h"
 #include "run/run_files.h"
 #include "run/run_hashes.h"
@@ -305,9 +305,10 @@ class Run final : public RunningSystem {
     judge_.take_values(ports_.end());
     naming_.set_running(true);  // what is judged now is found by it
     if (const auto answer = naming_.ask(); !answer) return answer;
-    auto chances = links_.chances();
-    chances.insert(chances.end(), foreign_.chances().begin(), foreign_.chances().end());
-    return judge_.look(wiring_.session(), chances, result_);
+    auto nondeterministic_events = links_.nondeterministic_events();
+    nondeterministic_events.insert(nondeterministic_events.end(), foreign_.nondeterministic_events().begin(),
+                                   foreign_.nondeterministic_events().end());
+    return judge_.look(wiring_.session(), nondeterministic_events, result_);
   }
 
   Result<void> run_commands() {
@@ -351,7 +352,7 @@ class Run final : public RunningSystem {
   }
 
   Result<void> listen() {
-    if (hashes_.is_wanted() || tells_of_chance(options_)) {
+    if (hashes_.is_wanted() || reports_nondeterminism(options_)) {
       const auto part = hashes_.is_wanted() ? hashes_.links_part() : std::string();
       const auto silent = links_.listen(orb_, wiring_.session(), system_, foreign_, simulator_.id(), part);
       if (!silent) return silent.error();

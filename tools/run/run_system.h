@@ -21,7 +21,7 @@ namespace tools {
 
 class Reporter;
 class RunScript;
-class WarmPrograms;
+class PreforkServers;
 
 // A system that is wired and active and stands before its first step, in the hands of who drives it.
 class RunningSystem {
@@ -42,7 +42,7 @@ class RunningSystem {
 // What a program adds to a run that it makes itself.
 struct RunHooks {
   std::vector<std::string> simulator_options{};  // more words for sim-server
-  const WarmPrograms* warm = nullptr;            // that make what is started; null: everything is started alone
+  const PreforkServers* prefork = nullptr;       // that make what is started; null: everything is started alone
   RunScript* script = nullptr;                   // see run_script.h; null: nothing happens but the run
   // Makes the steps instead of the run; nothing is judged then.
   std::function<Result<void>(RunningSystem&)> driver{};

@@ -1,7 +1,7 @@
 // A simulator under the control of a run: its time, its models, its lock-step participants. `ShmSimulator` is the real one, over shared
 // memory; tests have a `FakeSimulator` (tests/run). One thread at a time.
 //
-// Errors: each call that asks the simulator returns an Error when the simulator refuses ("spawn: no model found in ..."), has exited, or
+// Errors: each call that asks the simulator returns an Error when the simulator rejects ("spawn: no model found in ..."), has exited, or
 // does not answer within the timeout of the call. No call waits longer than that. Calls that only read shared memory do not wait.
 #pragma once
 

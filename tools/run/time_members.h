@@ -59,7 +59,7 @@ bool ticks_on_its_own(const ComponentView& component);
 
 // Brings a component into the context of its proxy. Where it was active in contexts of its own it is deactivated there and activated here;
 // these contexts run on. With `tick` its own first context is ticked instead, and its state there stays. A component that takes part
-// already, or is in its error state, is refused. `timeout`: with its attach_context.
+// already, or is in its error state, is rejected. `timeout`: with its attach_context.
 Result<void> join_time(const Session& session, const std::string& component, const std::string& proxy, TimeMember::How how,
                        std::chrono::milliseconds timeout);
 // Deactivates it where it takes part; nothing if it is not active there. A context that is ticked gets one tick for it if need be: in that

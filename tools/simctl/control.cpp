@@ -132,7 +132,7 @@ void await_end(Control& control, const shm::Iface& iface, shm::Iface& simulation
     const auto now = stamp();
     if (duration.count() > 0 && now.sim_time_ns >= end) return;
     if (now.resets != begin.resets) return control.fail("iface " + iface.name() + ": the world was reset, which ends the command");
-    if (!iface.is_commander()) return control.fail("iface " + iface.name() + ": another client commands it now");
+    if (!iface.is_commanding()) return control.fail("iface " + iface.name() + ": another client commands it now");
     constexpr std::chrono::milliseconds pause(100);
     if (duration.count() > 0) {
       simulation.wait(now.sequence, pause);

@@ -21,7 +21,7 @@ class Control {
   std::uint32_t server_id() const { return server_id_; }
   bool json() const { return json_; }
 
-  // The server's reply; nothing when it refused or does not answer, which is printed. `command`: what the message calls the request.
+  // The server's reply; nothing when it rejected or does not answer, which is printed. `command`: what the message calls the request.
   std::optional<shm::Reply> ask(const shm::Request& request, std::chrono::seconds limit = std::chrono::seconds(10),
                                 const std::string& command = {});
   // By NAME or TYPE:NAME; nothing when there is none, or several types have the name and none is the preferred one, which is printed.

@@ -143,10 +143,10 @@ bool flag_of(const Json& args, const std::string& key) {
   return value.is_boolean() && value.get<bool>();
 }
 
-Result<std::vector<double>> numbers_of(const Json& args, const std::string& key, std::size_t least, std::size_t most) {
+Result<std::vector<double>> numbers_of(const Json& args, const std::string& key, std::size_t min, std::size_t max) {
   const Json& list = member(args, key);
-  const auto what = std::to_string(least) + (most > least ? " to " + std::to_string(most) : "") + " numbers";
-  if (!list.is_array() || list.size() < least || list.size() > most) return expected(key, what);
+  const auto what = std::to_string(min) + (max > min ? " to " + std::to_string(max) : "") + " numbers";
+  if (!list.is_array() || list.size() < min || list.size() > max) return expected(key, what);
   std::vector<double> numbers;
   for (const Json& value : list) {
     if (!value.is_number() || !std::isfinite(value.get<double>())) return expected(key, what);
@@ -155,10 +155,10 @@ Result<std::vector<double>> numbers_of(const Json& args, const std::string& key,
   return numbers;
 }
 
-Result<std::vector<std::string>> texts_of(const Json& args, const std::string& key, std::size_t least, std::size_t most) {
+Result<std::vector<std::string>> texts_of(const Json& args, const std::string& key, std::size_t min, std::size_t max) {
   const Json& list = member(args, key);
-  const auto what = std::to_string(least) + " to " + std::to_string(most) + " texts";
-  if (!list.is_array() || list.size() < least || list.size() > most) return expected(key, what);
+  const auto what = std::to_string(min) + " to " + std::to_string(max) + " texts";
+  if (!list.is_array() || list.size() < min || list.size() > max) return expected(key, what);
   std::vector<std::string> texts;
   for (const Json& value : list) {
     if (!value.is_string() || value.get_ref<const std::string&>().find('\0') != std::string::npos) return expected(key, what);

@@ -59,9 +59,9 @@ base::Result<std::uint32_t> whole_number_of(const Json& args, const std::string&
 base::Result<std::vector<std::uint32_t>> whole_numbers_of(const Json& args, const std::string& key);
 double number_or(const Json& args, const std::string& key, double otherwise);
 bool flag_of(const Json& args, const std::string& key);
-// `least` to `most` finite numbers.
-base::Result<std::vector<double>> numbers_of(const Json& args, const std::string& key, std::size_t least, std::size_t most);
-base::Result<std::vector<std::string>> texts_of(const Json& args, const std::string& key, std::size_t least, std::size_t most);
+// `min` to `max` finite numbers.
+base::Result<std::vector<double>> numbers_of(const Json& args, const std::string& key, std::size_t min, std::size_t max);
+base::Result<std::vector<std::string>> texts_of(const Json& args, const std::string& key, std::size_t min, std::size_t max);
 // An object of texts.
 base::Result<std::vector<std::pair<std::string, std::string>>> values_of(const Json& args, const std::string& key);
 

@@ -13,9 +13,9 @@
 #include "base/text.h"
 #include "recording/ring.h"
 #include "shm/request_board.h"
-#include "studio/hall.h"
 #include "studio/open_page.h"
 #include "studio/recorded_studio.h"
+#include "studio/session_hub.h"
 #include "studio/start_hints.h"
 #include "studio/started_run.h"
 #include "studio/studio.h"
@@ -38,7 +38,7 @@ void add_options(base::Command& app, Settings& settings) {
   app.add_option("-w,--world", settings.start.world, "Start a simulator of this SDFormat world, paused")->check(base::existing_file());
   app.add_option("FILE", settings.start.system,
                  "RTSProfile: start its components and a simulator of --world, paused, as rtse run does. Recording (MCAP): show it")
-      ->check(recorder::check_recording);
+      ->check(recorder::recording_absence_problem);
   app.add_flag("--open", settings.opens,
                "Open the page in the browser. Without FILE, also start what is missing: a simulator of --world (default: the obstacle "
                "course), and a name server with an empty component host. All of it ends with rtm-studio");
@@ -84,14 +84,14 @@ int reject(const base::Error& error) {
 std::string url_of(const studio::WebOptions& options, const studio::WebServer& server) {
   const std::string address = options.address == "0.0.0.0" ? "127.0.0.1" : options.address == "::" ? "::1" : options.address;
   const std::string host = address.find(':') != std::string::npos ? "[" + address + "]" : address;
-  return "http://" + host + ":" + std::to_string(server.port()) + "/#token=" + server.door().token();
+  return "http://" + host + ":" + std::to_string(server.port()) + "/#token=" + server.access().token();
 }
 
 int serve(boost::asio::io_context& loop, const Settings& settings, const studio::PageFiles& page, studio::WebHandlers first,
           const std::string& recording = "") {
   std::error_code problem;  // a folder that is gone has no recordings
-  studio::Hall hall(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only, recording});
-  const auto server = studio::WebServer::open(loop, settings.web, page, hall.handlers());
+  studio::SessionHub hub(loop, std::move(first), {std::filesystem::current_path(problem), settings.studio.is_read_only, recording});
+  const auto server = studio::WebServer::open(loop, settings.web, page, hub.handlers());
   if (!server) return fail(server.error());
   const std::string url = url_of(settings.web, **server);
   std::cout << url << std::endl;

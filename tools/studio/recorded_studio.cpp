@@ -76,9 +76,9 @@ void RecordedStudio::has_scene(const Result<Scene>& scene) {
     answer(!scene_ ? refusal(scene_problem_) : with_collisions ? scene_->glb_with_collisions : scene_->glb);
   waiting_.clear();
   const Frame frame = text_frame(world_event());
-  for (auto& [id, guest] : guests_) {
-    if (scene_) (void)reading_->give([playhead = guest.playhead, scene = scene_] { playhead->set_scene(scene); });
-    guest.viewer->send_newest("world", frame);
+  for (auto& [id, session] : sessions_) {
+    if (scene_) (void)reading_->give([playhead = session.playhead, scene = scene_] { playhead->set_scene(scene); });
+    session.viewer->send_newest("world", frame);
   }
 }
 
@@ -106,40 +106,40 @@ void RecordedStudio::join(std::shared_ptr<Viewer> viewer) {
   auto playhead = Playhead::open(facts_);
   if (!playhead) return viewer->send(text_frame(status(2, playhead.error().message)));
   if (scene_) (*playhead)->set_scene(scene_);
-  Guest& guest = guests_.try_emplace(viewer->id()).first->second;
-  guest.viewer = std::move(viewer);
-  guest.playhead = std::move(*playhead);
-  greet(guest);
+  ClientSession& session = sessions_.try_emplace(viewer->id()).first->second;
+  session.viewer = std::move(viewer);
+  session.playhead = std::move(*playhead);
+  greet(session);
 }
 
-void RecordedStudio::greet(Guest& guest) {
-  const auto say = [&](const Json& event) { guest.viewer->send(text_frame(to_text(event))); };
+void RecordedStudio::greet(ClientSession& session) {
+  const auto say = [&](const Json& event) { session.viewer->send(text_frame(to_text(event))); };
   say(recorded_hello(*facts_));
   say(recorded_system(*facts_));
   say({{"op", "signals"}, {"signals", facts_->signals}});
-  guest.viewer->send_newest("world", text_frame(world_event()));
+  session.viewer->send_newest("world", text_frame(world_event()));
 }
 
-void RecordedStudio::leave(Viewer& viewer) { guests_.erase(viewer.id()); }
+void RecordedStudio::leave(Viewer& viewer) { sessions_.erase(viewer.id()); }
 
 void RecordedStudio::hear(Viewer& viewer, std::string_view text) {
   const auto message = parse_message(text);
   if (!message) return viewer.send(text_frame(status(2, message.error().message)));
   const auto* request = std::get_if<Request>(&*message);
-  const auto found = guests_.find(viewer.id());
-  if (request != nullptr && found != guests_.end()) return handle(found->second, *request);
+  const auto found = sessions_.find(viewer.id());
+  if (request != nullptr && found != sessions_.end()) return handle(found->second, *request);
   viewer.send(text_frame(status(2, "a recording is open here: its channels accept no data")));
 }
 
-void RecordedStudio::handle(Guest& guest, const Request& request) {
-  const auto viewer = guest.viewer->id();
-  if (++guest.open_requests > most_open_requests) return finish(viewer, request.id, Error{"32 requests are not answered yet"}, {});
+void RecordedStudio::handle(ClientSession& session, const Request& request) {
+  const auto viewer = session.viewer->id();
+  if (++session.open_requests > most_open_requests) return finish(viewer, request.id, Error{"32 requests are not answered yet"}, {});
   if (request.name == "series") {
     auto order = series_of(request.args);
-    return order ? start_series(guest, request.id, std::move(*order)) : finish(viewer, request.id, order.error(), {});
+    return order ? start_series(session, request.id, std::move(*order)) : finish(viewer, request.id, order.error(), {});
   }
   auto work = work_for(request);
-  work ? start(guest, request.id, std::move(*work)) : finish(viewer, request.id, work.error(), {});
+  work ? start(session, request.id, std::move(*work)) : finish(viewer, request.id, work.error(), {});
 }
 
 Result<RecordedStudio::Work> RecordedStudio::work_for(const Request& request) const {
@@ -203,8 +203,8 @@ Result<SeriesOrder> RecordedStudio::series_of(const Json& args) const {
 
 // ---- work ----
 
-void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
-  const auto job = [this, viewer = guest.viewer->id(), id, playhead = guest.playhead, work = std::move(work)] {
+void RecordedStudio::start(ClientSession& session, std::int64_t id, Work work) {
+  const auto job = [this, viewer = session.viewer->id(), id, playhead = session.playhead, work = std::move(work)] {
     Playhead::News news;
     Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
@@ -217,12 +217,12 @@ void RecordedStudio::start(Guest& guest, std::int64_t id, Work work) {
       finish(viewer, id, result, news);
     });
   };
-  if (!reading_->give(job)) return finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  if (!reading_->give(job)) return finish(session.viewer->id(), id, Error{"too much is being done already; try again"}, {});
   ++jobs_;
 }
 
-void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder order) {
-  const auto job = [this, viewer = guest.viewer->id(), id, facts = facts_, order = std::move(order)] {
+void RecordedStudio::start_series(ClientSession& session, std::int64_t id, SeriesOrder order) {
+  const auto job = [this, viewer = session.viewer->id(), id, facts = facts_, order = std::move(order)] {
     Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = recorded_series(*facts, order);
@@ -234,18 +234,18 @@ void RecordedStudio::start_series(Guest& guest, std::int64_t id, SeriesOrder ord
       finish(viewer, id, result, {});
     });
   };
-  if (!makers_->give(job)) return finish(guest.viewer->id(), id, Error{"too much is being done already; try again"}, {});
+  if (!makers_->give(job)) return finish(session.viewer->id(), id, Error{"too much is being done already; try again"}, {});
   ++jobs_;
 }
 
 // What is shown comes before the reply, so that a page that asks again has seen it.
 void RecordedStudio::finish(std::uint64_t viewer, std::int64_t id, const Result<Json>& result, const Playhead::News& news) {
-  const auto found = guests_.find(viewer);
-  if (found == guests_.end()) return;
-  Guest& guest = found->second;
-  if (guest.open_requests > 0) --guest.open_requests;
-  for (const auto& [key, frame] : news) guest.viewer->send_newest(key, frame);
-  guest.viewer->send(text_frame(reply_text(id, result)));
+  const auto found = sessions_.find(viewer);
+  if (found == sessions_.end()) return;
+  ClientSession& session = found->second;
+  if (session.open_requests > 0) --session.open_requests;
+  for (const auto& [key, frame] : news) session.viewer->send_newest(key, frame);
+  session.viewer->send(text_frame(reply_text(id, result)));
 }
 
 }  // namespace studio

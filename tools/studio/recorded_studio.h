@@ -29,7 +29,7 @@ class RecordedStudio {
   bool is_idle() const { return jobs_ == 0; }
 
  private:
-  struct Guest {
+  struct ClientSession {
     std::shared_ptr<Viewer> viewer;
     std::shared_ptr<Playhead> playhead;  // of the reading thread
     std::size_t open_requests = 0;
@@ -39,14 +39,14 @@ class RecordedStudio {
 
   RecordedStudio(boost::asio::io_context& loop, std::shared_ptr<const RecordingFacts> facts);
   void join(std::shared_ptr<Viewer> viewer);
-  void greet(Guest& guest);
+  void greet(ClientSession& session);
   void leave(Viewer& viewer);
   void hear(Viewer& viewer, std::string_view text);
-  void handle(Guest& guest, const Request& request);
+  void handle(ClientSession& session, const Request& request);
   base::Result<Work> work_for(const Request& request) const;
   base::Result<SeriesOrder> series_of(const Json& args) const;
-  void start(Guest& guest, std::int64_t id, Work work);
-  void start_series(Guest& guest, std::int64_t id, SeriesOrder order);
+  void start(ClientSession& session, std::int64_t id, Work work);
+  void start_series(ClientSession& session, std::int64_t id, SeriesOrder order);
   void finish(std::uint64_t viewer, std::int64_t id, const base::Result<Json>& result, const Playhead::News& news);
   void make_scene();
   void has_scene(const base::Result<Scene>& scene);
@@ -56,7 +56,7 @@ class RecordedStudio {
   boost::asio::io_context& loop_;
   const std::shared_ptr<const RecordingFacts> facts_;
   const std::string session_;
-  std::map<std::uint64_t, Guest> guests_;
+  std::map<std::uint64_t, ClientSession> sessions_;
   std::size_t jobs_ = 0;  // given to workers, and not back yet
   Scene scene_;
   std::string scene_problem_;                     // why there is none; empty while it is made

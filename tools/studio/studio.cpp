@@ -46,8 +46,8 @@ Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOp
   };
   const SignalSettings settings{orb, options.name_server, options.server_id, options.call_limit};
   system_ = std::make_unique<SystemWatch>(orb, options.name_server, options.call_limit, on_loop(&Studio::tell_system));
-  world_ = std::make_unique<WorldWatch>(options.server_id, WorldTellers{on_loop(&Studio::tell_world), on_loop(&Studio::tell_time),
-                                                                        on_loop(&Studio::tell_clock), on_loop(&Studio::tell_poses)});
+  world_ = std::make_unique<WorldWatch>(options.server_id, WorldCallbacks{on_loop(&Studio::tell_world), on_loop(&Studio::tell_time),
+                                                                          on_loop(&Studio::tell_clock), on_loop(&Studio::tell_poses)});
   workers_ = std::make_unique<Workers>(worker_threads);
   signals_ = std::make_unique<Signals>(settings, *workers_, on_loop(&Studio::tell_values));
   pictures_ =
@@ -58,10 +58,10 @@ Studio::Studio(boost::asio::io_context& loop, CORBA::ORB_ptr orb, const StudioOp
                            [this](channels::ChannelId id) { tell_no_channel(id); },
                            [this](const channels::Sample& sample) { tell_sample(sample); }});
   logs_ = std::make_unique<LogBook>(loop, settings, *workers_, [this] {
-    for (auto& [id, guest] : guests_) send_lines(guest);
+    for (auto& [id, session] : sessions_) send_lines(session);
   });
   publications_ = std::make_unique<Publications>(loop, settings, *workers_, [this](std::uint64_t viewer, const std::string& line) {
-    if (const auto found = guests_.find(viewer); found != guests_.end()) warn(found->second, line);
+    if (const auto found = sessions_.find(viewer); found != sessions_.end()) warn(found->second, line);
   });
   tend();
 }
@@ -82,22 +82,22 @@ WebHandlers Studio::handlers() {
 }
 
 void Studio::join(std::shared_ptr<Viewer> viewer) {
-  Guest& guest = guests_.try_emplace(viewer->id()).first->second;
-  guest.viewer = std::move(viewer);
-  guest.viewer->send(text_frame(server_info(session_, options_.is_read_only ? Offer::looking : Offer::acting)));
-  if (!guest.viewer->speaks_studio()) {
-    greet_foxglove(guest);
+  ClientSession& session = sessions_.try_emplace(viewer->id()).first->second;
+  session.viewer = std::move(viewer);
+  session.viewer->send(text_frame(server_info(session_, options_.is_read_only ? Offer::looking : Offer::acting)));
+  if (!session.viewer->speaks_studio()) {
+    greet_foxglove(session);
   } else {
     const auto [simulator, components] = start_hints(options_.server_id, options_.name_server);
-    guest.viewer->send(text_frame(to_text({{"op", "hello"},
-                                           {"start", {{"simulator", simulator}, {"components", components}}},
-                                           {"version", RTMSIM_VERSION},
-                                           {"read_only", options_.is_read_only},
-                                           {"name_server", options_.name_server},
-                                           {"server_id", options_.server_id}})));
-    for (const auto& [key, frame] : newest_) guest.viewer->send_newest(key, frame);
-    send_poses(guest);
-    send_lines(guest);
+    session.viewer->send(text_frame(to_text({{"op", "hello"},
+                                             {"start", {{"simulator", simulator}, {"components", components}}},
+                                             {"version", RTMSIM_VERSION},
+                                             {"read_only", options_.is_read_only},
+                                             {"name_server", options_.name_server},
+                                             {"server_id", options_.server_id}})));
+    for (const auto& [key, frame] : newest_) session.viewer->send_newest(key, frame);
+    send_poses(session);
+    send_lines(session);
     logs_->set_watched(true);
   }
   system_->set_watched(true);
@@ -109,16 +109,16 @@ void Studio::leave(Viewer& viewer) {
   publications_->close_all(viewer.id());
   signals_->unwatch_all(viewer.id());
   pictures_->unwatch_all(viewer.id());
-  const auto guest = guests_.extract(viewer.id());
-  if (!guest.empty()) want_channels(guest.mapped().subscriptions);
-  logs_->set_watched(std::any_of(guests_.begin(), guests_.end(), [](const auto& one) { return one.second.viewer->speaks_studio(); }));
-  system_->set_watched(!guests_.empty());
-  world_->set_watched(!guests_.empty());
+  const auto session = sessions_.extract(viewer.id());
+  if (!session.empty()) want_channels(session.mapped().subscriptions);
+  logs_->set_watched(std::any_of(sessions_.begin(), sessions_.end(), [](const auto& one) { return one.second.viewer->speaks_studio(); }));
+  system_->set_watched(!sessions_.empty());
+  world_->set_watched(!sessions_.empty());
 }
 
 void Studio::hear(Viewer& viewer, std::string_view text) {
-  const auto found = guests_.find(viewer.id());
-  if (found == guests_.end()) return;
+  const auto found = sessions_.find(viewer.id());
+  if (found == sessions_.end()) return;
   const auto message = parse_message(text);
   if (!message) return viewer.send(text_frame(status(2, message.error().message)));
   if (const auto* request = std::get_if<Request>(&*message)) {
@@ -128,31 +128,31 @@ void Studio::hear(Viewer& viewer, std::string_view text) {
   hear_foxglove(found->second, *message);
 }
 
-void Studio::handle(Guest& guest, const Request& request) {
+void Studio::handle(ClientSession& session, const Request& request) {
   Request asked = request;
   if (request.name == "command_of") {
     asked.name = text_or(request.args, "name", "");
     asked.args = request.args.value("args", Json::object());
     asked.is_dry = true;
-    if (!asked.args.is_object()) return answer(guest, request.id, Error{"args: expected an object"});
+    if (!asked.args.is_object()) return answer(session, request.id, Error{"args: expected an object"});
   }
   if (asked.name == "members") asked.args["topic"] = book_.source_of(text_or(asked.args, "topic", ""));
-  if (const Act* act = find_act(asked.name)) return start_act(guest, asked, *act);
-  handle_here(guest, asked);
+  if (const Act* act = find_act(asked.name)) return start_act(session, asked, *act);
+  handle_here(session, asked);
 }
 
 // What needs no worker.
-void Studio::handle_here(Guest& guest, const Request& request) {
-  if (request.name == "drive") return handle_drive(guest, request);
-  if (request.name == "move_joints") return handle_joints(guest, request);
-  if (request.name == "release") return handle_release(guest, request);
-  if (request.name == "watch") return answer(guest, request.id, start_watch(guest, request.args));
-  if (request.name == "watch_image") return answer(guest, request.id, start_pictures(guest, request.args));
-  if (request.name == "unwatch") return answer(guest, request.id, end_watch(guest, request.args));
-  answer(guest, request.id, Error{"request " + base::in_quotes(request.name) + ": is not known"});
+void Studio::handle_here(ClientSession& session, const Request& request) {
+  if (request.name == "drive") return handle_drive(session, request);
+  if (request.name == "move_joints") return handle_joints(session, request);
+  if (request.name == "release") return handle_release(session, request);
+  if (request.name == "watch") return answer(session, request.id, start_watch(session, request.args));
+  if (request.name == "watch_image") return answer(session, request.id, start_pictures(session, request.args));
+  if (request.name == "unwatch") return answer(session, request.id, end_watch(session, request.args));
+  answer(session, request.id, Error{"request " + base::in_quotes(request.name) + ": is not known"});
 }
 
-Result<Json> Studio::start_watch(const Guest& guest, const Json& args) {
+Result<Json> Studio::start_watch(const ClientSession& session, const Json& args) {
   const auto watch = whole_number_of(args, "watch");
   if (!watch) return watch.error();
   WatchOrder order;
@@ -165,54 +165,54 @@ Result<Json> Studio::start_watch(const Guest& guest, const Json& args) {
     order.members = std::move(*members);
   }
   order.hz = std::clamp(number_or(args, "hz", order.hz), 0.1, 60.0);
-  const auto done = signals_->watch({guest.viewer->id(), *watch}, std::move(order));
+  const auto done = signals_->watch({session.viewer->id(), *watch}, std::move(order));
   if (!done) return done.error();
   return Json::object();
 }
 
-Result<Json> Studio::start_pictures(const Guest& guest, const Json& args) {
+Result<Json> Studio::start_pictures(const ClientSession& session, const Json& args) {
   const auto watch = whole_number_of(args, "watch");
   if (!watch) return watch.error();
   auto iface = text_of(args, "iface");
   if (!iface) return iface.error();
-  pictures_->watch({guest.viewer->id(), *watch}, {std::move(*iface), std::clamp(number_or(args, "hz", 10), 0.1, 60.0)});
+  pictures_->watch({session.viewer->id(), *watch}, {std::move(*iface), std::clamp(number_or(args, "hz", 10), 0.1, 60.0)});
   return Json::object();
 }
 
-Result<Json> Studio::end_watch(const Guest& guest, const Json& args) {
+Result<Json> Studio::end_watch(const ClientSession& session, const Json& args) {
   const auto watch = whole_number_of(args, "watch");
   if (!watch) return watch.error();
-  signals_->unwatch({guest.viewer->id(), *watch});
-  pictures_->unwatch({guest.viewer->id(), *watch});
-  guest.viewer->drop(values_key(*watch));
+  signals_->unwatch({session.viewer->id(), *watch});
+  pictures_->unwatch({session.viewer->id(), *watch});
+  session.viewer->drop(values_key(*watch));
   return Json::object();
 }
 
 void Studio::tell_picture(const WatchKey& key, std::string frame) {
-  const auto found = guests_.find(key.viewer);
-  if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), binary_frame(std::move(frame)));
+  const auto found = sessions_.find(key.viewer);
+  if (found != sessions_.end()) found->second.viewer->send_newest(values_key(key.watch), binary_frame(std::move(frame)));
 }
 
 void Studio::tell_values(const WatchKey& key, std::string event) {
-  const auto found = guests_.find(key.viewer);
-  if (found != guests_.end()) found->second.viewer->send_newest(values_key(key.watch), text_frame(std::move(event)));
+  const auto found = sessions_.find(key.viewer);
+  if (found != sessions_.end()) found->second.viewer->send_newest(values_key(key.watch), text_frame(std::move(event)));
 }
 
-void Studio::start_act(Guest& guest, const Request& request, const Act& act) {
+void Studio::start_act(ClientSession& session, const Request& request, const Act& act) {
   auto plan = act.plan(context_, request.args);
-  if (!plan) return answer(guest, request.id, plan.error());
+  if (!plan) return answer(session, request.id, plan.error());
   const std::string command = plan->command;
-  if (request.is_dry) return answer(guest, request.id, Json::object(), command);
-  if (!act.is_reading && options_.is_read_only) return answer(guest, request.id, read_only(), command);
+  if (request.is_dry) return answer(session, request.id, Json::object(), command);
+  if (!act.is_reading && options_.is_read_only) return answer(session, request.id, read_only(), command);
   const auto started =
-      carry_out(guest, subject_of(act, request.args), std::move(*plan),
-                [this, id = request.id, command](Guest& one, const Result<Json>& result) { answer(one, id, result, command); });
-  if (!started) answer(guest, request.id, started.error(), command);
+      carry_out(session, subject_of(act, request.args), std::move(*plan),
+                [this, id = request.id, command](ClientSession& one, const Result<Json>& result) { answer(one, id, result, command); });
+  if (!started) answer(session, request.id, started.error(), command);
 }
 
-Result<void> Studio::carry_out(Guest& guest, const std::string& subject, Plan plan, Finish finish) {
-  if (guest.open_requests >= most_open_requests) return Error{"32 requests are not answered yet"};
-  const auto work = [this, subject, viewer = guest.viewer->id(), plan = std::move(plan), finish = std::move(finish)] {
+Result<void> Studio::carry_out(ClientSession& session, const std::string& subject, Plan plan, Finish finish) {
+  if (session.open_requests >= most_open_requests) return Error{"32 requests are not answered yet"};
+  const auto work = [this, subject, viewer = session.viewer->id(), plan = std::move(plan), finish = std::move(finish)] {
     Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
       result = plan.run();
@@ -226,7 +226,7 @@ Result<void> Studio::carry_out(Guest& guest, const std::string& subject, Plan pl
     });
   };
   if (!give(subject, work)) return Error{"too much is being done already; try again"};
-  ++guest.open_requests;
+  ++session.open_requests;
   return {};
 }
 
@@ -261,14 +261,14 @@ void Studio::finish_act(const std::string& subject, std::uint64_t viewer, Plan::
   give_next(subject);
   if (touches == Plan::Touches::system) system_->look_now();
   if (touches == Plan::Touches::world) world_->look_now();
-  const auto found = guests_.find(viewer);
-  if (found == guests_.end()) return;
+  const auto found = sessions_.find(viewer);
+  if (found == sessions_.end()) return;
   if (found->second.open_requests > 0) --found->second.open_requests;  // 0: it has left and come back
   finish(found->second, result);
 }
 
-void Studio::answer(Guest& guest, std::int64_t id, const Result<Json>& result, const std::string& command) {
-  guest.viewer->send(text_frame(reply_text(id, result, command)));
+void Studio::answer(ClientSession& session, std::int64_t id, const Result<Json>& result, const std::string& command) {
+  session.viewer->send(text_frame(reply_text(id, result, command)));
 }
 
 bool Studio::fetch(const std::string& path, const std::string& query, const Answer& answer) {
@@ -281,8 +281,8 @@ bool Studio::fetch(const std::string& path, const std::string& query, const Answ
 
 void Studio::tell(const std::string& key, std::string text) {
   const Frame frame = newest_[key] = text_frame(std::move(text));
-  for (auto& [id, guest] : guests_) {
-    if (guest.viewer->speaks_studio()) guest.viewer->send_newest(key, frame);
+  for (auto& [id, session] : sessions_) {
+    if (session.viewer->speaks_studio()) session.viewer->send_newest(key, frame);
   }
 }
 
@@ -298,7 +298,7 @@ void Studio::tell_time(std::string text) { tell("time", std::move(text)); }
 void Studio::tell_system(SystemNews news) {
   if (!news.structure.empty()) {
     newest_.erase("system.states");
-    for (auto& [id, guest] : guests_) guest.viewer->drop("system.states");
+    for (auto& [id, session] : sessions_) session.viewer->drop("system.states");
     const Json system = Json::parse(news.structure, nullptr, false);
     const bool has_changed = book_.take_system(system);
     channels_->take_system(system);
@@ -315,15 +315,15 @@ void Studio::tell_system(SystemNews news) {
 void Studio::tell_poses(std::shared_ptr<const Poses> poses) {
   if (!poses) return board_.clear();
   if (!board_.update(poses->version, poses->time, poses->numbers)) return;
-  for (auto& [id, guest] : guests_) send_poses(guest);
+  for (auto& [id, session] : sessions_) send_poses(session);
 }
 
 // Made when its turn comes, of what is true then.
-void Studio::send_poses(Guest& guest) {
-  if (!guest.viewer->speaks_studio() || board_.links() == 0) return;
-  guest.viewer->send_newest(poses_key, [this, id = guest.viewer->id()]() -> std::optional<Frame> {
-    const auto found = guests_.find(id);
-    if (found == guests_.end()) return std::nullopt;
+void Studio::send_poses(ClientSession& session) {
+  if (!session.viewer->speaks_studio() || board_.links() == 0) return;
+  session.viewer->send_newest(poses_key, [this, id = session.viewer->id()]() -> std::optional<Frame> {
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end()) return std::nullopt;
     auto frame = board_.frame_since(found->second.seen_poses);
     if (!frame) return std::nullopt;
     return binary_frame(std::move(*frame));
@@ -331,11 +331,11 @@ void Studio::send_poses(Guest& guest) {
 }
 
 // As poses: all that has come when its turn comes.
-void Studio::send_lines(Guest& guest) {
-  if (!guest.viewer->speaks_studio()) return;
-  guest.viewer->send_newest(lines_key, [this, id = guest.viewer->id()]() -> std::optional<Frame> {
-    const auto found = guests_.find(id);
-    if (found == guests_.end()) return std::nullopt;
+void Studio::send_lines(ClientSession& session) {
+  if (!session.viewer->speaks_studio()) return;
+  session.viewer->send_newest(lines_key, [this, id = session.viewer->id()]() -> std::optional<Frame> {
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end()) return std::nullopt;
     auto event = logs_->event_since(found->second.seen_lines);
     if (!event) return std::nullopt;
     return text_frame(std::move(*event));
@@ -346,10 +346,10 @@ void Studio::tell_clock(std::chrono::nanoseconds time) {
   channels_->set_time(time);
   logs_->set_time(time);
   std::optional<Frame> frame;
-  for (auto& [id, guest] : guests_) {
-    if (guest.viewer->speaks_studio()) continue;
+  for (auto& [id, session] : sessions_) {
+    if (session.viewer->speaks_studio()) continue;
     if (!frame) frame = binary_frame(time_data(time));
-    guest.viewer->send_newest(clock_key, *frame);
+    session.viewer->send_newest(clock_key, *frame);
   }
 }
 
@@ -358,7 +358,7 @@ void Studio::tend() {
   for (const auto& subject : std::exchange(stalled_, {})) give_next(subject);
   if (++tended_ % tends_per_look == 0) {
     const bool is_asked =
-        std::any_of(guests_.begin(), guests_.end(), [](const auto& guest) { return !guest.second.viewer->speaks_studio(); });
+        std::any_of(sessions_.begin(), sessions_.end(), [](const auto& session) { return !session.second.viewer->speaks_studio(); });
     is_asked ? channels_->tend() : channels_->rest();
     look_at_parameters();
   }

@@ -46,7 +46,7 @@ class Studio {
   WebHandlers handlers();
 
  private:
-  struct Guest {
+  struct ClientSession {
     std::shared_ptr<Viewer> viewer;
     std::uint64_t seen_poses = 0, seen_lines = 0;
     std::size_t open_requests = 0;
@@ -59,23 +59,23 @@ class Studio {
   void join(std::shared_ptr<Viewer> viewer);
   void leave(Viewer& viewer);
   void hear(Viewer& viewer, std::string_view text);
-  void handle(Guest& guest, const Request& request);
-  void handle_here(Guest& guest, const Request& request);
-  void handle_drive(Guest& guest, const Request& request);
-  void handle_joints(Guest& guest, const Request& request);
-  void handle_release(Guest& guest, const Request& request);
-  base::Result<Json> start_watch(const Guest& guest, const Json& args);
-  base::Result<Json> start_pictures(const Guest& guest, const Json& args);
-  base::Result<Json> end_watch(const Guest& guest, const Json& args);
-  void start_act(Guest& guest, const Request& request, const Act& act);
-  using Finish = std::function<void(Guest&, const base::Result<Json>&)>;
+  void handle(ClientSession& session, const Request& request);
+  void handle_here(ClientSession& session, const Request& request);
+  void handle_drive(ClientSession& session, const Request& request);
+  void handle_joints(ClientSession& session, const Request& request);
+  void handle_release(ClientSession& session, const Request& request);
+  base::Result<Json> start_watch(const ClientSession& session, const Json& args);
+  base::Result<Json> start_pictures(const ClientSession& session, const Json& args);
+  base::Result<Json> end_watch(const ClientSession& session, const Json& args);
+  void start_act(ClientSession& session, const Request& request, const Act& act);
+  using Finish = std::function<void(ClientSession&, const base::Result<Json>&)>;
   // Runs the plan on a worker; `finish` on the loop, unless the viewer has left. Fails at once when too much is under way.
-  base::Result<void> carry_out(Guest& guest, const std::string& subject, Plan plan, Finish finish);
+  base::Result<void> carry_out(ClientSession& session, const std::string& subject, Plan plan, Finish finish);
   bool give(const std::string& subject, std::function<void()> work);
   void give_next(const std::string& subject);
-  void finish_act(const std::string& subject, std::uint64_t guest, Plan::Touches touches, const Finish& finish,
+  void finish_act(const std::string& subject, std::uint64_t session, Plan::Touches touches, const Finish& finish,
                   const base::Result<Json>& result);
-  void answer(Guest& guest, std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
+  void answer(ClientSession& session, std::int64_t id, const base::Result<Json>& result, const std::string& command = "");
   bool fetch(const std::string& path, const std::string& query, const Answer& answer);
 
   void tell(const std::string& key, std::string text);  // to all who speak our protocol, and keeps it for those who come
@@ -83,21 +83,21 @@ class Studio {
   void tell_time(std::string text);
   void tell_system(SystemNews news);
   void tell_poses(std::shared_ptr<const Poses> poses);
-  void greet_foxglove(Guest& guest);
-  void hear_foxglove(Guest& guest, const ClientMessage& message);
+  void greet_foxglove(ClientSession& session);
+  void hear_foxglove(ClientSession& session, const ClientMessage& message);
   void take_frame(Viewer& viewer, std::string_view octets);
-  void advertise(Guest& guest, const Advertise& message);
-  void unadvertise(Guest& guest, const Unadvertise& message);
-  void get_parameters(Guest& guest, const GetParameters& message);
-  void set_parameters(Guest& guest, const SetParameters& message);
-  void see_parameters(Guest& guest, const ParameterWish& message);
+  void advertise(ClientSession& session, const Advertise& message);
+  void unadvertise(ClientSession& session, const Unadvertise& message);
+  void get_parameters(ClientSession& session, const GetParameters& message);
+  void set_parameters(ClientSession& session, const SetParameters& message);
+  void see_parameters(ClientSession& session, const ParameterWish& message);
   void look_at_parameters();
   void tell_parameters(const Parameters& now);
-  void call_service(Guest& guest, const ServiceCall& call);
-  void warn(Guest& guest, const std::string& line);
-  void subscribe(Guest& guest, const Subscribe& message);
-  void unsubscribe(Guest& guest, const Unsubscribe& message);
-  void see_graph(Guest& guest, bool is_wanted);
+  void call_service(ClientSession& session, const ServiceCall& call);
+  void warn(ClientSession& session, const std::string& line);
+  void subscribe(ClientSession& session, const Subscribe& message);
+  void unsubscribe(ClientSession& session, const Unsubscribe& message);
+  void see_graph(ClientSession& session, bool is_wanted);
   void tell_graph();
   void want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed);
   void tell_channel(channels::ChannelId id, const channels::Channel& channel);
@@ -106,15 +106,15 @@ class Studio {
   void tell_picture(const WatchKey& key, std::string frame);
   void tell_values(const WatchKey& key, std::string event);
   void tell_clock(std::chrono::nanoseconds time);
-  void send_poses(Guest& guest);
-  void send_lines(Guest& guest);
+  void send_poses(ClientSession& session);
+  void send_lines(ClientSession& session);
   void tend();
 
   boost::asio::io_context& loop_;
   const StudioOptions options_;
   const ActContext context_;
   std::string session_;
-  std::map<std::uint64_t, Guest> guests_;
+  std::map<std::uint64_t, ClientSession> sessions_;
   std::map<std::string, Frame> newest_;  // events by key
   Json system_event_, graph_;            // of the newest structure
   PoseBoard board_;

@@ -38,35 +38,35 @@ Overloaded(Works...) -> Overloaded<Works...>;
 
 }  // namespace
 
-void Studio::greet_foxglove(Guest& guest) {
-  for (const auto& [id, channel] : channels_->open_channels()) guest.viewer->send(text_frame(advertisement(id, channel)));
-  guest.viewer->send(text_frame(advertise_services(!options_.is_read_only)));
+void Studio::greet_foxglove(ClientSession& session) {
+  for (const auto& [id, channel] : channels_->open_channels()) session.viewer->send(text_frame(advertisement(id, channel)));
+  session.viewer->send(text_frame(advertise_services(!options_.is_read_only)));
   channels_->tend();
 }
 
-void Studio::warn(Guest& guest, const std::string& line) { guest.viewer->send(text_frame(status(2, line))); }
+void Studio::warn(ClientSession& session, const std::string& line) { session.viewer->send(text_frame(status(2, line))); }
 
-void Studio::hear_foxglove(Guest& guest, const ClientMessage& message) {
+void Studio::hear_foxglove(ClientSession& session, const ClientMessage& message) {
   std::visit(Overloaded{
-                 [&](const Subscribe& one) { subscribe(guest, one); },
-                 [&](const Unsubscribe& one) { unsubscribe(guest, one); },
-                 [&](const GraphWish& one) { see_graph(guest, one.is_wanted); },
-                 [&](const Advertise& one) { advertise(guest, one); },
-                 [&](const Unadvertise& one) { unadvertise(guest, one); },
-                 [&](const GetParameters& one) { get_parameters(guest, one); },
-                 [&](const SetParameters& one) { set_parameters(guest, one); },
-                 [&](const ParameterWish& one) { see_parameters(guest, one); },
-                 [&](const Request&) { warn(guest, "requests need the subprotocol rtmsim.studio.v1"); },
+                 [&](const Subscribe& one) { subscribe(session, one); },
+                 [&](const Unsubscribe& one) { unsubscribe(session, one); },
+                 [&](const GraphWish& one) { see_graph(session, one.is_wanted); },
+                 [&](const Advertise& one) { advertise(session, one); },
+                 [&](const Unadvertise& one) { unadvertise(session, one); },
+                 [&](const GetParameters& one) { get_parameters(session, one); },
+                 [&](const SetParameters& one) { set_parameters(session, one); },
+                 [&](const ParameterWish& one) { see_parameters(session, one); },
+                 [&](const Request&) { warn(session, "requests need the subprotocol rtmsim.studio.v1"); },
                  [&](const Unused& one) {
-                   guest.viewer->send(text_frame(status(1, "op " + base::in_quotes(one.op) + ": is not offered by this server")));
+                   session.viewer->send(text_frame(status(1, "op " + base::in_quotes(one.op) + ": is not offered by this server")));
                  },
              },
              message);
 }
 
 void Studio::take_frame(Viewer& viewer, std::string_view octets) {
-  const auto found = guests_.find(viewer.id());
-  if (found == guests_.end()) return;
+  const auto found = sessions_.find(viewer.id());
+  if (found == sessions_.end()) return;
   const auto frame = parse_frame(octets);
   if (!frame) return warn(found->second, frame.error().message);
   if (const auto* call = std::get_if<ServiceCall>(&*frame)) return call_service(found->second, *call);
@@ -76,35 +76,35 @@ void Studio::take_frame(Viewer& viewer, std::string_view octets) {
 
 // ---- what viewers publish
 
-void Studio::advertise(Guest& guest, const Advertise& message) {
+void Studio::advertise(ClientSession& session, const Advertise& message) {
   for (const Publication& channel : message.channels) {
-    const auto done = options_.is_read_only ? Result<void>(read_only()) : publications_->open(guest.viewer->id(), channel, system_event_);
-    if (!done) warn(guest, done.error().message);
+    const auto done = options_.is_read_only ? Result<void>(read_only()) : publications_->open(session.viewer->id(), channel, system_event_);
+    if (!done) warn(session, done.error().message);
   }
 }
 
-void Studio::unadvertise(Guest& guest, const Unadvertise& message) {
+void Studio::unadvertise(ClientSession& session, const Unadvertise& message) {
   for (const auto id : message.ids) {
-    if (const auto done = publications_->close(guest.viewer->id(), id); !done) warn(guest, done.error().message);
+    if (const auto done = publications_->close(session.viewer->id(), id); !done) warn(session, done.error().message);
   }
 }
 
 // ---- parameters
 
 // The answer has what could be read. Workers pass it on in JSON, as they do all results.
-void Studio::get_parameters(Guest& guest, const GetParameters& message) {
+void Studio::get_parameters(ClientSession& session, const GetParameters& message) {
   Plan plan{"", [context = context_, system = system_event_, names = message.names]() -> Result<Json> {
               return Json(read_parameters(context, system, names));
             }};
-  const auto started = carry_out(guest, "", std::move(plan), [this, id = message.id](Guest& one, const Result<Json>& result) {
+  const auto started = carry_out(session, "", std::move(plan), [this, id = message.id](ClientSession& one, const Result<Json>& result) {
     if (!result) return warn(one, result.error().message);
     one.viewer->send(text_frame(parameter_values(result->get<Parameters>(), id)));
   });
-  if (!started) warn(guest, started.error().message);
+  if (!started) warn(session, started.error().message);
 }
 
-void Studio::set_parameters(Guest& guest, const SetParameters& message) {
-  if (options_.is_read_only) return warn(guest, read_only().message);
+void Studio::set_parameters(ClientSession& session, const SetParameters& message) {
+  if (options_.is_read_only) return warn(session, read_only().message);
   std::vector<std::string> names;
   for (const auto& [name, value] : message.values) names.push_back(name);
   Plan plan{"",
@@ -113,41 +113,42 @@ void Studio::set_parameters(Guest& guest, const SetParameters& message) {
               return Json{{"problem", done ? "" : done.error().message}, {"now", read_parameters(context, system, names)}};
             },
             Plan::Touches::system};
-  const auto started = carry_out(guest, "parameters", std::move(plan), [this, id = message.id](Guest& one, const Result<Json>& result) {
-    if (!result) return warn(one, result.error().message);
-    if (const auto problem = result->value("problem", ""); !problem.empty()) warn(one, problem);
-    const auto now = result->at("now").get<Parameters>();
-    if (id) one.viewer->send(text_frame(parameter_values(now, id)));
-    tell_parameters(now);
-  });
-  if (!started) warn(guest, started.error().message);
+  const auto started =
+      carry_out(session, "parameters", std::move(plan), [this, id = message.id](ClientSession& one, const Result<Json>& result) {
+        if (!result) return warn(one, result.error().message);
+        if (const auto problem = result->value("problem", ""); !problem.empty()) warn(one, problem);
+        const auto now = result->at("now").get<Parameters>();
+        if (id) one.viewer->send(text_frame(parameter_values(now, id)));
+        tell_parameters(now);
+      });
+  if (!started) warn(session, started.error().message);
 }
 
-void Studio::see_parameters(Guest& guest, const ParameterWish& message) {
-  if (!message.is_wanted && (message.names.empty() || guest.parameters.empty())) {
-    guest.sees_parameters = false;
-    guest.parameters.clear();
+void Studio::see_parameters(ClientSession& session, const ParameterWish& message) {
+  if (!message.is_wanted && (message.names.empty() || session.parameters.empty())) {
+    session.sees_parameters = false;
+    session.parameters.clear();
   } else if (!message.is_wanted) {
-    for (const auto& name : message.names) guest.parameters.erase(name);
-    guest.sees_parameters = !guest.parameters.empty();
+    for (const auto& name : message.names) session.parameters.erase(name);
+    session.sees_parameters = !session.parameters.empty();
   } else {
-    const bool sees_all = message.names.empty() || (guest.sees_parameters && guest.parameters.empty());
-    guest.sees_parameters = true;
-    if (sees_all) guest.parameters.clear();
-    if (!sees_all) guest.parameters.insert(message.names.begin(), message.names.end());
+    const bool sees_all = message.names.empty() || (session.sees_parameters && session.parameters.empty());
+    session.sees_parameters = true;
+    if (sees_all) session.parameters.clear();
+    if (!sees_all) session.parameters.insert(message.names.begin(), message.names.end());
     look_at_parameters();
   }
-  if (!guest.sees_parameters) guest.seen_parameters.clear();
+  if (!session.sees_parameters) session.seen_parameters.clear();
 }
 
 // Components send no notice of most changes, so they are read while somebody wants to know.
 void Studio::look_at_parameters() {
   bool is_wanted = false, is_all_wanted = false;
   std::set<std::string> names;
-  for (const auto& [id, guest] : guests_) {
-    is_wanted = is_wanted || guest.sees_parameters;
-    is_all_wanted = is_all_wanted || (guest.sees_parameters && guest.parameters.empty());
-    names.insert(guest.parameters.begin(), guest.parameters.end());
+  for (const auto& [id, session] : sessions_) {
+    is_wanted = is_wanted || session.sees_parameters;
+    is_all_wanted = is_all_wanted || (session.sees_parameters && session.parameters.empty());
+    names.insert(session.parameters.begin(), session.parameters.end());
   }
   if (!is_wanted || looks_at_parameters_) return;
   if (is_all_wanted) names.clear();
@@ -170,69 +171,69 @@ void Studio::look_at_parameters() {
 
 // Those that are new to a viewer, or have another value.
 void Studio::tell_parameters(const Parameters& now) {
-  for (auto& [id, guest] : guests_) {
-    if (!guest.sees_parameters) continue;
+  for (auto& [id, session] : sessions_) {
+    if (!session.sees_parameters) continue;
     Parameters news;
     for (const auto& [name, value] : now) {
-      if (!guest.parameters.empty() && !guest.parameters.contains(name)) continue;
-      const auto [seen, is_new] = guest.seen_parameters.try_emplace(name, value);
+      if (!session.parameters.empty() && !session.parameters.contains(name)) continue;
+      const auto [seen, is_new] = session.seen_parameters.try_emplace(name, value);
       if (!is_new && seen->second == value) continue;
       news[name] = seen->second = value;
     }
-    if (!news.empty()) guest.viewer->send(text_frame(parameter_values(news, std::nullopt)));
+    if (!news.empty()) session.viewer->send(text_frame(parameter_values(news, std::nullopt)));
   }
 }
 
 // ---- services
 
-void Studio::call_service(Guest& guest, const ServiceCall& call) {
-  const auto fail = [service = call.service, id = call.call](Guest& one, const std::string& why) {
+void Studio::call_service(ClientSession& session, const ServiceCall& call) {
+  const auto fail = [service = call.service, id = call.call](ClientSession& one, const std::string& why) {
     one.viewer->send(text_frame(service_failure(service, id, why)));
   };
   const auto service = find_service(call.service);
-  if (!service || service->act == nullptr) return fail(guest, "service " + std::to_string(call.service) + ": does not exist");
-  if (options_.is_read_only && !service->act->is_reading) return fail(guest, read_only().message);
+  if (!service || service->act == nullptr) return fail(session, "service " + std::to_string(call.service) + ": does not exist");
+  if (options_.is_read_only && !service->act->is_reading) return fail(session, read_only().message);
   const auto args = arguments_of(call);
-  if (!args) return fail(guest, args.error().message);
+  if (!args) return fail(session, args.error().message);
   auto plan = service->act->plan(context_, *args);
-  if (!plan) return fail(guest, plan.error().message);
-  const auto started = carry_out(guest, subject_of(*service->act, *args), std::move(*plan),
-                                 [fail, number = call.service, id = call.call](Guest& one, const Result<Json>& result) {
+  if (!plan) return fail(session, plan.error().message);
+  const auto started = carry_out(session, subject_of(*service->act, *args), std::move(*plan),
+                                 [fail, number = call.service, id = call.call](ClientSession& one, const Result<Json>& result) {
                                    if (!result) return fail(one, result.error().message);
                                    one.viewer->send(binary_frame(service_answer(number, id, "json", to_text(*result))));
                                  });
-  if (!started) fail(guest, started.error().message);
+  if (!started) fail(session, started.error().message);
 }
 
 // ---- channels
 
-void Studio::subscribe(Guest& guest, const Subscribe& message) {
+void Studio::subscribe(ClientSession& session, const Subscribe& message) {
   for (const auto& [id, channel] : message.subscriptions) {
     const auto known = static_cast<channels::ChannelId>(channel);
     if (channel != known || !channels_->open_channels().contains(known)) {
-      guest.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
-    } else if (guest.subscriptions.size() >= most_subscriptions) {
-      guest.viewer->send(text_frame(status(2, "too many subscriptions, at most 1024")));
+      session.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
+    } else if (session.subscriptions.size() >= most_subscriptions) {
+      session.viewer->send(text_frame(status(2, "too many subscriptions, at most 1024")));
     } else {
-      guest.subscriptions[id] = known;
+      session.subscriptions[id] = known;
       channels_->want(known, true);
     }
   }
 }
 
-void Studio::unsubscribe(Guest& guest, const Unsubscribe& message) {
+void Studio::unsubscribe(ClientSession& session, const Unsubscribe& message) {
   std::map<std::uint32_t, channels::ChannelId> gone;
   for (const auto id : message.ids) {
-    if (auto node = guest.subscriptions.extract(id)) gone.insert(std::move(node));
-    guest.viewer->drop(channel_key(id));
+    if (auto node = session.subscriptions.extract(id)) gone.insert(std::move(node));
+    session.viewer->drop(channel_key(id));
   }
   want_channels(gone);
 }
 
-void Studio::see_graph(Guest& guest, bool is_wanted) {
-  guest.sees_graph = is_wanted;
+void Studio::see_graph(ClientSession& session, bool is_wanted) {
+  session.sees_graph = is_wanted;
   if (graph_.is_null()) graph_ = connection_graph({}, {});  // no look at the system has ended yet
-  if (is_wanted) guest.viewer->send(text_frame(graph_update({}, graph_)));
+  if (is_wanted) session.viewer->send(text_frame(graph_update({}, graph_)));
 }
 
 void Studio::tell_graph() {
@@ -240,16 +241,16 @@ void Studio::tell_graph() {
   if (now == graph_) return;
   const Frame frame = text_frame(graph_update(graph_, now));
   graph_ = std::move(now);
-  for (auto& [id, guest] : guests_) {
-    if (guest.sees_graph) guest.viewer->send(frame);
+  for (auto& [id, session] : sessions_) {
+    if (session.sees_graph) session.viewer->send(frame);
   }
 }
 
 // Those that nobody has subscribed to any more.
 void Studio::want_channels(const std::map<std::uint32_t, channels::ChannelId>& changed) {
   for (const auto& [id, channel] : changed) {
-    const bool is_wanted = std::any_of(guests_.begin(), guests_.end(), [&, channel = channel](const auto& guest) {
-      const auto& all = guest.second.subscriptions;
+    const bool is_wanted = std::any_of(sessions_.begin(), sessions_.end(), [&, channel = channel](const auto& session) {
+      const auto& all = session.second.subscriptions;
       return std::any_of(all.begin(), all.end(), [&](const auto& subscription) { return subscription.second == channel; });
     });
     if (!is_wanted) channels_->want(channel, false);
@@ -258,24 +259,24 @@ void Studio::want_channels(const std::map<std::uint32_t, channels::ChannelId>& c
 
 void Studio::tell_channel(channels::ChannelId id, const channels::Channel& channel) {
   const Frame frame = text_frame(advertisement(id, channel));
-  for (auto& [key, guest] : guests_) {
-    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
+  for (auto& [key, session] : sessions_) {
+    if (!session.viewer->speaks_studio()) session.viewer->send(frame);
   }
 }
 
 void Studio::tell_no_channel(channels::ChannelId id) {
   const Frame frame = text_frame(to_text({{"op", "unadvertise"}, {"channelIds", Json::array({id})}}));
-  for (auto& [key, guest] : guests_) {
-    std::erase_if(guest.subscriptions, [&](const auto& subscription) { return subscription.second == id; });
-    if (!guest.viewer->speaks_studio()) guest.viewer->send(frame);
+  for (auto& [key, session] : sessions_) {
+    std::erase_if(session.subscriptions, [&](const auto& subscription) { return subscription.second == id; });
+    if (!session.viewer->speaks_studio()) session.viewer->send(frame);
   }
 }
 
 void Studio::tell_sample(const channels::Sample& sample) {
-  for (auto& [key, guest] : guests_) {
-    for (const auto& [id, channel] : guest.subscriptions) {
+  for (auto& [key, session] : sessions_) {
+    for (const auto& [id, channel] : session.subscriptions) {
       if (channel == sample.channel)
-        guest.viewer->send_newest(channel_key(id), binary_frame(message_data(id, sample.log_time, sample.octets)));
+        session.viewer->send_newest(channel_key(id), binary_frame(message_data(id, sample.log_time, sample.octets)));
     }
   }
 }

@@ -10,21 +10,21 @@ namespace studio {
 using base::Error;
 using base::Result;
 
-void Studio::handle_drive(Guest& guest, const Request& request) {
+void Studio::handle_drive(ClientSession& session, const Request& request) {
   const auto iface = text_of(request.args, "iface");
-  if (!iface) return answer(guest, request.id, iface.error());
+  if (!iface) return answer(session, request.id, iface.error());
   const auto velocity = numbers_of(request.args, "velocity", 3, 6);
   if (!velocity || (velocity->size() != 3 && velocity->size() != 6))
-    return answer(guest, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
+    return answer(session, request.id, Error{"velocity: expected 3 numbers (position2d) or 6 (position3d)"});
   std::vector<std::string> words = simctl_words(options_.server_id);
   words.emplace_back("velocity");
   std::vector<std::string> operands{*iface};
   for (const double number : *velocity) operands.push_back(base::format_number(number));
   const auto command = base::shell_line(base::command_words(std::move(words), operands));
-  if (request.is_dry) return answer(guest, request.id, Json::object(), command);
-  if (options_.is_read_only) return answer(guest, request.id, read_only(), command);
-  const auto done = drives_.drive(guest.viewer->id(), *iface, *velocity);
-  answer(guest, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), command);
+  if (request.is_dry) return answer(session, request.id, Json::object(), command);
+  if (options_.is_read_only) return answer(session, request.id, read_only(), command);
+  const auto done = drives_.drive(session.viewer->id(), *iface, *velocity);
+  answer(session, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), command);
 }
 
 namespace {
@@ -70,24 +70,24 @@ std::string joints_line(std::uint32_t server_id, const std::string& iface, const
 
 }  // namespace
 
-void Studio::handle_joints(Guest& guest, const Request& request) {
+void Studio::handle_joints(ClientSession& session, const Request& request) {
   const auto iface = text_of(request.args, "iface");
-  if (!iface) return answer(guest, request.id, iface.error());
+  if (!iface) return answer(session, request.id, iface.error());
   const auto commands = joint_commands(request.args);
-  if (!commands) return answer(guest, request.id, commands.error());
+  if (!commands) return answer(session, request.id, commands.error());
   const auto line = joints_line(options_.server_id, *iface, *commands);
-  if (request.is_dry) return answer(guest, request.id, Json::object(), line);
-  if (options_.is_read_only) return answer(guest, request.id, read_only(), line);
-  const auto done = drives_.move_joints(guest.viewer->id(), *iface, *commands);
-  answer(guest, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), line);
+  if (request.is_dry) return answer(session, request.id, Json::object(), line);
+  if (options_.is_read_only) return answer(session, request.id, read_only(), line);
+  const auto done = drives_.move_joints(session.viewer->id(), *iface, *commands);
+  answer(session, request.id, done ? Result<Json>(Json::object()) : Result<Json>(done.error()), line);
 }
 
-void Studio::handle_release(Guest& guest, const Request& request) {
+void Studio::handle_release(ClientSession& session, const Request& request) {
   const auto iface = text_of(request.args, "iface");
-  if (!iface) return answer(guest, request.id, iface.error());
-  if (options_.is_read_only) return answer(guest, request.id, read_only());
-  drives_.release(guest.viewer->id(), *iface);
-  answer(guest, request.id, Json::object());
+  if (!iface) return answer(session, request.id, iface.error());
+  if (options_.is_read_only) return answer(session, request.id, read_only());
+  drives_.release(session.viewer->id(), *iface);
+  answer(session, request.id, Json::object());
 }
 
 }  // namespace studio

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "studio/door.h"
+#include "studio/access_policy.h"
 #include "studio/outbox.h"
 #include "studio/page_files.h"
 
@@ -48,7 +48,7 @@ struct WebHandlers {
   std::function<void(Viewer&, std::string_view)> said;  // a text frame of at most 1 MiB
   std::function<void(Viewer&, std::string_view)> sent;  // a binary frame of at most 1 MiB
   std::function<void(Viewer&)> left;
-  // What is made for each asker: a path like "/world.glb" and its query. False: there is no such path, and no answer comes.
+  // What is made for each request: a path like "/world.glb" and its query. False: there is no such path, and no answer comes.
   std::function<bool(const std::string& path, const std::string& query, Answer answer)> fetch;
 };
 
@@ -56,7 +56,7 @@ struct WebOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8700;                // 0: any free one
   bool may_move = false;                    // take any free port when this one is taken
-  std::vector<std::string> hosts, origins;  // see Door
+  std::vector<std::string> hosts, origins;  // see AccessPolicy
 };
 
 class WebServer {
@@ -66,7 +66,7 @@ class WebServer {
                                                        WebHandlers handlers);
   virtual ~WebServer() = default;
   virtual std::uint16_t port() const = 0;
-  virtual const Door& door() const = 0;
+  virtual const AccessPolicy& access() const = 0;
 };
 
 }  // namespace studio

@@ -113,8 +113,8 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     Caller caller{view(request_[http::field::host]), view(request_[http::field::origin]), view(request_[http::field::authorization])};
     if (is_upgrade) caller.protocols = protocols, caller.query = query;
     const PageFile* file = is_upgrade ? nullptr : shared_->page.find(path);
-    const auto verdict = file != nullptr ? shared_->door.judge_sender(caller) : shared_->door.judge(caller);
-    if (verdict != Verdict::granted) return refuse(verdict == Verdict::no_token ? 401 : 403, to_text(verdict));
+    const auto verdict = file != nullptr ? shared_->access.judge_sender(caller) : shared_->access.judge(caller);
+    if (verdict != AccessDecision::granted) return refuse(verdict == AccessDecision::no_token ? 401 : 403, to_text(verdict));
     standing_.was_granted = standing_.was_granted || file == nullptr;
     standing_.last_use = std::chrono::steady_clock::now();
     if (is_upgrade) return upgrade(path, protocols);

@@ -25,7 +25,7 @@ class Listener final : public WebServer {
     Code ignored;
     return acceptor_.local_endpoint(ignored).port();
   }
-  const Door& door() const override { return shared_->door; }
+  const AccessPolicy& access() const override { return shared_->access; }
 
   void accept() {
     acceptor_.async_accept([this](Code code, tcp::socket socket) {
@@ -100,10 +100,10 @@ base::Result<std::unique_ptr<WebServer>> WebServer::open(boost::asio::io_context
   code = listen(acceptor, {address, options.port});
   if (code && options.may_move) code = listen(acceptor, {address, 0});
   if (code) return base::Error{"port " + std::to_string(options.port) + " of " + options.address + ": " + code.message()};
-  auto token = Door::make_secret();
+  auto token = AccessPolicy::make_secret();
   if (!token) return token.error();
-  Door door(std::move(*token), options.hosts, options.origins);
-  auto shared = std::make_shared<WebShared>(WebShared{loop, std::move(door), page, std::move(handlers), {}});
+  AccessPolicy access(std::move(*token), options.hosts, options.origins);
+  auto shared = std::make_shared<WebShared>(WebShared{loop, std::move(access), page, std::move(handlers), {}});
   auto listener = std::make_unique<Listener>(std::move(shared), std::move(acceptor));
   listener->accept();
   return std::unique_ptr<WebServer>(std::move(listener));

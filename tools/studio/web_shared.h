@@ -38,7 +38,7 @@ class HttpPeer {
 
 struct WebShared {
   boost::asio::io_context& loop;
-  Door door;
+  AccessPolicy access;
   const PageFiles& page;
   WebHandlers handlers;
   std::set<HttpPeer*> peers;  // before some of them become viewers; none that has given way

@@ -85,7 +85,7 @@ Json absent_world(std::uint32_t server_id, const std::string& problem) {
 
 }  // namespace
 
-WorldWatch::WorldWatch(std::uint32_t server_id, WorldTellers tell)
+WorldWatch::WorldWatch(std::uint32_t server_id, WorldCallbacks tell)
     : server_id_(server_id), tell_(std::move(tell)), thread_([this] { run(); }) {}
 
 WorldWatch::~WorldWatch() {

@@ -24,7 +24,7 @@ struct Poses {
 };
 
 // All are called on the thread of the watch.
-struct WorldTellers {
+struct WorldCallbacks {
   std::function<void(std::string)> world;  // the event "world"
   std::function<void(std::string)> time;   // the event "time"
   std::function<void(std::chrono::nanoseconds)> clock;
@@ -33,7 +33,7 @@ struct WorldTellers {
 
 class WorldWatch {
  public:
-  WorldWatch(std::uint32_t server_id, WorldTellers tell);
+  WorldWatch(std::uint32_t server_id, WorldCallbacks tell);
   ~WorldWatch();
   WorldWatch(const WorldWatch&) = delete;
   WorldWatch& operator=(const WorldWatch&) = delete;
@@ -59,7 +59,7 @@ class WorldWatch {
   void tell_time();
 
   const std::uint32_t server_id_;
-  const WorldTellers tell_;
+  const WorldCallbacks tell_;
   // The thread's:
   std::optional<shm::Requester> simulator_;
   std::string told_world_, told_time_;

@@ -47,7 +47,7 @@ Result<void> set_values(const ComponentView& component, const std::string& id,
     SDOPackage::Configuration_var configuration = configuration_of(component.object);
     accepted = configuration->set_configuration_set_values(set);
   });
-  if (called && !accepted) return Error{what + ": refused"};
+  if (called && !accepted) return Error{what + ": rejected"};
   return called;
 }
 
@@ -58,7 +58,7 @@ Result<void> use_set(const ComponentView& component, const std::string& id) {
     SDOPackage::Configuration_var configuration = configuration_of(component.object);
     accepted = configuration->activate_configuration_set(id.c_str());
   });
-  if (called && !accepted) return Error{what + ": refused"};
+  if (called && !accepted) return Error{what + ": rejected"};
   return called;
 }
 

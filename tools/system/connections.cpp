@@ -179,7 +179,7 @@ Result<void> connect_ports(const std::vector<const PortView*>& ports, const std:
     meaning = reason.empty() ? "a property has a value that a port does not take" : reason;
   }
   if (code == RTC::UNSUPPORTED) meaning = corba::refusal_of_values(properties);
-  if (code == RTC::RTC_ERROR) meaning = "a port refused, its component's log says why";
+  if (code == RTC::RTC_ERROR) meaning = "a port rejected the connection; the log of its component has the reason";
   return check(what, code, meaning);
 }
 

@@ -41,10 +41,10 @@ corba::OpenTo open_to_of_environment() {
 Orb::Orb() {
   const auto tls = corba::prepare_tls(corba::tls_of_environment());
   if (!tls) throw std::runtime_error(tls.error().message);
-  corba::DoorSettings doors{open_to_of_environment(), !tls->empty(), {}};
-  doors.limits.sample = longest_sample;
-  doors.limits.total = 2 * longest_sample;
-  corba::set_doors(doors);
+  corba::AccessSettings access{open_to_of_environment(), !tls->empty(), {}};
+  access.limits.sample = longest_sample;
+  access.limits.total = 2 * longest_sample;
+  corba::set_access(access);
   const auto here = corba::guarded("giop:tcp:127.0.0.1:"), over_tls = corba::guarded("giop:ssl::");
   const auto longest = std::to_string(longest_sample);
   std::vector<std::array<const char*, 2>> options{

@@ -64,7 +64,7 @@ struct Peer {
   bool is_gone = false;
   std::string topic, type, user_data;
   bool is_reliable = false, is_transient = false;
-  std::string special{};  // a policy that never matches an endpoint of this process: "a deadline"; empty: none
+  std::string unmatched_policy{};  // a QoS policy that no endpoint of this process matches, such as "a deadline"; empty: none
 };
 
 // What relates a reply of a service to its request, in the form of rmw_fastrtps.

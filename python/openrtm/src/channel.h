@@ -11,7 +11,7 @@ namespace python {
 
 class ChannelPort final : public RTC::PortBase {
  public:
-  // publish(profile) -> [(key, text), ...], added to the profile, or None to refuse; subscribe(profile) -> bool; unsubscribe(id).
+  // publish(profile) -> [(key, text), ...], added to the profile, or None to reject; subscribe(profile) -> bool; unsubscribe(id).
   ChannelPort(const std::string& name, const pybind11::object& publish, const pybind11::object& subscribe,
               const pybind11::object& unsubscribe);
   ~ChannelPort() override { shut(); }

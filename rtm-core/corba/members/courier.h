@@ -16,9 +16,9 @@ namespace corba {
 
 class Courier {
  public:
-  // Calls another process; may throw CORBA exceptions. After one the courier gives up: one log line, and nothing is carried any more.
+  // Calls another process; may throw CORBA exceptions. After one the notifier logs one line and stops.
   using Message = std::function<void()>;
-  // More wait only for a peer that is slow for good; further ones are dropped.
+  // Maximum number of waiting messages. Further ones are dropped: such a queue belongs to a peer that hangs.
   static constexpr std::size_t most_waiting = 1000;
 
   explicit Courier(std::string name);
@@ -33,9 +33,9 @@ class Courier {
     Message message;
   };
   void repeat(std::vector<Regular> regulars);
-  // What was sent before is still carried, for as long as `timeout`; then as stop(). Not from a message.
+  // Still sends the waiting messages, for at most `timeout`. Then like stop(). Not to be called from a message.
   void finish(std::chrono::nanoseconds timeout = std::chrono::seconds(1));
-  // Nothing is carried after return, but for one message that may be on its way.
+  // Sends nothing more after return, except for one message that may be in progress.
   void stop();
 
  private:

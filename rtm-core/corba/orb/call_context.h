@@ -2,7 +2,7 @@
 // (CORBA 3.3 part 2, 9.3.1). Any thread.
 //   "RTS" 1   the phase counter of a tick in lock step, with the operations of services (corba/orb/call_watch.h)
 //   "RTS" 2   the time, with callbacks and with tick() of a context on simulated time: the code that runs there runs in simulated time, too
-//   "RTS" 3   its principal (corba/orb/asker.h), when that is not our own account
+//   "RTS" 3   its principal (corba/orb/principal.h), when that is not our own account
 // Each is a number as a CDR encapsulation.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace corba {
 
-enum class CallContext : std::uint32_t { moment = 0x52545301, time = 0x52545302, asker = 0x52545303 };
+enum class CallContext : std::uint32_t { phase_counter = 0x52545301, time = 0x52545302, principal = 0x52545303 };
 
 void add_to_call(IOP::ServiceContextList& contexts, CallContext which, std::uint64_t number);
 std::optional<std::uint64_t> said_by_call(const IOP::ServiceContextList& contexts, CallContext which);

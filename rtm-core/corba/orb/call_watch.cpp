@@ -13,8 +13,8 @@
 #include <array>
 #include <span>
 
-#include "base/chance.h"
 #include "base/clock.h"
+#include "base/nondeterminism.h"
 #include "base/tick.h"
 #include "corba/orb/call_context.h"
 #include "corba/orb/object_names.h"
@@ -79,32 +79,32 @@ bool is_of_the_runtime(std::string_view operation) {
 _CORBA_Boolean say_moment(omni::omniInterceptors::clientSendRequest_T::info_T& request) {
   const base::Tick* tick = base::tick_in_lock_step();
   if (tick != nullptr && !is_of_the_runtime(request.operation()))
-    add_to_call(request.service_contexts, CallContext::moment, tick->moment());
+    add_to_call(request.service_contexts, CallContext::phase_counter, tick->phase_counter());
   return true;
 }
 
 _CORBA_Boolean look_at_call(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
   const auto clock = base::lock_step_clock();
-  const std::uint64_t moment = clock ? clock->moment() : 0;
-  if (moment == 0) return true;
+  const std::uint64_t phase_counter = clock ? clock->phase_counter() : 0;
+  if (phase_counter == 0) return true;
   // 0: of no tick, or of one that did not say so.
-  const std::uint64_t moment_of_caller = said_by_call(request.giop_s.service_contexts(), CallContext::moment).value_or(0);
-  const auto what = chance_of_call(request.operation(), moment, moment_of_caller);
+  const std::uint64_t phase_counter_of_caller = said_by_call(request.giop_s.service_contexts(), CallContext::phase_counter).value_or(0);
+  const auto what = nondeterminism_of_call(request.operation(), phase_counter, phase_counter_of_caller);
   if (what.empty() || clock->stands_still()) return true;
   const std::span key(request.giop_s.key(), static_cast<std::size_t>(request.giop_s.keysize()));
-  base::tell_of_chance(name_of_object(std::as_bytes(key)), what, clock->now());
+  base::report_nondeterminism(name_of_object(std::as_bytes(key)), what, clock->now());
   return true;
 }
 
 }  // namespace
 
-std::string chance_of_call(std::string_view operation, std::uint64_t moment, std::uint64_t moment_of_caller) {
-  if (moment == 0) return "";
+std::string nondeterminism_of_call(std::string_view operation, std::uint64_t phase_counter, std::uint64_t phase_counter_of_caller) {
+  if (phase_counter == 0) return "";
   const auto by = " by another process (" + std::string(operation) + ")";
   if (has(changes_parameters, operation)) return "had its parameters changed" + by;
   if (has(changes_states, operation)) return "had its state or a context changed" + by;
   if (has(changes_connections, operation)) return "had a connection made or ended" + by;
-  if (base::is_in_phase(moment) && moment_of_caller != moment && !is_of_the_runtime(operation))
+  if (base::is_in_phase(phase_counter) && phase_counter_of_caller != phase_counter && !is_of_the_runtime(operation))
     return "had a service called while a phase ran" + by;
   return "";
 }

@@ -1,4 +1,4 @@
-// Reports (base/chance.h) calls from other processes that change something while lock-step time passes: their time is
+// Reports (base/nondeterminism.h) calls from other processes that change something while lock-step time passes: their time is
 // nondeterministic. Calls while time is paused (before the first step, at a stop of a run script, after the last step) are not
 // reported. Reading calls, samples and callbacks of contexts in other processes are not reported either, nor services called by a tick
 // of the running phase: the caller's process reports it, and rules of the wiring apply (callers of one phase, callers in the own
@@ -11,11 +11,11 @@
 
 namespace corba {
 
-// What a call of this operation at this moment leaves to chance, for a line of text; empty: nothing. A caller that is in no tick has moment
-// 0.
-std::string chance_of_call(std::string_view operation, std::uint64_t moment, std::uint64_t moment_of_caller = 0);
+// Describes what is nondeterministic in a call of this operation at this phase counter; empty if nothing is. A caller outside of a tick has
+// phase counter 0.
+std::string nondeterminism_of_call(std::string_view operation, std::uint64_t phase_counter, std::uint64_t phase_counter_of_caller = 0);
 
-// From now on, of all calls that come into this process; and its own ticks say their moment where they call.
+// Watches all further calls to this process. Calls from ticks of this process carry the phase counter from now on.
 void watch_calls();
 
 }  // namespace corba

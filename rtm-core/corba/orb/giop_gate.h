@@ -38,7 +38,7 @@ class GiopGate {
   GiopGate(const GiopGate&) = delete;
   GiopGate& operator=(const GiopGate&) = delete;
 
-  // Some octets of whole messages, at least one; what `read` said when that ended, -1 when the peer is refused (see problem()).
+  // Some octets of whole messages, at least one; what `read` said when that ended, -1 when the peer is rejected (see problem()).
   int receive(std::byte* to, std::size_t size, const Read& read);
 
   // A message has begun and has not come whole. Also asked by who reads for receive().
@@ -47,7 +47,7 @@ class GiopGate {
   bool has_more() const { return delivered_ < whole_ || !ahead_.empty(); }
   // Whole messages (or their beginnings, of samples that pass) that were handed on.
   std::uint64_t messages() const { return messages_; }
-  // Why the peer was refused; empty while it is not.
+  // Why the peer was rejected; empty while it is not.
   const std::string& problem() const { return problem_; }
 
  private:

@@ -30,8 +30,8 @@
 #include "base/log.h"
 #include "base/peer_account.h"
 #include "base/text.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_context.h"
+#include "corba/orb/principal.h"
 
 namespace corba {
 namespace {
@@ -48,7 +48,7 @@ constexpr std::size_t reserved_files = 64;              // for everything that i
 class GuardedConnection;
 
 struct GateState {
-  DoorSettings settings{};
+  AccessSettings settings{};
   std::size_t most = most_connections;
   std::map<const omni::giopConnection*, GuardedConnection*> connections{};  // by the connection that is guarded
   Clock::time_point last_complaint{};
@@ -57,14 +57,14 @@ struct GateState {
 };
 
 // The end points are those of the process. Never destroyed: connections may go after it otherwise.
-struct Doors {
+struct AccessControl {
   base::Guarded<GateState, base::Rank::peers> state;
   std::condition_variable gone;             // a connection
   std::atomic<std::size_t> in_progress{0};  // see GiopGate
   std::atomic<bool> are_open{false};        // to others than the own account
-  static Doors& instance() {
-    static Doors& doors = *new Doors;
-    return doors;
+  static AccessControl& instance() {
+    static AccessControl& access = *new AccessControl;
+    return access;
   }
 };
 
@@ -73,7 +73,7 @@ void complain(const std::string& line) {
   constexpr std::chrono::seconds pause{1};
   std::size_t others = 0;
   {
-    auto state = Doors::instance().state.lock();
+    auto state = AccessControl::instance().state.lock();
     const auto now = Clock::now();
     if (now - state->last_complaint < pause) {
       ++state->complaints;
@@ -124,21 +124,21 @@ Visitor recognise(omni::giopConnection& connection) {
 }
 
 bool may_come_in(const Visitor& visitor, OpenTo open_to) {
-  // The handshake comes next and refuses whoever has no certificate.
+  // The handshake comes next and rejects whoever has no certificate.
   if (visitor.address.starts_with("giop:ssl:")) return true;
   if (visitor.is_own || open_to == OpenTo::network) return true;
   return open_to == OpenTo::host && visitor.account;
 }
 
-Asker kind_of(const Visitor& visitor) {
-  if (visitor.is_own) return Asker::own;
-  if (visitor.address.starts_with("giop:ssl:")) return Asker::certificate;
-  return visitor.account ? Asker::host : Asker::network;
+Principal kind_of(const Visitor& visitor) {
+  if (visitor.is_own) return Principal::own;
+  if (visitor.address.starts_with("giop:ssl:")) return Principal::certificate;
+  return visitor.account ? Principal::host : Principal::network;
 }
 
-bool may_come_in(Asker asker, const DoorSettings& settings) {
-  if (asker == Asker::own || settings.open_to == OpenTo::network) return true;
-  return asker == Asker::host ? settings.open_to == OpenTo::host : asker == Asker::certificate && settings.has_tls;
+bool may_come_in(Principal principal, const AccessSettings& settings) {
+  if (principal == Principal::own || settings.open_to == OpenTo::network) return true;
+  return principal == Principal::host ? settings.open_to == OpenTo::host : principal == Principal::certificate && settings.has_tls;
 }
 
 std::atomic<Clock::rep> now_of(Clock::time_point time) { return time.time_since_epoch().count(); }
@@ -148,7 +148,7 @@ std::atomic<Clock::rep> now_of(Clock::time_point time) { return time.time_since_
 class GuardedConnection final : public omni::giopConnection {
  public:
   GuardedConnection(omni::giopConnection* inner, Visitor visitor, const GiopLimits& limits)
-      : inner_(inner), visitor_(std::move(visitor)), gate_(limits, Doors::instance().in_progress), last_use_(now_of(born_)) {}
+      : inner_(inner), visitor_(std::move(visitor)), gate_(limits, AccessControl::instance().in_progress), last_use_(now_of(born_)) {}
 
   int Send(void* octets, std::size_t size, const omni_time_t& deadline) override { return inner_->Send(octets, size, deadline); }
 
@@ -191,8 +191,8 @@ class GuardedConnection final : public omni::giopConnection {
 
  private:
   ~GuardedConnection() override {
-    Doors::instance().state.lock()->connections.erase(inner_);
-    Doors::instance().gone.notify_all();
+    AccessControl::instance().state.lock()->connections.erase(inner_);
+    AccessControl::instance().gone.notify_all();
     inner_->decrRefCount(true);
   }
 
@@ -215,7 +215,7 @@ class GuardedConnection final : public omni::giopConnection {
   GiopGate gate_;
   std::atomic<Clock::rep> last_use_;
   bool is_complained_ = false;
-  bool is_leaving_ = false;  // guarded by the lock of Doors
+  bool is_leaving_ = false;  // guarded by the lock of AccessControl
 };
 
 // ---- a call
@@ -223,23 +223,23 @@ class GuardedConnection final : public omni::giopConnection {
 // Who sent the request that this thread runs; an address is shorter.
 thread_local std::array<char, 128> address_of_caller{};
 
-const char* to_text(Asker asker) {
-  return asker == Asker::host          ? "another account of this machine"
-         : asker == Asker::certificate ? "the owner of a certificate"
-                                       : "another host";
+const char* to_text(Principal principal) {
+  return principal == Principal::host          ? "another account of this machine"
+         : principal == Principal::certificate ? "the owner of a certificate"
+                                               : "another host";
 }
 
 // A process of our account may call for somebody else.
-Asker asker_of(omni::GIOP_S& request) {
+Principal principal_of(omni::GIOP_S& request) {
   const auto* connection = dynamic_cast<const GuardedConnection*>(request.strand().connection);
-  if (connection == nullptr) return Asker::network;  // another kind of end point than those that are guarded
-  const Asker who = kind_of(connection->visitor());
-  if (who != Asker::own) return who;
-  const auto said = said_by_call(request.service_contexts(), CallContext::asker);
-  if (!said) return Asker::own;
-  return *said == static_cast<std::uint64_t>(Asker::host) || *said == static_cast<std::uint64_t>(Asker::certificate)
-             ? static_cast<Asker>(*said)
-             : Asker::network;
+  if (connection == nullptr) return Principal::network;  // another kind of end point than those that are guarded
+  const Principal who = kind_of(connection->visitor());
+  if (who != Principal::own) return who;
+  const auto said = said_by_call(request.service_contexts(), CallContext::principal);
+  if (!said) return Principal::own;
+  return *said == static_cast<std::uint64_t>(Principal::host) || *said == static_cast<std::uint64_t>(Principal::certificate)
+             ? static_cast<Principal>(*said)
+             : Principal::network;
 }
 
 _CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::info_T& request) {
@@ -247,9 +247,9 @@ _CORBA_Boolean remember_caller(omni::omniInterceptors::serverReceiveRequest_T::i
   const std::string_view text = address != nullptr ? address : "";
   const auto length = text.copy(address_of_caller.data(), address_of_caller.size() - 1);
   address_of_caller[length] = '\0';
-  const Asker who = asker_of(request.giop_s);
-  set_asker(who);
-  if (who != Asker::own && !may_come_in(who, Doors::instance().state.lock()->settings)) {
+  const Principal who = principal_of(request.giop_s);
+  set_principal(who);
+  if (who != Principal::own && !may_come_in(who, AccessControl::instance().state.lock()->settings)) {
     complain(caller() + " asked for " + request.operation() + " for " + to_text(who) + " and was rejected");
     throw CORBA::NO_PERMISSION(0, CORBA::COMPLETED_NO);
   }
@@ -263,7 +263,7 @@ class GuardedEndpoint final : public omni::giopEndpoint {
   // The end point of omniORB points into the text that it is made from, and deletes itself with its last connection, some time. So texts
   // are kept, each once.
   static omni::giopEndpoint* make(const std::string& plain) {
-    const std::string& text = *Doors::instance().state.lock()->endpoints.insert(plain).first;
+    const std::string& text = *AccessControl::instance().state.lock()->endpoints.insert(plain).first;
     omni::giopEndpoint* inner = omni::giopEndpoint::str2Endpoint(text.c_str());
     return inner != nullptr ? new GuardedEndpoint(inner) : nullptr;
   }
@@ -303,16 +303,16 @@ class GuardedEndpoint final : public omni::giopEndpoint {
 
  private:
   omni::giopConnection* let_in(omni::giopConnection* come) {
-    auto& doors = Doors::instance();
+    auto& access = AccessControl::instance();
     Visitor visitor = recognise(*come);
-    const DoorSettings settings = doors.state.lock()->settings;
+    const AccessSettings settings = access.state.lock()->settings;
     if (!is_poked_ && !may_come_in(visitor, settings.open_to)) {
-      complain(to_text(visitor) + " refused: corba.open_to is " + (settings.open_to == OpenTo::host ? "host" : "account"));
+      complain(to_text(visitor) + " rejected: corba.open_to is " + (settings.open_to == OpenTo::host ? "host" : "account"));
       return nullptr;
     }
     make_room();
     auto* made = new GuardedConnection(come, std::move(visitor), settings.limits);
-    doors.state.lock()->connections[come] = made;
+    access.state.lock()->connections[come] = made;
     return made;
   }
 
@@ -320,12 +320,12 @@ class GuardedEndpoint final : public omni::giopEndpoint {
   static void make_room() {
     std::string gone;
     {
-      auto& doors = Doors::instance();
-      auto state = doors.state.lock();
+      auto& access = AccessControl::instance();
+      auto state = access.state.lock();
       // Those that leave have their files until their threads have seen it.
       constexpr std::chrono::milliseconds timeout{500};
       if (state->connections.size() >= state->most + leaving_files)
-        state.wait_for(doors.gone, timeout, [&] { return state->connections.size() < state->most + leaving_files; });
+        state.wait_for(access.gone, timeout, [&] { return state->connections.size() < state->most + leaving_files; });
       std::size_t staying = 0;
       GuardedConnection* oldest = nullptr;
       for (const auto& [inner, connection] : state->connections) {
@@ -347,7 +347,7 @@ class GuardedEndpoint final : public omni::giopEndpoint {
     GuardedConnection* connection = nullptr;
     {
       const omni_tracedmutex_lock transport(*omni::omniTransportLock);
-      auto state = Doors::instance().state.lock();
+      auto state = AccessControl::instance().state.lock();
       const auto found = state->connections.find(inner);
       if (found == state->connections.end()) return;
       connection = found->second;
@@ -385,20 +385,20 @@ class GuardedTransport final : public omni::giopTransportImpl {
 
 }  // namespace
 
-void set_doors(const DoorSettings& settings) {
+void set_access(const AccessSettings& settings) {
   static GuardedTransport& transport = *new GuardedTransport;  // known to the ORB from now on
   (void)transport;
   std::size_t most = most_connections;
   if (const std::size_t allowed = base::raise_descriptor_limit(); allowed > 0) {
     most = std::min(most, allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2);
   }
-  auto state = Doors::instance().state.lock();
+  auto state = AccessControl::instance().state.lock();
   state->settings = settings;
-  Doors::instance().are_open = settings.open_to != OpenTo::account || settings.has_tls;
+  AccessControl::instance().are_open = settings.open_to != OpenTo::account || settings.has_tls;
   state->most = std::max<std::size_t>(most, 1);
 }
 
-bool doors_are_open() { return Doors::instance().are_open.load(std::memory_order_relaxed); }  // set before there is an ORB
+bool accepts_other_accounts() { return AccessControl::instance().are_open.load(std::memory_order_relaxed); }  // set before there is an ORB
 
 std::string guarded(const std::string& endpoint) {
   for (const std::string_view kind : {"giop:tcp:", "giop:unix:", "giop:ssl:"}) {
@@ -413,7 +413,7 @@ std::string unguarded(const std::string& endpoint) {
 
 void remember_callers() {
   omniORB::getInterceptors()->serverReceiveRequest.add(&remember_caller);
-  pass_on_asker();
+  pass_on_principal();
 }
 
 bool has_caller() { return address_of_caller.front() != '\0'; }
@@ -421,7 +421,7 @@ bool has_caller() { return address_of_caller.front() != '\0'; }
 std::string caller() {
   const std::string address = address_of_caller.data();
   if (address.empty()) return "this process";
-  auto state = Doors::instance().state.lock();
+  auto state = AccessControl::instance().state.lock();
   for (const auto& [inner, connection] : state->connections) {
     if (connection->visitor().address == address) return to_text(connection->visitor());
   }

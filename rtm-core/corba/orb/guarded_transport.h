@@ -16,17 +16,17 @@ enum class OpenTo {
   network,  // everybody who reaches an end point
 };
 
-struct DoorSettings {
+struct AccessSettings {
   OpenTo open_to = OpenTo::account;
   bool has_tls = false;  // there are end points of TLS: who comes in there is known by a certificate (corba/orb/tls.h), not by an account
   GiopLimits limits{};
 };
 
 // Takes effect for connections that come from now on. Also raises the number of files that this process may open to what it is allowed.
-void set_doors(const DoorSettings& settings);
+void set_access(const AccessSettings& settings);
 
-// Others than the own account may call, by an open door or by TLS.
-bool doors_are_open();
+// True if callers other than the own account are accepted: by corba.open_to or by TLS.
+bool accepts_other_accounts();
 
 // The end point with a guard before it; others than giop:tcp:, giop:unix: and giop:ssl: as they are.
 std::string guarded(const std::string& endpoint);

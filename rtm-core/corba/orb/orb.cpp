@@ -18,7 +18,7 @@
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/call_watch.h"
 #include "corba/orb/listening.h"
-#include "corba/ports/farewell.h"
+#include "corba/ports/disconnect_notice.h"
 #include "corba/ports/peer_watch.h"
 #include "corba/ports/sample_room.h"
 
@@ -207,15 +207,15 @@ std::chrono::milliseconds call_timeout_of(const std::vector<std::string>& argume
   return given > 0 ? std::chrono::milliseconds(given) : std::chrono::hours(1);
 }
 
-DoorSettings doors_of(const OrbSettings& settings, const std::vector<std::string>& arguments) {
-  DoorSettings doors{who_may_call(settings), !settings.tls.endpoints.empty(), {}};
-  doors.limits.sample = static_cast<std::size_t>(std::max<std::int64_t>(last_number(arguments, "-ORBgiopMaxMsgSize"), 8192));
+AccessSettings access_of(const OrbSettings& settings, const std::vector<std::string>& arguments) {
+  AccessSettings access{who_may_call(settings), !settings.tls.endpoints.empty(), {}};
+  access.limits.sample = static_cast<std::size_t>(std::max<std::int64_t>(last_number(arguments, "-ORBgiopMaxMsgSize"), 8192));
   // Who says how long a message may be by an argument of the ORB means every message.
   const bool is_said = has_argument(settings.arguments, "-ORBgiopMaxMsgSize");
-  doors.limits.request = is_said ? doors.limits.sample : std::min(settings.max_request_size, doors.limits.sample);
-  doors.limits.total = std::max(doors.limits.total, 2 * doors.limits.sample);
-  if (!is_said) doors.limits.room = &room_for_samples;
-  return doors;
+  access.limits.request = is_said ? access.limits.sample : std::min(settings.max_request_size, access.limits.sample);
+  access.limits.total = std::max(access.limits.total, 2 * access.limits.sample);
+  if (!is_said) access.limits.room = &room_for_samples;
+  return access;
 }
 
 // ---- object keys that people can write
@@ -265,10 +265,10 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   auto arguments = to_arguments(settings, result->folder_ ? result->folder_->path() : "");
   if (!arguments) return arguments.error();
   set_port_call_timeout(call_timeout_of(*arguments));
-  const DoorSettings doors = doors_of(settings, *arguments);
-  set_doors(doors);
-  // An answer to "are you there?" may move a reference past those who look at answers to calls (corba/orb/asker.h).
-  if (doors_are_open()) arguments->insert(arguments->end(), {"-ORBverifyObjectExistsAndType", "0"});
+  const AccessSettings access = access_of(settings, *arguments);
+  set_access(access);
+  // An answer to "are you there?" may move a reference past those who look at answers to calls (corba/orb/principal.h).
+  if (accepts_other_accounts()) arguments->insert(arguments->end(), {"-ORBverifyObjectExistsAndType", "0"});
   std::vector<char*> argv;
   for (auto& argument : *arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -295,15 +295,15 @@ base::Result<std::unique_ptr<Orb>> Orb::start(const OrbSettings& settings) {
   }
   const auto detail = std::exchange(*orb_messages().lock(), {}).last;
   if (failure.empty()) {
-    if (doors.open_to != OpenTo::account) {
+    if (access.open_to != OpenTo::account) {
       base::log(base::Level::info, "orb", "open to {}: {}",
-                doors.open_to == OpenTo::host ? "every account of this machine" : "every caller that reaches it",
+                access.open_to == OpenTo::host ? "every account of this machine" : "every caller that reaches it",
                 base::join(result->addresses(), ", "));
     }
-    if (doors.has_tls) {
+    if (access.has_tls) {
       base::log(base::Level::info, "orb", "open over TLS to every owner of a certificate of {}", base::in_quotes(settings.tls.authority));
     }
-    begin_farewells();
+    start_disconnect_notices();
     begin_port_watch();
     if (settings.peer_check_interval.count() > 0) result->watch_ = std::make_unique<PeerWatch>(settings.peer_check_interval);
     return result;
@@ -316,7 +316,7 @@ Orb::Orb() = default;
 Orb::~Orb() {
   watch_.reset();
   end_port_watch();
-  end_farewells();
+  stop_disconnect_notices();
   try {
     if (!CORBA::is_nil(orb_)) orb_->destroy();
   } catch (const CORBA::Exception& e) {

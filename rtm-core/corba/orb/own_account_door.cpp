@@ -1,7 +1,7 @@
 // A library to be loaded before others (LD_PRELOAD) into a server that is not ours, as omniNames: connections over TCP from other accounts
 // end before the server has read anything, when there are too many the one that has been silent longest ends, and what comes in is handed
 // on in whole GIOP messages (giop_gate.h): of fragments that it does not expect omniORB 4.2 keeps threads and connections for ever, which
-// take all processors. base/own_account.h says where the library is. Who was refused is told in lines to the file whose number is in
+// take all processors. base/own_account.h says where the library is. Who was rejected is told in lines to the file whose number is in
 // RTMSIM_DOOR_LOG, to standard error without it; one a second at most.
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -182,7 +182,7 @@ void tell_refused(std::optional<uid_t> account) {
   }
   last = now;
   std::string line = "name server: " + (account ? "account " + std::to_string(*account) : std::string("another host or account")) +
-                     " refused: it serves account " + std::to_string(geteuid()) + " alone";
+                     " rejected: it serves account " + std::to_string(geteuid()) + " alone";
   if (const auto missed = std::exchange(others, 0); missed > 0) line += "; so were " + std::to_string(missed) + " others";
   line += '\n';
   pollfd room{log_file(), POLLOUT, 0};

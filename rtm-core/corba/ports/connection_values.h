@@ -11,7 +11,7 @@ namespace corba {
 // A line for each value of a ConnectorProfile that a port of this runtime would replace: the key, what is allowed, and the value.
 std::vector<std::string> misunderstood_values(const std::map<std::string, std::string>& properties);
 
-// Why a port of this runtime refuses a connection with these values; empty if it does not.
+// Why a port of this runtime rejects a connection with these values; empty if it does not.
 std::string refusal_of_values(const std::map<std::string, std::string>& properties);
 
 }  // namespace corba

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "base/text.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/nv_list.h"
+#include "corba/orb/principal.h"
 
 namespace corba {
 namespace {
@@ -82,10 +82,10 @@ Line line_of(const rt::ConnectorSettings& settings) {
   return {settings.order, std::min(settings.call_timeout.value_or(usual), std::max(usual, most)), settings.shared_memory_size};
 }
 
-ForGivers::ForGivers(const RTC::PortServiceList& ports) {
-  if (asker() != Asker::own) return;
-  for (CORBA::ULong i = 0; i < ports.length() && !asker_; ++i) {
-    if (const Asker giver = giver_of(ports[i].in()); giver != Asker::own) asker_.emplace(giver);
+OnBehalfOfSenders::OnBehalfOfSenders(const RTC::PortServiceList& ports) {
+  if (principal() != Principal::own) return;
+  for (CORBA::ULong i = 0; i < ports.length() && !principal_; ++i) {
+    if (const Principal sender = sender_of(ports[i].in()); sender != Principal::own) principal_.emplace(sender);
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "corba/orb/asker.h"
+#include "corba/orb/principal.h"
 #include "corba/transport/transport.h"
 #include "core/connector_settings.h"
 #include "rtm/idl/RTCStub.h"
@@ -23,16 +23,16 @@ void remove_references(RTC::ConnectorProfile& profile);
 Line line_of(const rt::ConnectorSettings& settings);
 
 // The thread works for the stranger who gave one of these ports, if one did: they answer with references of their choice.
-class ForGivers {
+class OnBehalfOfSenders {
  public:
-  explicit ForGivers(const RTC::PortServiceList& ports);
+  explicit OnBehalfOfSenders(const RTC::PortServiceList& ports);
 
  private:
-  std::optional<ForAsker> asker_;
+  std::optional<OnBehalfOf> principal_;
 };
 
-// Whether the ports of a profile but for the one in that place may be kept (corba/orb/asker.h): they are watched, connected again, told of
-// the end.
+// Whether the ports of a profile but for the one in that place may be kept (corba/orb/principal.h): they are watched, connected again, told
+// of the end.
 bool may_keep_ports(const RTC::PortServiceList& ports, int self);
 
 }  // namespace corba

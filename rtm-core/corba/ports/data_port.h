@@ -36,8 +36,8 @@ struct ConnectionPlan {
   std::chrono::nanoseconds port_time() const;
   std::chrono::nanoseconds caller_time() const;
   // Of the component's clock.
-  std::uint64_t era() const;
-  std::uint64_t moment() const;
+  std::uint64_t epoch() const;
+  std::uint64_t phase_counter() const;
 };
 
 // What waits in a connection to be read or sent. Any thread.

@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "base/chance.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/nondeterminism.h"
 #include "base/text.h"
 #include "base/tick.h"
 #include "corba/members/member_watch.h"
@@ -41,9 +41,9 @@ bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
   return a.block && b.block && std::ranges::equal(a.block->octets(), b.block->octets());
 }
 
-std::uint64_t moment_of_reader() {
+std::uint64_t phase_counter_of_reader() {
   const base::Tick* tick = base::current_tick();
-  return tick ? tick->moment() : 0;
+  return tick ? tick->phase_counter() : 0;
 }
 
 // [octets] of a message with a sample: without end for types that are, as pictures, as long as their user likes.
@@ -105,9 +105,9 @@ std::chrono::nanoseconds ConnectionPlan::caller_time() const {
   return (clock ? base::current_clock_or(*clock) : base::current_clock()).now();
 }
 
-std::uint64_t ConnectionPlan::era() const { return clock ? clock->era() : 0; }
+std::uint64_t ConnectionPlan::epoch() const { return clock ? clock->epoch() : 0; }
 
-std::uint64_t ConnectionPlan::moment() const { return clock ? clock->moment() : 0; }
+std::uint64_t ConnectionPlan::phase_counter() const { return clock ? clock->phase_counter() : 0; }
 
 std::string port_text(const ConnectionPlan& plan) { return port_text(plan.port); }
 std::string connection_text(const ConnectionPlan& plan) { return plan.name + " (" + plan.id + ")"; }
@@ -139,13 +139,13 @@ InConnection::~InConnection() { mailbox_->close(channel_); }
 
 void InConnection::finish() { mailbox_->finish(channel_); }
 
-std::size_t InConnection::unread() const { return mailbox_->unread(channel_, moment_of_reader()); }
+std::size_t InConnection::unread() const { return mailbox_->unread(channel_, phase_counter_of_reader()); }
 
 rt::PortStatus InConnection::receive(rt::Sample sample) {
-  return keep(std::move(sample), plan_.moment(), line_of(plan_.settings).call_timeout);
+  return keep(std::move(sample), plan_.phase_counter(), line_of(plan_.settings).call_timeout);
 }
 
-rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most) {
+rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t phase_counter, std::chrono::nanoseconds most) {
   bool has_leftovers = false;
   if (sample.block && !ops_.codec && !ops_.shape.fits(sample.block->octets(), sample.order, &has_leftovers)) {
     base::log(base::Level::warn, "data port", "connection {}: {} bytes rejected: not a valid {}", base::in_quotes(plan_.name),
@@ -154,7 +154,7 @@ rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::
   }
   if (has_leftovers) sample.block = without_leftovers(ops_.shape, *sample.block, sample.order);
   if (plan_.settings.stamp == rt::StampPolicy::on_received) sample.received = plan_.port_time();
-  const std::uint64_t era = plan_.era();
+  const std::uint64_t epoch = plan_.epoch();
   ConnectorEvents& events = *plan_.events;
   if (events.is_observed(DataEvent::received)) {
     EventData data(ops_, sample);
@@ -177,10 +177,10 @@ rt::PortStatus InConnection::keep(rt::Sample sample, std::uint64_t moment, std::
                                                            DataEvent::receiver_timeout, DataEvent::receiver_error},
                           [&](DataEvent event) { return events.is_observed(event); });
   const rt::Sample about = is_observed ? sample : rt::Sample{};
-  sample.era = era;
-  sample.moment = moment;
-  if (moment != 0 && !base::is_in_phase(moment) && !base::current_tick())
-    base::tell_of_chance(port_text(plan_), "got a sample between two ticks", plan_.port_time());
+  sample.epoch = epoch;
+  sample.phase_counter = phase_counter;
+  if (phase_counter != 0 && !base::is_in_phase(phase_counter) && !base::current_tick())
+    base::report_nondeterminism(port_text(plan_), "got a sample between two ticks", plan_.port_time());
   const rt::WriteResult result = mailbox_->write(channel_, std::move(sample), most);
   if (!is_observed) return result.status == rt::PortStatus::precondition_not_met ? rt::PortStatus::error : result.status;
   switch (result.status) {
@@ -297,7 +297,8 @@ rt::Refusal InEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profil
     case rt::Interface::foreign:
       connection->served_ = connection->plan_.carrier->serve(std::weak_ptr<Receiver>(connection), profile);
       if (!connection->served_)
-        return {rt::ReturnCode::error, "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+        return {rt::ReturnCode::error,
+                "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or rejects the connection"};
       break;
   }
   if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::in, *connection->provider_);
@@ -318,7 +319,8 @@ rt::Refusal InEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile& 
   } else if (settings.interface == rt::Interface::foreign) {
     connection->fetcher_ = connection->plan_.carrier->make_fetcher(profile);
     if (!connection->fetcher_)
-      return {rt::ReturnCode::error, "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+      return {rt::ReturnCode::error,
+              "the InPort's end of interface_type " + settings.foreign_interface + " cannot be made, or rejects the connection"};
   } else {
     const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::out);
     connection->fetcher_ = settings.interface == rt::Interface::shared_memory ? make_shared_memory_fetcher(object, line)
@@ -354,8 +356,8 @@ bool InEngine::close(const std::string& id) {
 
 void InEngine::drop_past(const Lists& lists) {
   const auto& known = lists.open->empty() ? *lists.closed : *lists.open;
-  const std::uint64_t era = known.empty() ? 0 : known.front()->era();
-  if (era > 0) mailbox_->drop_other_eras(era);
+  const std::uint64_t epoch = known.empty() ? 0 : known.front()->epoch();
+  if (epoch > 0) mailbox_->drop_other_epochs(epoch);
 }
 
 namespace {
@@ -427,12 +429,12 @@ rt::PortStatus InEngine::read(const std::string& name, void* value, std::vector<
     return rt::PortStatus::precondition_not_met;
   }
   // Where every peer has been asked and none has anything, there is nothing: what to do then was the peer's policy.
-  if (!is_left && pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel, moment_of_reader()) == 0) {
+  if (!is_left && pulled == selected && pull_status != rt::PortStatus::ok && mailbox_->unread(channel, phase_counter_of_reader()) == 0) {
     note(*lists.open, nullptr, pull_status);
     return pull_status;
   }
 
-  const rt::ReadResult result = mailbox_->read(channel, moment_of_reader());
+  const rt::ReadResult result = mailbox_->read(channel, phase_counter_of_reader());
   std::shared_ptr<InConnection> connection = find(lists, result.channel);
   if (!connection && result.status == rt::PortStatus::ok) {  // it came, and something came over it, while we were looking
     lists = lists_.snapshot();

@@ -38,12 +38,12 @@ class InConnection final : public Receiver, public Waiting {
   ConnectorEvents& events() const { return *plan_.events; }
   const std::shared_ptr<ConnectorEvents>& shared_events() const { return plan_.events; }
   const rt::ConnectorSettings& settings() const { return plan_.settings; }
-  std::uint64_t era() const { return plan_.era(); }
+  std::uint64_t epoch() const { return plan_.epoch(); }
 
   // From another process, which waits no longer than its calls may take.
   rt::PortStatus receive(rt::Sample sample) override;
   // From an OutPort of this process.
-  rt::PortStatus receive_here(rt::Sample sample) { return keep(std::move(sample), plan_.moment(), rt::Mailbox::as_set); }
+  rt::PortStatus receive_here(rt::Sample sample) { return keep(std::move(sample), plan_.phase_counter(), rt::Mailbox::as_set); }
   rt::BlockPool& pool() override { return *pool_; }
 
   // Pull connections: asks the peer and keeps what comes for the reader. `only_new`: not if it is what came last time.
@@ -57,7 +57,7 @@ class InConnection final : public Receiver, public Waiting {
  private:
   friend class InEngine;
   // Moment 0: can be read at once. A full buffer waits no longer than `most`.
-  rt::PortStatus keep(rt::Sample sample, std::uint64_t moment, std::chrono::nanoseconds most);
+  rt::PortStatus keep(rt::Sample sample, std::uint64_t phase_counter, std::chrono::nanoseconds most);
 
   const ConnectionPlan plan_;
   const std::string peer_;  // what the connection is called in messages

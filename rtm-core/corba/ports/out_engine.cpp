@@ -4,9 +4,9 @@
 #include <optional>
 #include <utility>
 
-#include "base/chance.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/nondeterminism.h"
 #include "base/tick.h"
 #include "corba/members/member_watch.h"
 #include "corba/orb/nv_list.h"
@@ -46,10 +46,10 @@ class FaultySender final : public Sender {
   rt::PortStatus send(Payload& payload) override {
     const bool is_direct = plan_.settings.interface == rt::Interface::direct;
     rt::Sample sample = is_direct ? payload.copied() : payload.encoded(plan_.settings.order, *pool_);
-    sample.era = plan_.era();
+    sample.epoch = plan_.epoch();
     auto status = rt::PortStatus::ok;
     for (rt::Sample& passed : link_.pass(std::move(sample), plan_.caller_time())) {
-      if (passed.era != plan_.era()) continue;  // from before a reset
+      if (passed.epoch != plan_.epoch()) continue;  // from before a reset
       Payload own(payload.ops(), std::move(passed));
       status = sender_->send(own);
     }
@@ -105,7 +105,7 @@ void tell(ConnectorEvents& events, DataEvent event, Changed& payload, rt::ByteOr
 void tell_tick(Payload& payload, const OutConnection& connection) {
   base::Tick* tick = base::current_tick();
   const std::string& port = connection.port();
-  if (!tick) return connection.tell_of_chance();
+  if (!tick) return connection.report_nondeterminism();
   if (!tick->keeps_data()) return;
   try {
     std::optional<std::uint64_t> hash;
@@ -134,8 +134,8 @@ struct OutConnection::Line {
 
   rt::Sample keep(Payload& payload) {
     rt::Sample sample = is_direct() ? payload.copied() : payload.encoded(order(), *pool);
-    sample.era = plan.era();
-    sample.moment = plan.moment();
+    sample.epoch = plan.epoch();
+    sample.phase_counter = plan.phase_counter();
     return sample;
   }
 
@@ -179,7 +179,7 @@ OutConnection::OutConnection(const TypeOps& ops, const ConnectionPlan& plan, std
   if (settings.subscription == rt::Subscription::flush) return;
   rt::Publisher::Hooks hooks;
   hooks.send = [line = line_](const rt::Sample& sample) {
-    if (sample.era != line->plan.era()) return rt::PortStatus::ok;  // from before a reset; nobody is to hear of it any more
+    if (sample.epoch != line->plan.epoch()) return rt::PortStatus::ok;  // from before a reset; nobody is to hear of it any more
     Payload payload(line->ops, sample);
     Changed changed(payload);
     line->tell(DataEvent::buffer_read, changed);
@@ -201,9 +201,9 @@ OutConnection::~OutConnection() { close(); }
 
 const std::string& OutConnection::id() const { return line_->plan.id; }
 const std::string& OutConnection::port() const { return line_->plan.port; }
-void OutConnection::tell_of_chance() const {
-  if (line_->plan.moment() != 0)
-    base::tell_of_chance(port_text(line_->plan), "was written by a thread that no tick runs", line_->plan.port_time());
+void OutConnection::report_nondeterminism() const {
+  if (line_->plan.phase_counter() != 0)
+    base::report_nondeterminism(port_text(line_->plan), "was written by a thread that no tick runs", line_->plan.port_time());
 }
 const TypeOps& OutConnection::ops() const { return line_->ops; }
 ConnectorEvents& OutConnection::events() const { return *line_->plan.events; }
@@ -254,8 +254,8 @@ rt::PortStatus OutConnection::write_buffered(Payload& payload) {
 
 rt::PortStatus OutConnection::take(rt::Sample& sample, std::chrono::nanoseconds most) try {
   ConnectorEvents& events = *line_->plan.events;
-  if (const std::uint64_t era = line_->plan.era(); era > 0) mailbox_.drop_other_eras(era);
-  rt::ReadResult result = mailbox_.read(channel_, line_->plan.moment(), most);
+  if (const std::uint64_t epoch = line_->plan.epoch(); epoch > 0) mailbox_.drop_other_epochs(epoch);
+  rt::ReadResult result = mailbox_.read(channel_, line_->plan.phase_counter(), most);
   switch (result.status) {
     case rt::PortStatus::ok:
       break;
@@ -334,7 +334,8 @@ rt::Refusal OutEngine::provide(ConnectionPlan plan, RTC::ConnectorProfile& profi
     case rt::Interface::foreign:
       connection->served_ = plan.carrier->serve(std::weak_ptr<Source>(connection), profile);
       if (!connection->served_)
-        return {rt::ReturnCode::error, "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+        return {rt::ReturnCode::error,
+                "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or rejects the connection"};
       break;
   }
   if (connection->provider_) publish_reference(profile, settings.interface, rt::Side::out, *connection->provider_);
@@ -354,7 +355,8 @@ rt::Refusal OutEngine::consume(ConnectionPlan plan, const RTC::ConnectorProfile&
   } else if (settings.interface == rt::Interface::foreign) {
     sender = plan.carrier->make_sender(profile);
     if (!sender)
-      return {rt::ReturnCode::error, "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or refuses"};
+      return {rt::ReturnCode::error,
+              "the OutPort's end of interface_type " + settings.foreign_interface + " cannot be made, or rejects the connection"};
   } else {
     const CORBA::Object_var object = published_reference(profile, settings.interface, rt::Side::in);
     sender = settings.interface == rt::Interface::shared_memory ? make_shared_memory_sender(object, line)
@@ -398,7 +400,7 @@ bool OutEngine::write(const void* value) {
   }
   Payload payload(ops_, value);
   // Whether a tool looks on makes no difference to what a run has done.
-  const auto member = std::ranges::find_if(*all, [](const auto& connection) { return !connection->settings().looks_on; });
+  const auto member = std::ranges::find_if(*all, [](const auto& connection) { return !connection->settings().is_of_tool; });
   if (member != all->end()) tell_tick(payload, **member);
   bool is_ok = true;
   statuses_.lock()->assign(all->size(), rt::PortStatus::ok);

@@ -26,7 +26,7 @@ class OutConnection final : public Source, public Waiting {
   const std::string& id() const;
   const std::string& port() const;
   // Of a write outside of all ticks, when the component is in lock step.
-  void tell_of_chance() const;
+  void report_nondeterminism() const;
   const TypeOps& ops() const;
   ConnectorEvents& events() const;
   const std::shared_ptr<ConnectorEvents>& shared_events() const;

@@ -9,8 +9,8 @@
 // States of a process:
 //   unknown -> met        it has answered, or has not, but accepts connections
 //   met -> hangs          a request exceeded its timeout (1 s). It is still asked in each round, after all others, for only 0.1 s (0.3 s
-//                         on other machines), because the kernel refuses at once for a process that has exited
-//   met, hangs -> gone    it has refused twice; its connections are removed
+//                         on other machines), because the kernel rejects at once for a process that has exited
+//   met, hangs -> gone    it has rejected twice; its connections are removed
 //   hangs -> met          it has answered within the short time
 #pragma once
 

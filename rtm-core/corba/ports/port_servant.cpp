@@ -11,11 +11,11 @@
 #include "corba/orb/object_names.h"
 #include "corba/orb/sequences.h"
 #include "corba/ports/connector_keys.h"
-#include "corba/ports/farewell.h"
+#include "corba/ports/disconnect_notice.h"
 #include "corba/ports/peer_watch.h"
 #include "corba/transport/transport.h"
 #include "core/key_limits.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 
 namespace corba {
 namespace {
@@ -44,7 +44,7 @@ std::string named(const RTC::ConnectorProfile& profile) { return "connection " +
 
 bool is_good(const RTC::ConnectorProfile& profile, const std::string& port) {
   const auto checked = check_profile(profile);
-  if (!checked) rt::log_refusal(base::Level::warn, port, "refused: " + checked.error().message);
+  if (!checked) rt::log_rejection(base::Level::warn, port, "rejected: " + checked.error().message);
   return bool(checked);
 }
 
@@ -251,10 +251,10 @@ RTC::ReturnCode_t PortServant::connect(RTC::ConnectorProfile& profile) {
     const RTC::PortService_var first = RTC::PortService::_duplicate(profile.ports[0]);
     limit_calls(first, chain_timeout(port_call_timeout(), profile.ports.length(), profile.ports.length()));
     code = first->notify_connect(profile);
-    // What the others have set up is of no use if one has refused; a port that knew a given id before keeps its connection.
+    // What the others have set up is of no use if one has rejected; a port that knew a given id before keeps its connection.
     if (code != RTC::RTC_OK && (is_id_ours || code != RTC::PRECONDITION_NOT_MET)) break_up(profile);
   } catch (const CORBA::Exception& e) {
-    rt::log_refusal(base::Level::warn, port_name(), "the first port of " + named(profile) + " does not answer: " + e._name());
+    rt::log_rejection(base::Level::warn, port_name(), "the first port of " + named(profile) + " does not answer: " + e._name());
     break_up(profile, is_time_out(e));
   }
   return code;
@@ -306,13 +306,13 @@ bool PortServant::gives_way(std::string_view id) {
 
 RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_the_chain) {
   const int self = position(profile.ports);
-  const ForGivers givers(profile.ports);
+  const OnBehalfOfSenders senders(profile.ports);
   if (self < 0 || !may_keep_ports(profile.ports, self)) return RTC::BAD_PARAMETER;
   tell(Step::notify_connect, profile, RTC::RTC_OK);
   const auto terms = read_terms(profile);
   RTC::ReturnCode_t code = reserve(profile, terms->allows_duplicate);
   if (code == RTC::RTC_ERROR)
-    rt::log_refusal(base::Level::warn, port_name(), named(profile) + " is refused: the port has as many as connection_limit allows");
+    rt::log_rejection(base::Level::warn, port_name(), named(profile) + " is rejected: the port has as many as connection_limit allows");
   if (code != RTC::RTC_OK) return code;
 
   const std::string id = profile.connector_id.in();
@@ -333,7 +333,7 @@ RTC::ReturnCode_t PortServant::join(RTC::ConnectorProfile& profile, bool starts_
       is_next_silent = next.is_silent;
       is_next_told = code != RTC::PRECONDITION_NOT_MET;
       if (id != profile.connector_id.in() || profile.ports.length() != ports.length()) {
-        rt::log_refusal(base::Level::warn, port_name(), "the next port of " + named(profile) + " answers with another id or other ports");
+        rt::log_rejection(base::Level::warn, port_name(), "the next port of " + named(profile) + " answers with another id or other ports");
         code = RTC::RTC_ERROR;
       }
       if (code == RTC::RTC_OK && !is_good(profile, port_name())) code = RTC::BAD_PARAMETER;
@@ -387,18 +387,19 @@ PortServant::Next PortServant::join_next(RTC::ConnectorProfile& profile, int sel
                 chain_timeout(port_call_timeout(), profile.ports.length() - next, profile.ports.length() - (starts_the_chain ? 1 : 0)));
     return {port->notify_connect(profile)};
   } catch (const CORBA::Exception& e) {
-    rt::log_refusal(base::Level::warn, port_name(), "the next port of " + named(profile) + " does not answer: " + e._name());
+    rt::log_rejection(base::Level::warn, port_name(), "the next port of " + named(profile) + " does not answer: " + e._name());
     return {RTC::RTC_ERROR, is_time_out(e)};
   }
 }
 
 RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile, bool has_waited) {
   RTC::ReturnCode_t code = RTC::RTC_ERROR;
-  const auto deadline = farewell_deadline(has_waited);
+  const auto deadline = disconnect_deadline(has_waited);
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
     // If it is dead or hangs, the next one takes the lead.
-    if (const auto answer = take_leave(profile.ports[i], profile.connector_id, profile.ports.length() - i, deadline)) return *answer;
+    if (const auto answer = notify_disconnect_of(profile.ports[i], profile.connector_id, profile.ports.length() - i, deadline))
+      return *answer;
   }
   return code;
 }
@@ -480,18 +481,19 @@ void PortServant::tell_lost(const RTC::ConnectorProfile& profile) {
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) continue;
     if (comes_back)
-      reconnect_when_awake(profile.ports[i], profile);
+      reconnect_later(profile.ports[i], profile);
     else
-      take_leave_when_awake(profile.ports[i], profile.connector_id);
+      notify_disconnect_later(profile.ports[i], profile.connector_id);
   }
 }
 
 RTC::ReturnCode_t PortServant::leave_next(const RTC::ConnectorProfile& profile, bool has_waited) {
   const int self = position(profile.ports);
   if (self < 0) return RTC::BAD_PARAMETER;
-  const auto deadline = farewell_deadline(has_waited);
+  const auto deadline = disconnect_deadline(has_waited);
   for (CORBA::ULong next = static_cast<CORBA::ULong>(self) + 1; next < profile.ports.length(); ++next) {
-    if (const auto answer = take_leave(profile.ports[next], profile.connector_id, profile.ports.length() - next, deadline)) return *answer;
+    if (const auto answer = notify_disconnect_of(profile.ports[next], profile.connector_id, profile.ports.length() - next, deadline))
+      return *answer;
   }
   return RTC::RTC_OK;
 }

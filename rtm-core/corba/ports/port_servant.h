@@ -76,7 +76,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   virtual void complete_profile(RTC::ConnectorProfile&) {}
   // Comes first in notify_connect; the result goes to the hooks that follow. Never null.
   virtual std::shared_ptr<ConnectionTerms> read_terms(const RTC::ConnectorProfile&) { return std::make_shared<ConnectionTerms>(); }
-  // Refuses (any code but RTC_OK) or adds what the others should know.
+  // Rejects (any code but RTC_OK) or adds what the others should know.
   virtual RTC::ReturnCode_t prepare(RTC::ConnectorProfile&, const ConnectionTerms&) { return RTC::RTC_OK; }
   virtual RTC::ReturnCode_t publish(RTC::ConnectorProfile& profile, const ConnectionTerms& terms) = 0;
   virtual RTC::ReturnCode_t subscribe(const RTC::ConnectorProfile& profile, const ConnectionTerms& terms) = 0;
@@ -134,7 +134,7 @@ class PortServant : public virtual POA_RTC::PortService, public virtual Portable
   };
   Next join_next(RTC::ConnectorProfile& profile, int self, bool starts_the_chain);
   RTC::ReturnCode_t leave(std::string_view connector_id, bool tells_next, bool is_lost);
-  // `has_waited`: see farewell_deadline.
+  // `has_waited`: see disconnect_deadline.
   RTC::ReturnCode_t leave_next(const RTC::ConnectorProfile& profile, bool has_waited = false);
   void tell_lost(const RTC::ConnectorProfile& profile);
   // Tells the ports of a connection to take it apart, in order, until one answers; its answer.

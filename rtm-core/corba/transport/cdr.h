@@ -24,7 +24,7 @@ std::shared_ptr<rt::Block> encode(const TypeOps& ops, const void* value, rt::Byt
 // which would show what was encoded before.
 void forget_contents(cdrMemoryStream& stream);
 
-// A stream for the generated operators that refuses lengths beyond its end, however large. One thread at a time.
+// A stream for the generated operators that rejects lengths beyond its end, however large. One thread at a time.
 class CheckedStream final : public cdrMemoryStream {
  public:
   CheckedStream() : cdrMemoryStream(0, true) {}

@@ -349,7 +349,7 @@ typename Stub::_ptr_type narrow(CORBA::Object_ptr object, const Line& line) {
 }
 
 // Connections whose peer has thrown, until they are gone. Never destroyed: ports may die after it otherwise.
-base::Guarded<std::set<std::string>, base::Rank::noted>& refusals() {
+base::Guarded<std::set<std::string>, base::Rank::noted>& refused_connections() {
   static auto& ids = *new base::Guarded<std::set<std::string>, base::Rank::noted>;
   return ids;
 }
@@ -375,7 +375,7 @@ CORBA::ORB_var orb() {
   return CORBA::ORB_init(argc, nullptr);
 }
 
-bool take_refusal(const std::string& connector_id) { return refusals().lock()->erase(connector_id) > 0; }
+bool take_refusal(const std::string& connector_id) { return refused_connections().lock()->erase(connector_id) > 0; }
 
 rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line) {
   // The sample is to blame, not the peer: it exceeds the longest message of this ORB, or cannot be encoded.
@@ -389,9 +389,9 @@ rt::PortStatus status_of(const CORBA::SystemException& problem, const Line& line
   } else {
     base::log(base::Level::warn, line.port, "connection {}{}{} {}", line.connection, lost_mark,
               is_unreachable ? "the peer does not answer:" : "the peer throws", why);
-    // A peer that has ended the connection refuses nothing: a sample may be on its way when it is told to.
+    // A peer that has ended the connection rejects nothing: a sample may be on its way when it is told to.
     const bool is_ended = dynamic_cast<const CORBA::OBJECT_NOT_EXIST*>(&problem) != nullptr;
-    if (!is_unreachable && !is_ended) refusals().lock()->insert(line.connector_id);
+    if (!is_unreachable && !is_ended) refused_connections().lock()->insert(line.connector_id);
   }
   return is_about_the_sample ? rt::PortStatus::error : rt::PortStatus::connection_lost;
 }

@@ -21,7 +21,7 @@ class Shape {
   Shape() = default;
   explicit Shape(CORBA::TypeCode_ptr code);
 
-  // `octets`: CDR without a head, aligned from the first octet (CORBA 3.1 part 2, 9.3). Never refuses what omniORB decodes; of types with
+  // `octets`: CDR without a head, aligned from the first octet (CORBA 3.1 part 2, 9.3). Never rejects what omniORB decodes; of types with
   // wide text, unions, references, any, fixed and long double it says no more than up to the first of those. What follows the value is not
   // looked at. Never throws; takes time with the number of elements, but not for arrays of numbers.
   // `has_leftovers`: whether the octets that align the members of the value, which say nothing, are other than zero: senders leave in them

@@ -25,7 +25,7 @@ std::string instance_of(const std::string& member) {
 
 }  // namespace
 
-class MultilayerCompositeEC::Crew final : public rt::Crew {};
+class MultilayerCompositeEC::Crew final : public rt::ThreadPool {};
 
 MultilayerCompositeEC::MultilayerCompositeEC() : PeriodicExecutionContext("multilayercomposite_ec"), crew_(std::make_unique<Crew>()) {}
 

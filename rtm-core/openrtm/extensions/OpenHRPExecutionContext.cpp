@@ -6,7 +6,7 @@
 
 namespace RTC {
 
-class OpenHRPExecutionContext::Turns final : public rt::Turns {};
+class OpenHRPExecutionContext::Turns final : public rt::CallSerializer {};
 
 OpenHRPExecutionContext::OpenHRPExecutionContext(const std::string& name)
     : ExecutionContextServant(name), turns_(std::make_unique<Turns>()) {

@@ -9,9 +9,9 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "corba/members/remote_participant.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "core/workers.h"
 
 namespace SDOPackage {
@@ -103,7 +103,7 @@ class MemberSearch {
 
 }  // namespace
 
-class PeriodicECOrganization::Turns final : public rt::Turns {};
+class PeriodicECOrganization::Turns final : public rt::CallSerializer {};
 
 PeriodicECOrganization::PeriodicECOrganization(RTC::RTObject_impl& composite)
     : Organization_impl(RTC::RTObject_var(composite.getObjRef())), composite_(composite), turns_(std::make_unique<Turns>()) {}
@@ -141,7 +141,7 @@ bool PeriodicECOrganization::join(const Member& member) {
 
 void PeriodicECOrganization::leave(const Member& member) {
   SDO_var sdo = member.sdo;
-  const corba::ForGiver giver(sdo);  // its contexts are what it says
+  const corba::OnBehalfOfSender sender(sdo);  // its contexts are what it says
   const ShortCalls in_time;
   attempt(member.id, "leave", [&] {
     RTC::LightweightRTObject_var component = RTC::LightweightRTObject::_narrow(sdo);
@@ -258,7 +258,7 @@ template <class Function>
 void PeriodicECOrganization::for_each_member(Function function) {
   for (const Member& member : members()) {
     SDO_var sdo = member.sdo;
-    const corba::ForGiver giver(sdo);
+    const corba::OnBehalfOfSender sender(sdo);
     attempt(member.id, "answer", [&] {
       RTC::RTObject_var component = RTC::RTObject::_narrow(sdo);
       if (!CORBA::is_nil(component)) function(member, component.in());

@@ -1,6 +1,6 @@
 #include "rtm/Callers.h"
 
-#include "corba/orb/asker.h"
+#include "corba/orb/principal.h"
 
 namespace RTC {
 

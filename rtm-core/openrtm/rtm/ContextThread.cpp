@@ -5,7 +5,7 @@
 
 namespace RTC::detail {
 
-struct ContextThread::Body final : rt::Steps {
+struct ContextThread::Body final : rt::Steppable {
   Body(ContextThread& owner, ExecutionContextBase& context, Beat beat) : owner(owner) {
     auto& core = RuntimeAccess::context(context);
     if (beat == Beat::period) {

@@ -1,7 +1,7 @@
 #include "rtm/CorbaConsumer.h"
 
-#include "corba/orb/asker.h"
 #include "corba/orb/call_timeout.h"
+#include "corba/orb/principal.h"
 #include "corba/transport/transport.h"
 
 namespace RTC {

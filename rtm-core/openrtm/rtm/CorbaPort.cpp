@@ -9,7 +9,7 @@
 #include "corba/orb/object_names.h"
 #include "corba/ports/connector_keys.h"
 #include "corba/transport/transport.h"
-#include "core/refusal_log.h"
+#include "core/log_rate_limiter.h"
 #include "openrtm/opaque_types.h"
 
 namespace RTC {
@@ -182,14 +182,14 @@ ReturnCode_t CorbaPort::subscribeInterfaces(const ConnectorProfile& profile) {
     if (!reference) reference = value_of(short_key(consumer.type, consumer.instance));
     if (!reference) {
       if (!is_strict) continue;
-      rt::log_refusal(rtclog, Logger::RTL_WARN, "connection rejected: no port provides " + consumer.type + " " + consumer.instance);
+      rt::log_rejection(rtclog, Logger::RTL_WARN, "connection rejected: no port provides " + consumer.type + " " + consumer.instance);
       return RTC::RTC_ERROR;
     }
     if (means_unbound(*reference)) continue;
-    const CORBA::Object_var object = corba::parse_reference(reference->c_str());  // nil is refused below
+    const CORBA::Object_var object = corba::parse_reference(reference->c_str());  // nil is rejected below
     if (!consumer.consumer->setObject(object)) {
-      rt::log_refusal(rtclog, Logger::RTL_WARN,
-                      "the object for consumer " + consumer.instance + " is no " + consumer.type + " or does not answer");
+      rt::log_rejection(rtclog, Logger::RTL_WARN,
+                        "the object for consumer " + consumer.instance + " is no " + consumer.type + " or does not answer");
       if (is_strict) return RTC::RTC_ERROR;
       continue;
     }

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "base/abnormal_exit.h"
 #include "base/log.h"
-#include "base/sudden_end.h"
 #include "base/text.h"
 #include "manager/manager_impl.h"
 #include "rtm/ECFactory.h"

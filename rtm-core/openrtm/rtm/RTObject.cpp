@@ -12,10 +12,10 @@
 
 #include "base/text.h"
 #include "corba/members/remote_participant.h"
-#include "corba/orb/asker.h"
 #include "corba/orb/guarded_transport.h"
 #include "corba/orb/object_names.h"
 #include "corba/orb/orb.h"
+#include "corba/orb/principal.h"
 #include "core/remote_rights.h"
 
 namespace RTC {
@@ -77,15 +77,15 @@ _CORBA_Boolean RTObject_impl::_dispatch(omniCallHandle& call) {
 }
 
 ReturnCode_t RTObject_impl::refuse(const char* operation, const std::string& why, ReturnCode_t code) const {
-  if (const auto left_out = impl_->refusals.next()) {
-    RTC_WARN(
-        ("%s asked for %s: refused, %s%s", corba::caller().c_str(), operation, why.c_str(), rt::RefusalLog::words_for(*left_out).c_str()));
+  if (const auto left_out = impl_->rejection_limiter.next()) {
+    RTC_WARN(("%s asked for %s: rejected, %s%s", corba::caller().c_str(), operation, why.c_str(),
+              rt::LogRateLimiter::omitted_text(*left_out).c_str()));
   }
   return code;
 }
 
 bool RTObject_impl::mayBeChangedByCaller(const char* operation) const {
-  if (corba::asker() == corba::Asker::own || m_pManager == nullptr) return true;
+  if (corba::principal() == corba::Principal::own || m_pManager == nullptr) return true;
   if (rt::parse_remote_rights(m_pManager->configValue("manager.remote_rights")) != rt::RemoteRights::read) return true;
   refuse(operation, "manager.remote_rights is read", RTC_ERROR);
   return false;
@@ -196,8 +196,8 @@ ReturnCode_t RTObject_impl::exitBy(std::chrono::steady_clock::time_point deadlin
   if (!isInsideCallback()) return exitNow(deadline);
   // A context cannot be stopped from inside one of its callbacks. The thread holds a reference: the component may be given back meanwhile.
   _add_ref();
-  *impl_->exiter.lock() = std::thread([this, deadline, asker = corba::asker()] {
-    const corba::ForAsker same(asker);
+  *impl_->exiter.lock() = std::thread([this, deadline, principal = corba::principal()] {
+    const corba::OnBehalfOf same(principal);
     exitNow(deadline);
     _remove_ref();
   });

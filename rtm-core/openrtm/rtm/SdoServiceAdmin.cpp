@@ -10,8 +10,8 @@
 #include "base/guarded.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "corba/orb/asker.h"
-#include "core/refusal_log.h"
+#include "corba/orb/principal.h"
+#include "core/log_rate_limiter.h"
 
 namespace RTC {
 
@@ -174,9 +174,9 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   }
   if (known) return known->reinit(profile);
   if (is_full) {
-    rt::log_refusal(
+    rt::log_rejection(
         base::Level::error, impl_->component.getInstanceNameString(),
-        "SDO service " + base::in_quotes(id) + " is refused: there are " + std::to_string(most_consumers) + " already, the maximum");
+        "SDO service " + base::in_quotes(id) + " is rejected: there are " + std::to_string(most_consumers) + " already, the maximum");
     return false;
   }
   if (!is_enabled(enabled, type)) return false;

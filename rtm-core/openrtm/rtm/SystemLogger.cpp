@@ -184,7 +184,7 @@ class Router {
   void remove_buffer(std::streambuf* buffer) {
     auto mail = mail_.lock();
     std::erase(mail->buffers, buffer);
-    const auto is_let_go = [&] { return mail->in_use != buffer || mail->giver == std::this_thread::get_id(); };
+    const auto is_let_go = [&] { return mail->in_use != buffer || mail->sender == std::this_thread::get_id(); };
     while (!mail.wait_for(given_, std::chrono::hours(1), is_let_go)) {
     }
   }
@@ -201,21 +201,21 @@ class Router {
     static constexpr std::size_t most = 10000;  // records that wait for a buffer that does not return; later ones are dropped
     std::vector<std::streambuf*> buffers;
     std::deque<Letter> letters;
-    std::optional<std::thread::id> giver;
+    std::optional<std::thread::id> sender;
     std::streambuf* in_use = nullptr;
   };
 
   void give_to_buffers(const LogSettings& settings, const LogRecord& record, const std::string& line) {
     {
       auto mail = mail_.lock();
-      if (mail->buffers.empty() || mail->letters.size() >= Mail::most || mail->giver == std::this_thread::get_id()) return;
+      if (mail->buffers.empty() || mail->letters.size() >= Mail::most || mail->sender == std::this_thread::get_id()) return;
     }
     const auto date = settings.date_format.empty() ? std::string() : format_date(settings.date_format, record.time);
     {
       auto mail = mail_.lock();
       mail->letters.push_back({record.level, std::string(record.name), date, std::string(record.message), line});
-      if (mail->giver) return;
-      mail->giver = std::this_thread::get_id();
+      if (mail->sender) return;
+      mail->sender = std::this_thread::get_id();
     }
     while (const auto letter = next_letter()) {
       for (auto* buffer : buffers()) {
@@ -227,7 +227,7 @@ class Router {
   std::optional<Letter> next_letter() {
     auto mail = mail_.lock();
     if (mail->letters.empty()) {
-      mail->giver.reset();
+      mail->sender.reset();
       return std::nullopt;
     }
     auto letter = std::move(mail->letters.front());

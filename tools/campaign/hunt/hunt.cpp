@@ -13,7 +13,7 @@
 #include "campaign/results/disk_room.h"
 #include "campaign/run/iface_faults.h"
 #include "campaign/run/sweep.h"
-#include "run/warm_program.h"
+#include "run/prefork_server.h"
 #include "system/remote.h"
 
 namespace campaign {
@@ -66,7 +66,7 @@ class Hunt {
   double wall() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
   bool goes_on() const {
     if (base::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
-    if (options_.most_finds > 0 && result_.finds.size() >= options_.most_finds) return false;
+    if (options_.max_failures > 0 && result_.failures.size() >= options_.max_failures) return false;
     return options_.most_cases == 0 || result_.cases < options_.most_cases;
   }
 
@@ -75,18 +75,18 @@ class Hunt {
     return is_fresh ? maker_.fresh(random_) : maker_.changed(corpus_[random_.below(corpus_.size())], random_);
   }
 
-  // `find`: the plan of a find; the run leaves a page beside it, if it fails and pages are wanted.
-  Outcome run(const HuntCase& tried, const std::string& name, const std::string& find = "") const {
+  // `failure`: the plan of a failure; the run leaves a page beside it, if it fails and pages are wanted.
+  Outcome run(const HuntCase& tried, const std::string& name, const std::string& failure = "") const {
     RowRunOptions options;
     options.folder = options_.folder + "/" + name;
-    options.deeds = deeds_of(campaign_, tried);
+    options.actions = actions_of(campaign_, tried);
     options.duration_s = tried.duration_s;
     options.checks_invariants = true;
     options.draws = false;
-    options.warm = &warm_;
-    if (options_.writes_pages && !find.empty()) {
-      options.page = fs::path(find).replace_extension(".html").string();
-      options.command = again(find, 1);
+    options.prefork = &prefork_;
+    if (options_.writes_pages && !failure.empty()) {
+      options.page = fs::path(failure).replace_extension(".html").string();
+      options.command = again(failure, 1);
     }
     auto outcome = run_row(orb_, campaign_, tried.row, options, reporter_);
     std::error_code ignored;
@@ -102,18 +102,18 @@ class Hunt {
     const auto kind = signature(outcome);
     if (!outcome.run.problem.empty() && is_trouble_of_the_machine(outcome)) return;
     if (!outcome.run.is_passed() && signatures_.insert(kind).second) {
-      Find find;
-      find.case_number = result_.cases;
-      find.after_s = wall();
+      FoundFailure failure;
+      failure.case_number = result_.cases;
+      failure.after_s = wall();
       broken_ = {outcome.run.first_problem(), outcome.run.state_hash};
       tries_ = 0;
       show_shrinking(tried);
-      find.tried = shrunk(tried, kind);
-      if (!write(find, kind)) return;
-      result_.finds.push_back(std::move(find));
+      failure.tried = shrunk(tried, kind);
+      if (!write(failure, kind)) return;
+      result_.failures.push_back(std::move(failure));
     }
-    const bool found = !result_.finds.empty() && result_.finds.back().case_number == result_.cases;
-    show_({result_.cases, result_.finds.size(), features_.size(), wall(), found ? &result_.finds.back() : nullptr});
+    const bool found = !result_.failures.empty() && result_.failures.back().case_number == result_.cases;
+    show_({result_.cases, result_.failures.size(), features_.size(), wall(), found ? &result_.failures.back() : nullptr});
   }
 
   // It says nothing about the system. When it is there to stay, problem_ says so.
@@ -138,8 +138,8 @@ class Hunt {
   };
 
   void show_shrinking(const HuntCase& simplest) const {
-    show_(
-        {result_.cases, result_.finds.size(), features_.size(), wall(), nullptr, broken_.problem, result_.cases, simplest.deeds(), tries_});
+    show_({result_.cases, result_.failures.size(), features_.size(), wall(), nullptr, broken_.problem, result_.cases, simplest.actions(),
+           tries_});
   }
 
   // How, if it does.
@@ -151,7 +151,7 @@ class Hunt {
 
   // Whether it is not simply too short for what is expected: a path that is long enough, a place that is reached.
   bool means_something(const HuntCase& shorter, const std::string& kind) {
-    if (shorter.deeds() == 0) {
+    if (shorter.actions() == 0) {
       const bool is_verdict = kind.ends_with(verdict_mark);
       return !is_verdict || kind.starts_with("never: ") || kind.starts_with("no component ends") || kind.starts_with("no NaN");
     }
@@ -161,7 +161,7 @@ class Hunt {
     return !still_breaks(quiet, kind);
   }
 
-  // Fewer deeds, then simpler numbers, then a shorter run.
+  // Fewer actions, then simpler numbers, then a shorter run.
   HuntCase shrunk(HuntCase best, const std::string& kind) {
     const auto try_it = [&](HuntCase simpler) {
       ++tries_;
@@ -212,27 +212,27 @@ class Hunt {
   }
 
   // The plan that repeats it, and whether it does. False: problem_ says why there is nothing to repeat, or no plan.
-  bool write(Find& find, const std::string& kind) {
-    find.file = options_.folder + "/find-" + std::to_string(result_.finds.size() + 1) + ".yaml";
-    find.problem = broken_.problem;
-    find.state_hash = broken_.state_hash;
-    const auto first = run(find.tried, "again"), second = run(find.tried, "again", find.file);
-    if (find.tried.deeds() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !base::is_interrupted()) {
+  bool write(FoundFailure& failure, const std::string& kind) {
+    failure.file = options_.folder + "/find-" + std::to_string(result_.failures.size() + 1) + ".yaml";
+    failure.problem = broken_.problem;
+    failure.state_hash = broken_.state_hash;
+    const auto first = run(failure.tried, "again"), second = run(failure.tried, "again", failure.file);
+    if (failure.tried.actions() == 0 && !first.run.problem.empty() && first.run.simulated_s <= 0 && !base::is_interrupted()) {
       problem_ = "plan " + base::in_quotes(campaign_.plan().file) + ": does not start: " + first.run.problem;
       return false;
     }
-    find.was_repeated = !base::is_interrupted();
-    if (find.was_repeated) {
-      find.state_hash = first.run.state_hash;
-      if (!first.run.first_problem().empty()) find.problem = first.run.first_problem();
-      find.is_repeatable = first.run.state_hash == second.run.state_hash && signature(first) == kind && signature(second) == kind;
+    failure.was_repeated = !base::is_interrupted();
+    if (failure.was_repeated) {
+      failure.state_hash = first.run.state_hash;
+      if (!first.run.first_problem().empty()) failure.problem = first.run.first_problem();
+      failure.is_repeatable = first.run.state_hash == second.run.state_hash && signature(first) == kind && signature(second) == kind;
     }
     // Another line of it would be one of the plan.
-    std::ofstream file(find.file);
-    file << "# " << base::printable(find.problem) << "\n# state " << (find.state_hash.empty() ? "-" : find.state_hash) << "\n"
-         << plan_text(campaign_, find.tried);
+    std::ofstream file(failure.file);
+    file << "# " << base::printable(failure.problem) << "\n# state " << (failure.state_hash.empty() ? "-" : failure.state_hash) << "\n"
+         << plan_text(campaign_, failure.tried);
     file.close();
-    if (!file) problem_ = "find " + base::in_quotes(find.file) + ": cannot be written: " + find.problem;
+    if (!file) problem_ = "find " + base::in_quotes(failure.file) + ": cannot be written: " + failure.problem;
     return problem_.empty();
   }
 
@@ -249,7 +249,7 @@ class Hunt {
   std::size_t tries_ = 0;
   HuntResult result_;
   std::size_t not_begun_ = 0;  // cases one after the other
-  const tools::WarmPrograms warm_{reporter_};
+  const tools::PreforkServers prefork_{reporter_};
   std::string problem_;  // why nothing can be found
   Clock::time_point began_ = Clock::now();
 };

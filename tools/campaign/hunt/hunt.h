@@ -17,15 +17,15 @@ namespace campaign {
 
 struct HuntOptions {
   std::chrono::seconds budget{600};
-  std::size_t most_cases = 0;  // 0: as many as the budget allows
-  std::size_t most_finds = 0;  // 0: any number
+  std::size_t most_cases = 0;    // 0: as many as the budget allows
+  std::size_t max_failures = 0;  // 0: any number
   int jobs = 1;
-  std::string folder;         // for finds
+  std::string folder;         // for failures
   bool writes_pages = false;  // find-N.html beside find-N.yaml
   std::chrono::milliseconds call_limit{1000};
 };
 
-struct Find {
+struct FoundFailure {
   std::string problem;
   HuntCase tried;  // shrunk
   std::size_t case_number = 0;
@@ -37,19 +37,19 @@ struct Find {
 };
 
 struct HuntResult {
-  std::vector<Find> finds;
+  std::vector<FoundFailure> failures;
   std::size_t cases = 0, corpus = 0, features = 0;
   double wall_s = 0;
   bool is_interrupted = false;
 };
 
 struct HuntProgress {
-  std::size_t cases = 0, finds = 0, features = 0;
+  std::size_t cases = 0, failures = 0, features = 0;
   double wall_s = 0;
-  const Find* find = nullptr;  // just now
-  // Of a find that is being shrunk; empty: none is.
+  const FoundFailure* failure = nullptr;  // just now
+  // Of a failure that is being shrunk; empty: none is.
   std::string problem{};
-  std::size_t case_number = 0, deeds = 0, tries = 0;  // deeds of the simplest case so far
+  std::size_t case_number = 0, actions = 0, tries = 0;  // actions of the simplest case so far
 };
 
 // `show` is called after every case; `reporter` receives what the runs report.

@@ -67,7 +67,7 @@ CaseMaker::CaseMaker(const Campaign& campaign, const std::vector<HuntTarget>& ta
   }
 }
 
-std::size_t HuntCase::deeds() const {
+std::size_t HuntCase::actions() const {
   std::size_t count = events.size() + faults.size();
   std::set<std::string> inactive;
   for (const auto& event : events) {
@@ -110,7 +110,7 @@ void CaseMaker::add_consequence(HuntCase& to, base::Random& random) const {
 
 // What a component keeps from one activation to the next may harm only in the third or fourth.
 void CaseMaker::add_restarts(HuntCase& to, const Choice& choice, base::Random& random) const {
-  const std::size_t most = campaign_.plan().hunt.most, room = most - std::min(most, to.deeds());
+  const std::size_t most = campaign_.plan().hunt.most, room = most - std::min(most, to.actions());
   const std::size_t times = 1 + random.below(std::max<std::size_t>(room, 1));
   double now_s = time(random, to.duration_s / 2);
   for (std::size_t i = 0; i < times; ++i) {
@@ -122,7 +122,7 @@ void CaseMaker::add_restarts(HuntCase& to, const Choice& choice, base::Random& r
   }
 }
 
-void CaseMaker::add_deed(HuntCase& to, base::Random& random) {
+void CaseMaker::add_action(HuntCase& to, base::Random& random) {
   const auto& choice = draw(random);
   if (choice.again != nullptr) return add_restarts(to, choice, random);
   if (choice.event != nullptr) return add_event(to, *choice.event, 0, random);
@@ -143,25 +143,25 @@ HuntCase CaseMaker::fresh(base::Random& random) {
   if (row) made.row = *row;
   made.row.seed = 1 + random.below(1000);
   constexpr std::uint64_t quiet = 8;  // one in so many is left alone: its start and its parameters may be enough
-  const auto deeds = has_deeds() && random.below(quiet) > 0 ? 1 + random.below(campaign_.plan().hunt.most) : 0;
-  const bool is_story = deeds > 1 && campaign_.plan().hunt.events.size() > 1 && random.below(3) == 0;  // events one after the other
-  while (made.deeds() < deeds) is_story ? add_consequence(made, random) : add_deed(made, random);
+  const auto actions = has_actions() && random.below(quiet) > 0 ? 1 + random.below(campaign_.plan().hunt.most) : 0;
+  const bool is_story = actions > 1 && campaign_.plan().hunt.events.size() > 1 && random.below(3) == 0;  // events one after the other
+  while (made.actions() < actions) is_story ? add_consequence(made, random) : add_action(made, random);
   return made;
 }
 
 HuntCase CaseMaker::changed(const HuntCase& from, base::Random& random) {
   HuntCase made = from;
   const auto way = random.below(4);
-  if (way == 0 || made.deeds() == 0) made.row.seed = 1 + random.below(1000);
+  if (way == 0 || made.actions() == 0) made.row.seed = 1 + random.below(1000);
   if (way == 1 && !made.faults.empty()) {
     auto& fault = made.faults[random.below(made.faults.size())];
     fault.at_s = time(random, made.duration_s);
     fault.amount = amount(fault.kind, random);
   }
   if (way == 2 && !made.faults.empty()) made.faults.erase(made.faults.begin() + static_cast<long>(random.below(made.faults.size())));
-  if (!has_deeds() || made.deeds() >= campaign_.plan().hunt.most) return made;
+  if (!has_actions() || made.actions() >= campaign_.plan().hunt.most) return made;
   const bool is_event = !campaign_.plan().hunt.events.empty() && random.below(2) == 0;
-  is_event ? add_consequence(made, random) : add_deed(made, random);
+  is_event ? add_consequence(made, random) : add_action(made, random);
   return made;
 }
 
@@ -181,18 +181,18 @@ void shorten(std::vector<Condition>& conditions, double duration_s) {
 
 }  // namespace
 
-Deeds deeds_of(const Campaign& campaign, const HuntCase& tried) {
+Actions actions_of(const Campaign& campaign, const HuntCase& tried) {
   const auto& plan = campaign.plan();
-  Deeds deeds{plan.events, plan.faults, plan.never, plan.eventually};
-  deeds.events.insert(deeds.events.end(), tried.events.begin(), tried.events.end());
-  deeds.faults.insert(deeds.faults.end(), tried.faults.begin(), tried.faults.end());
+  Actions actions{plan.events, plan.faults, plan.never, plan.eventually};
+  actions.events.insert(actions.events.end(), tried.events.begin(), tried.events.end());
+  actions.faults.insert(actions.faults.end(), tried.faults.begin(), tried.faults.end());
   const double end_s = tried.duration_s;
-  std::erase_if(deeds.events,
+  std::erase_if(actions.events,
                 [&](const Event& event) { return event.at_s.value_or(0) > end_s || (event.when && event.when->after_s > end_s); });
-  std::erase_if(deeds.faults, [&](const Fault& fault) { return fault.at_s >= end_s; });
-  shorten(deeds.never, end_s);
-  shorten(deeds.eventually, end_s);
-  return deeds;
+  std::erase_if(actions.faults, [&](const Fault& fault) { return fault.at_s >= end_s; });
+  shorten(actions.never, end_s);
+  shorten(actions.eventually, end_s);
+  return actions;
 }
 
 namespace {
@@ -224,12 +224,12 @@ std::string plan_text(const Campaign& campaign, const HuntCase& tried) {
     if (!items.empty()) text += std::string(key) + ":\n";
     for (const auto& item : items) text += "  - " + (are_quoted ? quoted(item) : item) + "\n";
   };
-  const auto deeds = deeds_of(campaign, tried);
+  const auto actions = actions_of(campaign, tried);
   std::vector<std::string> events, faults, never, eventually;
-  for (const auto& event : deeds.events) events.push_back(event_text(event));
-  for (const auto& fault : deeds.faults) faults.push_back(fault.text());
-  for (const auto& condition : deeds.never) never.push_back(condition.text);
-  for (const auto& condition : deeds.eventually) eventually.push_back(condition.text);
+  for (const auto& event : actions.events) events.push_back(event_text(event));
+  for (const auto& fault : actions.faults) faults.push_back(fault.text());
+  for (const auto& condition : actions.never) never.push_back(condition.text);
+  for (const auto& condition : actions.eventually) eventually.push_back(condition.text);
   add_list("events", events, false);
   add_list("faults", faults, false);
   add_list("never", never, false);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/random.h"
+#include "campaign/run/action_runner.h"
 #include "campaign/run/campaign.h"
-#include "campaign/run/deeds_runner.h"
 
 namespace campaign {
 
@@ -19,8 +19,8 @@ struct HuntCase {
   std::vector<Fault> faults;
   double duration_s = 0;
 
-  // An activation that follows a deactivation of its component is one deed with it.
-  std::size_t deeds() const;
+  // An activation that follows a deactivation of its component is one action with it.
+  std::size_t actions() const;
 };
 
 class CaseMaker {
@@ -31,7 +31,7 @@ class CaseMaker {
   HuntCase fresh(base::Random& random);
   // A case that differs a little.
   HuntCase changed(const HuntCase& from, base::Random& random);
-  bool has_deeds() const { return !choices_.empty(); }
+  bool has_actions() const { return !choices_.empty(); }
 
  private:
   // One thing that can be done.
@@ -44,7 +44,7 @@ class CaseMaker {
   };
   // All are tried in a random order before one is tried again: what is rare among many must not be a matter of luck.
   const Choice& draw(base::Random& random);
-  void add_deed(HuntCase& to, base::Random& random);
+  void add_action(HuntCase& to, base::Random& random);
   void add_consequence(HuntCase& to, base::Random& random) const;
   void add_event(HuntCase& to, const Event& wanted, double from_s, base::Random& random) const;
   void add_restarts(HuntCase& to, const Choice& choice, base::Random& random) const;
@@ -55,7 +55,7 @@ class CaseMaker {
 };
 
 // All of a case, with what the plan always does.
-Deeds deeds_of(const Campaign& campaign, const HuntCase& tried);
+Actions actions_of(const Campaign& campaign, const HuntCase& tried);
 // A plan whose only row is the case.
 std::string plan_text(const Campaign& campaign, const HuntCase& tried);
 // The faults and events in one line.

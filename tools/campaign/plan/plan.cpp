@@ -238,7 +238,7 @@ void check_columns(const YAML::Node& root, const Plan& plan) {
   }
 }
 
-void read_deeds(const YAML::Node& root, Plan& plan) {
+void read_actions(const YAML::Node& root, Plan& plan) {
   for (const auto& entry : root["events"]) {
     plan.events.push_back(to_event_in_run(entry, plan));
     if (!plan.events.back().at_s && !plan.events.back().when) fail_at(entry, "an event needs at or when");
@@ -262,7 +262,7 @@ Plan to_plan(const YAML::Node& root, const std::string& file) {
   read_variation(root, plan);
   plan.measures = to_measures(root["measure"]);
   check_columns(root, plan);
-  read_deeds(root, plan);
+  read_actions(root, plan);
   plan.hunt = to_hunt(root["hunt"], plan);
   plan.run.properties = words(root["properties"]);
   plan.run.lists = words(root["for"]);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "campaign/plan/deeds.h"
+#include "campaign/plan/actions.h"
 #include "run/run_options.h"
 #include "run/yaml_shape.h"
 

@@ -83,7 +83,7 @@ void Database::Close::operator()(sqlite3* database) const {
     std::this_thread::sleep_for(10ms);  // a wait for a lock has no end of its own
   if (!folder.empty()) {
     sqlite3_busy_timeout(database, 0);
-    sqlite3_exec(database, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);  // refused while others have the file
+    sqlite3_exec(database, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);  // rejected while others have the file
   }
   sqlite3_close_v2(database);
   if (turn >= 0) ::close(turn);
@@ -176,7 +176,7 @@ Result<Database> Database::open_to_read(const std::string& file, const ReadLimit
   return Error{"results " + base::in_quotes(file) + ": cannot be read"};
 }
 
-// Which SQLite refuses at once, without waiting, while another one is at it.
+// Which SQLite rejects at once, without waiting, while another one is at it.
 Result<void> Database::begin_log() {
   const auto end = std::chrono::steady_clock::now() + busy_timeout;
   for (;;) {

@@ -50,7 +50,7 @@ void print_measures(std::ostream& out, const Results& results) {
     }
     const auto s = summary(std::move(values));
     out << std::left << std::setw(static_cast<int>(width)) << name << std::right << "  " << std::setw(10) << s.count;
-    for (const double value : {s.least, s.median, s.mean, s.greatest, s.deviation}) out << "  " << std::setw(10) << six_digits(value);
+    for (const double value : {s.min, s.median, s.mean, s.max, s.deviation}) out << "  " << std::setw(10) << six_digits(value);
     out << '\n';
   }
 }

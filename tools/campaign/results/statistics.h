@@ -13,7 +13,7 @@ PassRate wilson(std::size_t passed, std::size_t all);
 
 struct Summary {
   std::size_t count = 0;
-  double least = 0, greatest = 0, mean = 0, deviation = 0, median = 0;
+  double min = 0, max = 0, mean = 0, deviation = 0, median = 0;
 };
 Summary summary(std::vector<double> values);
 

@@ -32,7 +32,7 @@ std::vector<double> six_numbers(const Eigen::Isometry3d& pose) {
 
 }  // namespace
 
-std::map<std::string, StandingModel> placed_models(const Row& row, std::map<std::string, StandingModel> models) {
+std::map<std::string, SurveyedModel> placed_models(const Row& row, std::map<std::string, SurveyedModel> models) {
   for (const auto& [path, value] : row.values) {
     const auto words = base::split_list(path, '/');
     if (words.size() < 3 || words[0] != "model" || words[2] != "pose" || !models.contains(words[1])) continue;
@@ -48,7 +48,7 @@ std::map<std::string, StandingModel> placed_models(const Row& row, std::map<std:
   return models;
 }
 
-Result<RowMaker> RowMaker::make(const Plan& plan, const std::map<std::string, StandingModel>& models) {
+Result<RowMaker> RowMaker::make(const Plan& plan, const std::map<std::string, SurveyedModel>& models) {
   RowMaker maker(plan);
   double rows = static_cast<double>(plan.repeat);
   std::size_t ranges = 0;

@@ -20,12 +20,12 @@ struct Row {
 };
 
 // The models of the world where a row puts them.
-std::map<std::string, StandingModel> placed_models(const Row& row, std::map<std::string, StandingModel> models);
+std::map<std::string, SurveyedModel> placed_models(const Row& row, std::map<std::string, SurveyedModel> models);
 
 class RowMaker {
  public:
   // `models`: of the world. `plan` must live as long. Fails when there are more than a million rows.
-  static Result<RowMaker> make(const Plan& plan, const std::map<std::string, StandingModel>& models);
+  static Result<RowMaker> make(const Plan& plan, const std::map<std::string, SurveyedModel>& models);
 
   std::size_t count() const { return count_; }
   // number from 1 to count(). Fails when a scattered model finds no place.
@@ -38,7 +38,7 @@ class RowMaker {
   const Plan* plan_;
   std::size_t count_ = 0, samples_ = 1;
   std::vector<std::vector<double>> points_;
-  std::map<std::string, StandingModel> models_;  // when something is scattered
+  std::map<std::string, SurveyedModel> models_;  // when something is scattered
 };
 
 }  // namespace campaign

@@ -61,8 +61,8 @@ std::vector<Eigen::Vector3d> corners(const std::string& shape, const std::vector
   return points;
 }
 
-StandingModel to_model(const nlohmann::json& json) {
-  StandingModel model;
+SurveyedModel to_model(const nlohmann::json& json) {
+  SurveyedModel model;
   model.pose = pose_of(json.at("pose"));
   model.is_static = json.at("static").get<bool>();
   model.parts = tools::to_parts(json);

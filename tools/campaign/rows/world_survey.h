@@ -15,7 +15,7 @@
 
 namespace campaign {
 
-struct StandingModel {
+struct SurveyedModel {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   Outline outline;  // empty: nothing of it collides, or nothing with an end (a plane, a mesh)
   bool is_static = false;
@@ -27,7 +27,7 @@ struct StandingModel {
 using FoundFiles = std::map<std::pair<std::string, std::string>, std::string>;
 
 struct WorldSurvey {
-  std::map<std::string, StandingModel> models;
+  std::map<std::string, SurveyedModel> models;
   FoundFiles found;
   std::set<std::string> files;         // all of the world and of the spawned models, without doubles
   std::vector<std::string> not_found;  // of the models to spawn

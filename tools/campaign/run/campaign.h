@@ -46,7 +46,7 @@ class Campaign {
   Result<void> alter(tools::SavedSystem& system, const Row& row) const;
   // "INSTANCE:KEY=VALUE", those of the plan and of the row.
   std::vector<std::string> properties_of(const Row& row) const;
-  const std::map<std::string, StandingModel>& models() const { return survey_.models; }
+  const std::map<std::string, SurveyedModel>& models() const { return survey_.models; }
 
  private:
   explicit Campaign(Plan plan) : plan_(std::make_unique<const Plan>(std::move(plan))) {}

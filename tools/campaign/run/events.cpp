@@ -4,7 +4,7 @@
 
 #include "base/child_process.h"
 #include "base/text.h"
-#include "campaign/run/deeds_runner.h"
+#include "campaign/run/action_runner.h"
 #include "system/configuration.h"
 #include "system/connections.h"
 #include "system/profile/matched_system.h"
@@ -37,7 +37,7 @@ Result<void> unless_missing(tools::RunScene& scene, const std::string& model, co
   return done || !is_missing(scene, model) ? done : Result<void>();
 }
 
-// What a component refuses, because it is in another state, is no failure of the run.
+// What a component rejects, because it is in another state, is no failure of the run.
 Result<void> change(tools::RunScene& scene, const std::string& instance, tools::Transition transition) {
   const auto view = scene.component(instance, {.contexts = true});
   if (!view) return view.error();

@@ -6,7 +6,7 @@
 
 #include "base/child_process.h"
 #include "base/text.h"
-#include "campaign/run/deeds_runner.h"
+#include "campaign/run/action_runner.h"
 
 namespace campaign {
 namespace {
@@ -52,11 +52,11 @@ Fault usual_fault(const HuntTarget& target, Fault::Kind kind) {
   return {target.object, kind, target.name, 0, {}, usual_amount(kind).value_or(0)};
 }
 
-// What the simulator says of the first that it refuses: "fault KIND of IFACE: ...", "fault KIND: the world has no iface IFACE"; empty:
+// What the simulator says of the first that it rejects: "fault KIND of IFACE: ...", "fault KIND: the world has no iface IFACE"; empty:
 // none.
 Result<std::string> refused(const Plan& plan, std::vector<Fault> faults) {
   constexpr auto limit = 60s;
-  const auto options = DeedsRunner({.events = {}, .faults = std::move(faults), .never = {}, .eventually = {}}, 1, 0).simulator_options();
+  const auto options = ActionRunner({.events = {}, .faults = std::move(faults), .never = {}, .eventually = {}}, 1, 0).simulator_options();
   if (options.empty()) return std::string();
   base::ProgramCall call{{base::own_program("sim-server"), plan.run.world, "--check", "-v", "0"}, {}, ""};
   for (const auto& path : plan.run.resource_paths) call.words.insert(call.words.end(), {"--resource-path", path});

@@ -31,7 +31,7 @@ void for_moments(const tools::PoseRecord& record, Visit visit) {
   }
 }
 
-std::optional<double> clearance(const Measure& measure, const std::map<std::string, StandingModel>& models,
+std::optional<double> clearance(const Measure& measure, const std::map<std::string, SurveyedModel>& models,
                                 const tools::PoseRecord& record) {
   const auto mine = models.find(measure.model);
   if (mine == models.end() || mine->second.outline.parts.empty()) return std::nullopt;
@@ -122,7 +122,7 @@ std::vector<tools::Expectation> watched_values(const std::vector<Measure>& measu
 }
 
 std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const tools::Seen& seen,
-                                            const std::map<std::string, StandingModel>& models, double wall_s) {
+                                            const std::map<std::string, SurveyedModel>& models, double wall_s) {
   std::map<std::string, double> numbers;
   for (const auto& measure : measures) {
     std::optional<double> number;

@@ -17,6 +17,6 @@ std::vector<tools::Expectation> watched_values(const std::vector<Measure>& measu
 
 // By name; what a run does not have (a goal that was not reached) is missing. `models`: of the run's world.
 std::map<std::string, double> take_measures(const std::vector<Measure>& measures, const tools::Seen& seen,
-                                            const std::map<std::string, StandingModel>& models, double wall_s);
+                                            const std::map<std::string, SurveyedModel>& models, double wall_s);
 
 }  // namespace campaign

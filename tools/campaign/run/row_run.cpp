@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "campaign/run/row_script.h"
 #include "campaign/run/value_script.h"
+#include "run/prefork_server.h"
 #include "run/run_page.h"
-#include "run/warm_program.h"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -75,13 +75,13 @@ Outcome run_once(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, c
   }
   RowScript script(campaign, row,
                    {.folder = fs::absolute(options.folder).string(),
-                    .deeds = options.deeds.value_or(
-                        Deeds{campaign.plan().events, campaign.plan().faults, campaign.plan().never, campaign.plan().eventually}),
+                    .actions = options.actions.value_or(
+                        Actions{campaign.plan().events, campaign.plan().faults, campaign.plan().never, campaign.plan().eventually}),
                     .duration_s = run.duration_s,
                     .checks_invariants = options.checks_invariants || campaign.plan().checks_invariants,
                     .draws = options.draws && campaign.plan().has_pictures});
   for (const auto& property : script.properties()) run.properties.push_back(property);
-  const tools::RunHooks hooks{.simulator_options = script.simulator_options(), .warm = options.warm, .script = &script};
+  const tools::RunHooks hooks{.simulator_options = script.simulator_options(), .prefork = options.prefork, .script = &script};
   outcome.run = tools::run_system(orb, run, reporter, hooks);
   write_page(options, outcome.run);
   outcome.measures = script.measures();
@@ -109,14 +109,14 @@ Result<void> check_values(CORBA::ORB_ptr orb, const Campaign& campaign, const st
 }
 
 Outcome run_row(CORBA::ORB_ptr orb, const Campaign& campaign, const Row& row, const RowRunOptions& options, tools::Reporter& reporter) {
-  const auto warm = options.warm != nullptr ? options.warm->count() : 0;
+  const auto prefork = options.prefork != nullptr ? options.prefork->count() : 0;
   auto outcome = run_once(orb, campaign, row, options, reporter);
-  if (outcome.run.problem.empty() || warm == 0 || options.warm->count() == warm || base::is_interrupted()) return outcome;
+  if (outcome.run.problem.empty() || prefork == 0 || options.prefork->count() == prefork || base::is_interrupted()) return outcome;
   // Who made a program of it was killed and took that along: that says nothing about the row.
   std::error_code ignored;
   fs::remove_all(options.folder, ignored);
   auto alone = options;
-  alone.warm = nullptr;
+  alone.prefork = nullptr;
   return run_once(orb, campaign, row, alone, reporter);
 }
 

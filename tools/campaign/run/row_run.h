@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "campaign/run/action_runner.h"
 #include "campaign/run/campaign.h"
-#include "campaign/run/deeds_runner.h"
 #include "run/run_system.h"
 
 namespace campaign {
@@ -18,14 +18,14 @@ namespace campaign {
 struct RowRunOptions {
   std::string folder;                  // of its files: logs, record, pictures; made if need be
   bool keeps_files = false;            // when it passes, too
-  std::optional<Deeds> deeds{};        // in place of those of the plan
+  std::optional<Actions> actions{};    // in place of those of the plan
   std::optional<double> duration_s{};  // in place of the plan's
   bool checks_invariants = false;      // also when the plan does not ask for it
   bool draws = true;                   // a picture of a run that fails, if the plan has pictures
   bool records = false;                // run.mcap in the folder
   std::string page{};                  // HTML to write if it fails; empty: none
   std::string command{};               // that repeats it, for its page
-  const tools::WarmPrograms* warm = nullptr;
+  const tools::PreforkServers* prefork = nullptr;
 };
 
 struct Outcome {

@@ -11,9 +11,9 @@ RowScript::RowScript(const Campaign& campaign, const Row& row, RowScriptOptions 
     : campaign_(campaign),
       row_(row),
       options_(std::move(options)),
-      deeds_(options_.deeds, row.seed, options_.duration_s),
+      actions_(options_.actions, row.seed, options_.duration_s),
       watched_(watched_values(campaign.plan().measures)) {
-  for (auto& watched : deeds_.watched()) watched_.push_back(std::move(watched));
+  for (auto& watched : actions_.watched()) watched_.push_back(std::move(watched));
   if (!options_.checks_invariants) return;
   for (const auto& connector : campaign.system().connectors) {
     if (!connector.is_data || connector.has_one_port()) continue;  // which may be an InPort
@@ -30,12 +30,12 @@ RowScript::RowScript(const Campaign& campaign, const Row& row, RowScriptOptions 
 
 tools::Result<void> RowScript::alter(tools::SavedSystem& system) {
   if (const auto altered = campaign_.alter(system, row_); !altered) return altered;
-  return deeds_.alter(system);
+  return actions_.alter(system);
 }
 
 void RowScript::end(tools::RunScene* scene, const tools::Seen& seen, tools::RunResult& result) {
   if (scene && result.problem.empty()) {
-    for (auto& verdict : deeds_.verdicts()) result.verdicts.push_back(std::move(verdict));
+    for (auto& verdict : actions_.verdicts()) result.verdicts.push_back(std::move(verdict));
     for (const auto& port : invariant_ports_) {
       const auto value = seen.values.find(port + " ");
       const auto count = value == seen.values.end() ? 0 : value->second.not_numbers;
@@ -48,8 +48,8 @@ void RowScript::end(tools::RunScene* scene, const tools::Seen& seen, tools::RunR
     }
     measures_ = take_measures(campaign_.plan().measures, seen, placed_models(row_, campaign_.models()), 0);
   }
-  result.marks = deeds_.marks();
-  result.notes.insert(result.notes.end(), deeds_.notes().begin(), deeds_.notes().end());
+  result.marks = actions_.marks();
+  result.notes.insert(result.notes.end(), actions_.notes().begin(), actions_.notes().end());
   add_features(seen);
   if (!scene || !options_.draws || result.is_passed()) return;
   // A picture that cannot be drawn takes nothing from the verdict.

@@ -48,7 +48,7 @@ std::string value_problem(const tools::SavedSystem& system, const std::string& p
 
 class SubjectChecks {
  public:
-  SubjectChecks(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, StandingModel>& models)
+  SubjectChecks(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, SurveyedModel>& models)
       : plan_(plan), system_(system), models_(models) {
     for (const auto* events : {&plan.events, &plan.hunt.events}) {
       for (const auto& event : *events) {
@@ -270,7 +270,7 @@ class SubjectChecks {
 
   const Plan& plan_;
   const tools::SavedSystem& system_;
-  const std::map<std::string, StandingModel>& models_;
+  const std::map<std::string, SurveyedModel>& models_;
   std::set<std::string> spawned_;
   bool has_unnamed_ = false;  // something that is spawned has the name that its file says
   std::string problem_;
@@ -278,7 +278,7 @@ class SubjectChecks {
 
 }  // namespace
 
-Result<void> check_subjects(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, StandingModel>& models) {
+Result<void> check_subjects(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, SurveyedModel>& models) {
   return SubjectChecks(plan, system, models).check();
 }
 

@@ -12,6 +12,6 @@
 namespace campaign {
 
 // A port is there when the profile lists it, or lists none of its component. What is spawned may have any name.
-Result<void> check_subjects(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, StandingModel>& models);
+Result<void> check_subjects(const Plan& plan, const tools::SavedSystem& system, const std::map<std::string, SurveyedModel>& models);
 
 }  // namespace campaign

@@ -8,7 +8,7 @@
 #include "campaign/results/disk_room.h"
 #include "campaign/run/row_locks.h"
 #include "campaign/run/tally.h"
-#include "run/warm_program.h"
+#include "run/prefork_server.h"
 #include "system/remote.h"
 
 namespace campaign {
@@ -49,12 +49,12 @@ std::string again(const std::string& plan, std::size_t row) {
 }
 
 RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
-                          const tools::WarmPrograms* warm) {
+                          const tools::PreforkServers* prefork) {
   return {.folder = folder,
           .records = options.records,
           .page = options.writes_pages ? folder + "/run.html" : "",
           .command = again(campaign.plan().file, row),
-          .warm = warm};
+          .prefork = prefork};
 }
 
 std::string folder_name(std::size_t number, const std::string& key) { return "row-" + std::to_string(number) + "-" + key.substr(0, 8); }
@@ -83,9 +83,9 @@ Result<SweepResult> sweep(CORBA::ORB_ptr orb, const Campaign& campaign, const Sw
   Tally tally(campaign, options, std::move(*store), show);
   if (const auto listed = tally.list_rows(); !listed) return listed.error();
   const auto& todo = tally.todo();
-  const auto warm = todo.size() > 1 ? std::make_optional<tools::WarmPrograms>(reporter) : std::nullopt;
+  const auto prefork = todo.size() > 1 ? std::make_optional<tools::PreforkServers>(reporter) : std::nullopt;
   const auto run = [&](const Row& row, const std::string& folder) {
-    return run_row(orb, campaign, row, row_options(campaign, options, row.number, folder, warm ? &*warm : nullptr), reporter);
+    return run_row(orb, campaign, row, row_options(campaign, options, row.number, folder, prefork ? &*prefork : nullptr), reporter);
   };
   {
     const RowLocks locks(options.kept);

@@ -53,7 +53,7 @@ struct SweepResult {
 std::string again(const std::string& plan, std::size_t row);
 // Of a row whose files are in `folder`.
 RowRunOptions row_options(const Campaign& campaign, const SweepOptions& options, std::size_t row, const std::string& folder,
-                          const tools::WarmPrograms* warm);
+                          const tools::PreforkServers* prefork);
 // Of the files of a row, in the folder for kept files.
 std::string folder_name(std::size_t number, const std::string& key);
 // The folder for kept files. The error: it cannot be made, or its disk is full.

@@ -13,8 +13,8 @@
 #include "campaign/results/disk_room.h"
 #include "campaign/slurm/slurm_sweep.h"
 #include "campaign/slurm/task_folder.h"
+#include "run/prefork_server.h"
 #include "run/run_files.h"
-#include "run/warm_program.h"
 #include "system/remote.h"
 
 namespace campaign {
@@ -95,7 +95,7 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
   // Rows run on a disk of this machine; only what a row leaves behind goes to the shared one.
   const auto scratch = base::ScratchFolder::make(tools::scratch_prefix);
   if (!scratch) return scratch.error();
-  const auto warm = rows->size() > 1 ? std::make_optional<tools::WarmPrograms>(reporter) : std::nullopt;
+  const auto prefork = rows->size() > 1 ? std::make_optional<tools::PreforkServers>(reporter) : std::nullopt;
   const auto work = [&](std::size_t number) {
     if (base::is_interrupted() || !part.problem().empty()) return;
     const auto row = campaign.row(number);
@@ -103,7 +103,8 @@ Result<void> run_task(CORBA::ORB_ptr orb, const Campaign& campaign, const SweepO
     const auto key = campaign.key(*row);
     const auto name = folder_name(number, key);
     const auto folder = fs::path(scratch->path()) / name;
-    auto outcome = run_row(orb, campaign, *row, row_options(campaign, options, number, folder.string(), warm ? &*warm : nullptr), reporter);
+    auto outcome =
+        run_row(orb, campaign, *row, row_options(campaign, options, number, folder.string(), prefork ? &*prefork : nullptr), reporter);
     if (base::is_interrupted() && !outcome.run.problem.empty()) return;
     const auto room = outcome.run.problem.empty() ? Result<void>() : check_room({options.kept, temporary_folder()}, room_to_go_on);
     if (!room) return part.give_up(room.error().message);

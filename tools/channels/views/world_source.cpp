@@ -185,7 +185,7 @@ bool WorldSource::State::join() {
   if (participant) return true;
   if (!simulation.read() || simulation.sample<shm::SimulationSample>().waiting_for > 0) return false;
   auto joined = shm::Participant::join(options.server_id,
-                                       {.name = "channels", .phase = last_phase, .period = period, .looks_on = true, .observes = observes});
+                                       {.name = "channels", .phase = last_phase, .period = period, .is_tool = true, .observes = observes});
   if (!joined) return false;
   participant.emplace(std::move(*joined));
   shared.lock()->participant = &*participant;

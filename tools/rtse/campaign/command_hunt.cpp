@@ -25,7 +25,7 @@ using tools::Session;
 struct HuntCall {
   std::string plan, folder, budget = "10m";
   int jobs = 1;
-  std::size_t cases = 0, finds = 0;
+  std::size_t cases = 0, failures = 0;
   std::int64_t seed = -1;
   bool pages = false;
 };
@@ -39,32 +39,33 @@ std::optional<double> seconds_of(const std::string& text) {
   return number && *number > 0 && *number * factor < 1e7 ? std::optional(*number * factor) : std::nullopt;
 }
 
-nlohmann::ordered_json to_json(const Find& find) {
-  return {{"problem", find.problem},
-          {"case", find.case_number},
-          {"after", find.after_s},
-          {"deeds", find.tried.deeds()},
-          {"what", text_of(find.tried)},
-          {"state", find.state_hash},
-          {"repeatable", find.is_repeatable},
-          {"plan", find.file}};
+nlohmann::ordered_json to_json(const FoundFailure& failure) {
+  return {{"problem", failure.problem},
+          {"case", failure.case_number},
+          {"after", failure.after_s},
+          {"deeds", failure.tried.actions()},
+          {"what", text_of(failure.tried)},
+          {"state", failure.state_hash},
+          {"repeatable", failure.is_repeatable},
+          {"plan", failure.file}};
 }
 
-void tell(const Find& find, std::size_t number) {
+void tell(const FoundFailure& failure, std::size_t number) {
   std::vector<std::string> options{"--row", "1"};
-  if (!find.state_hash.empty()) options.insert(options.end(), {"--state", find.state_hash});
-  const auto again = base::shell_line(base::command_words({"rtse", "sweep"}, {find.file}, options));
-  const char* doubt = !find.was_repeated   ? "\n  interrupted: it may not be the simplest, and was not run again"
-                      : find.is_repeatable ? ""
-                                           : "\n  it was not the same when it was run again";
-  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, find.after_s, find.case_number,
-              base::printable(find.problem, "\n\t").c_str(), base::printable(text_of(find.tried), "\n\t").c_str(), again.c_str(), doubt);
+  if (!failure.state_hash.empty()) options.insert(options.end(), {"--state", failure.state_hash});
+  const auto again = base::shell_line(base::command_words({"rtse", "sweep"}, {failure.file}, options));
+  const char* doubt = !failure.was_repeated   ? "\n  interrupted: it may not be the simplest, and was not run again"
+                      : failure.is_repeatable ? ""
+                                              : "\n  it was not the same when it was run again";
+  std::printf("find %zu after %.0f s, case %zu: %s\n  %s\n  %s%s\n", number, failure.after_s, failure.case_number,
+              base::printable(failure.problem, "\n\t").c_str(), base::printable(text_of(failure.tried), "\n\t").c_str(), again.c_str(),
+              doubt);
   std::fflush(stdout);
 }
 
 // On standard output: what was found, first as it came, then in its simplest form.
 void tell_progress(const HuntProgress& progress) {
-  if (progress.find) tell(*progress.find, progress.finds);
+  if (progress.failure) tell(*progress.failure, progress.failures);
   if (progress.problem.empty() || progress.tries > 0) return;
   std::printf("case %zu after %.0f s: %s\n  shrinking it: searching for the simplest case that fails in the same way\n",
               progress.case_number, progress.wall_s, base::printable(progress.problem, "\n\t").c_str());
@@ -74,11 +75,11 @@ void tell_progress(const HuntProgress& progress) {
 std::string status_line(const HuntProgress& progress, std::chrono::seconds budget) {
   char text[200];
   if (progress.problem.empty()) {
-    std::snprintf(text, sizeof text, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.finds,
+    std::snprintf(text, sizeof text, "%zu cases  %zu finds  %zu states reached  %.0f of %ld s", progress.cases, progress.failures,
                   progress.features, progress.wall_s, static_cast<long>(budget.count()));
   } else {
     std::snprintf(text, sizeof text, "shrinking case %zu: try %zu, %zu actions so far  %.0f s", progress.case_number, progress.tries,
-                  progress.deeds, progress.wall_s);
+                  progress.actions, progress.wall_s);
   }
   return text;
 }
@@ -95,7 +96,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
   options.jobs = call.jobs;
   options.most_cases = call.cases;
-  options.most_finds = call.finds;
+  options.max_failures = call.failures;
   options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
   options.writes_pages = call.pages;
   options.call_limit = session.call_timeout();
@@ -111,20 +112,20 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   if (shows) std::fprintf(stderr, "\r\033[K");
   if (!result) return console.fail(result.error());
   if (console.json()) {
-    nlohmann::ordered_json finds = nlohmann::ordered_json::array();
-    for (const auto& find : result->finds) finds.push_back(to_json(find));
+    nlohmann::ordered_json failures = nlohmann::ordered_json::array();
+    for (const auto& failure : result->failures) failures.push_back(to_json(failure));
     std::cout << nlohmann::ordered_json{{"cases", result->cases},
                                         {"states", result->features},
                                         {"wall", result->wall_s},
-                                        {"finds", finds},
+                                        {"finds", failures},
                                         {"interrupted", base::is_interrupted()}}
                      .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else {
-    std::printf("%zu finds in %zu cases, %.0f s; %zu states reached\n", result->finds.size(), result->cases, result->wall_s,
+    std::printf("%zu finds in %zu cases, %.0f s; %zu states reached\n", result->failures.size(), result->cases, result->wall_s,
                 result->features);
   }
-  if (!result->finds.empty()) console.set_failed();
+  if (!result->failures.empty()) console.set_failed();
   if (base::is_interrupted()) console.fail({"interrupted after " + std::to_string(result->cases) + " cases"});
 }
 
@@ -143,7 +144,7 @@ void add_hunt(base::Command& app, tools::Chosen& chosen) {
       ->check(base::integer_between(1, 64))
       ->capture_default_str();
   command->add_option("--cases", call->cases, "Stop after N cases")->check(base::number_between(1, 1e9));
-  command->add_option("--finds", call->finds, "Stop after N failures found")->check(base::number_between(1, 1e6));
+  command->add_option("--finds", call->failures, "Stop after N failures found")->check(base::number_between(1, 1e6));
   command->add_option("--seed", call->seed, "Seed of the hunt (default: that of the plan)")->check(base::number_between(0, 1e18));
   command->add_option("-o,--folder", call->folder, "Folder for failures found (default: the plan's name with .finds)")
       ->check(base::output_name());

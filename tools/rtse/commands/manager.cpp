@@ -18,7 +18,7 @@ struct ManagerOptions {
 };
 
 // RTC_ERROR tells no more.
-constexpr const char* refused = "the manager's log says why; it refuses when its manager.remote_rights is read";
+constexpr const char* refused = "the manager's log has the reason; it rejects this call if its manager.remote_rights is read";
 constexpr std::chrono::seconds longest_work{20};  // making a component, reading modules
 
 Result<CORBA::Object_var> manager_object(const Session& session, const std::string& manager) {

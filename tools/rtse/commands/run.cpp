@@ -15,10 +15,10 @@
 #include "base/child_process.h"
 #include "base/command_line.h"
 #include "base/file_handle.h"
-#include "base/good_file.h"
 #include "base/guarded.h"
 #include "base/interrupt.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "base/whole_file.h"
 #include "rtse/command.h"
 #include "rtse/commands/commands.h"
@@ -285,7 +285,7 @@ void declare_run(base::Command& app, Chosen& chosen, ReadLike read_like, const s
   }
   add_run_options(*run, *given, names);
   if (read_like) {
-    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(base::good_file(check));
+    run->add_option("--like", *like, "Repeat the run of this recording (of rtse run --record)")->required()->check(base::valid_file(check));
   } else {
     run->option("SYSTEM")->required();
     run->option("--world")->required();

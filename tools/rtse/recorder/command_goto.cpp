@@ -15,7 +15,7 @@
 #include "base/command_line.h"
 #include "base/interrupt.h"
 #include "base/text.h"
-#include "campaign/run/deeds_script.h"
+#include "campaign/run/action_script.h"
 #include "recording/ring.h"
 #include "recording/sample_text.h"
 #include "rtse/command.h"
@@ -196,12 +196,12 @@ base::Result<void> Stand::drive(tools::RunningSystem& system) {
 }
 
 // What a plan did in the run; null: nothing.
-using Script = std::unique_ptr<campaign::DeedsScript>;
+using Script = std::unique_ptr<campaign::ActionScript>;
 base::Result<Script> script_of(const RecordedRun& run) {
   if (run.script().empty()) return Script();
   const auto file = (run.folder() / "script.yaml").string();
   std::ofstream(file, std::ios::binary) << run.script();
-  return campaign::DeedsScript::read(file);
+  return campaign::ActionScript::read(file);
 }
 
 void go(const Session& session, Console& console, const GotoOptions& options, const base::Command& command) {
@@ -265,7 +265,7 @@ void add_goto(base::Command& app, tools::Chosen& chosen) {
   auto options = std::make_shared<GotoOptions>();
   command->add_option("RUN", options->what, "Recording of rtse run --record, or an RTSProfile with --world")
       ->required()
-      ->check(check_recording);
+      ->check(recording_absence_problem);
   auto* time = command->add_option("TIME", options->time_s, "Time to stop at [simulated s]")->seconds_between(0.0, 1e7);
   command->add_option("--until", options->time_s, "Same as TIME")->seconds_between(0.0, 1e7)->excludes(time);
   command->add_option(

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/command_line.h"
-#include "base/good_file.h"
 #include "base/output_name.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "recording/compare.h"
 #include "recording/selection.h"
 #include "rtse/command.h"
@@ -70,9 +70,9 @@ void add_page(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("page", "Write a recording, or two to compare, as one HTML page for any browser");
   auto options = std::make_shared<CompareOptions>();
   auto page = std::make_shared<tools::PageCall>();
-  command->add_option("A", options->first, "Recording")->required()->check(base::good_file(recording_problem));
+  command->add_option("A", options->first, "Recording")->required()->check(base::valid_file(recording_format_problem));
   command->add_option("B", options->second, "Recording to compare with; its models are shown as ghosts")
-      ->check(base::good_file(recording_problem));
+      ->check(base::valid_file(recording_format_problem));
   command->add_option("-o,--output", page->file, "HTML file to write")->required()->check(base::output_name());
   tools::add_page_options(*command, *page);
   command->add_option("--ignore", options->tolerated.ignored, "Members to ignore, e.g. tm")->allow_extra_args(false);

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "base/command_line.h"
-#include "base/good_file.h"
 #include "base/interrupt.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "channels/idl_text.h"
 #include "recording/mcap/mcap.h"
 #include "recording/ring.h"
@@ -248,7 +248,7 @@ void play(const Session& session, Console& console, const PlayOptions& options) 
 void add_play(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("play", "Send a recording to InPorts of a running system");
   auto options = std::make_shared<PlayOptions>();
-  command->add_option("FILE", options->file, "Recording")->required()->check(base::good_file(recording_problem));
+  command->add_option("FILE", options->file, "Recording")->required()->check(base::valid_file(recording_format_problem));
   command->add_option("LINK", options->links,
                       "Receiver of a channel: COMPONENT:PORT=INPORT, e.g. RTCLaser0:range=MyFilter0:in (default: as recorded)");
   command->add_option("-r,--rate", options->rate, "Playback speed (1: as recorded)")

@@ -250,14 +250,14 @@ struct Sinks {
 };
 
 // A ring keeps nothing of the one before it, as every file that is written anew.
-base::Result<std::vector<RingPiece>> make_room_for_ring(const std::string& file) {
+base::Result<std::vector<RingSegment>> make_room_for_ring(const std::string& file) {
   if (const auto good = mcap::File::check_name(file); !good) return good.error();
   if (mcap::File::is_being_written(file)) return base::Error{base::in_quotes(file) + ": is being written by another process"};
-  auto stale = ring_pieces(file);
-  if (const auto at_rest = check_at_rest(stale); !at_rest) return at_rest.error();
+  auto stale = ring_segments(file);
+  if (const auto at_rest = check_not_recording(stale); !at_rest) return at_rest.error();
   if (const auto free = check_names(file); !free) return free.error();
-  remove_pieces(stale);
-  remove_unbegun_pieces(file);
+  remove_ring_segments(stale);
+  remove_empty_segments(file);
   std::remove(file.c_str());
   return stale;
 }
@@ -274,7 +274,7 @@ base::Result<Sinks> open_sinks(const RecordOptions& options, const RunClock& clo
 
 // From all sources into the sink, until it is to end. False when there is nothing to record.
 bool record_into(const Session& session, Console& console, const RecordOptions& options, const RunClock& clock,
-                 const std::vector<Session::Port>& ports, channels::Exchange& exchange, const std::vector<RingPiece>& stale,
+                 const std::vector<Session::Port>& ports, channels::Exchange& exchange, const std::vector<RingSegment>& stale,
                  Orders& orders) {
   const auto end = std::make_shared<EndHandle>();
   PortSource source(session.orb(), exchange, clock);
@@ -309,7 +309,7 @@ bool record_into(const Session& session, Console& console, const RecordOptions& 
   if (!options.quiet)
     std::cerr << "recording " << source.size() << " ports" << (*views ? " and the simulator" : "") << " into "
               << base::in_quotes(options.file) << "; Ctrl-C ends it\n";
-  if (!stale.empty() && !options.quiet) console.warn(names_of(stale) + ": of an earlier ring that was not put together, replaced");
+  if (!stale.empty() && !options.quiet) console.warn(segment_names(stale) + ": of an earlier ring that was not put together, replaced");
   orders.tell(RecorderMessage::recording);
   wait_for_end(options, exchange, end, orders, [&] { look_again(session, console, source, components); });
   if (exchange.failure() || !end->is_raised()) return true;
@@ -351,20 +351,20 @@ void finish_file(Console& console, const RecordOptions& options, const McapSink&
   report(options, sink.samples(), sink.channels(), files_of(options, sink));
 }
 
-// What is in the pieces stays there until it is in the file.
+// What is in the segments stays there until it is in the file.
 void finish_ring(Console& console, const RecordOptions& options, const base::Result<void>& written) {
-  const auto pieces = ring_pieces(options.file);
+  const auto segments = ring_segments(options.file);
   const auto fail = [&](const base::Error& error) {
     console.fail({error.message + "; " +
-                  (pieces.empty()
-                       ? "nothing was recorded"
-                       : "earlier samples are in " + names_of(pieces) + ", rtse recording repair " + options.file + " puts it together")});
+                  (segments.empty() ? "nothing was recorded"
+                                    : "earlier samples are in " + segment_names(segments) + ", rtse recording repair " + options.file +
+                                          " puts it together")});
   };
   if (!written) return fail(written.error());
-  const auto joined = join_ring(pieces, options.file, options.file);
+  const auto joined = merge_ring(segments, options.file, options.file);
   if (!joined) return fail(joined.error());
   for (const auto& line : joined->losses) console.fail({line});
-  if (joined->losses.empty()) remove_pieces(pieces);
+  if (joined->losses.empty()) remove_ring_segments(segments);
   report(options, joined->samples, joined->channels, base::in_quotes(options.file));
 }
 
@@ -379,7 +379,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
   }
   const bool is_ring = options.last_s > 0;
   if (const auto free = check_no_live_ring(options.file); !free) return console.fail(free.error());
-  const auto stale = is_ring ? make_room_for_ring(options.file) : std::vector<RingPiece>();
+  const auto stale = is_ring ? make_room_for_ring(options.file) : std::vector<RingSegment>();
   if (!stale) return console.fail(stale.error());
   auto sinks = open_sinks(options, clock);
   if (!sinks) return console.fail(sinks.error());
@@ -390,7 +390,7 @@ void record(const Session& session, Console& console, const RecordOptions& optio
     channels::Exchange exchange;
     exchange.attach(sinks->first, {.timeout = clock.is_lockstep() ? lockstep_timeout : std::chrono::seconds(0)});
     if (!record_into(session, console, options, clock, *ports, exchange, *stale, orders)) {
-      if (is_ring) remove_pieces(ring_pieces(options.file));
+      if (is_ring) remove_ring_segments(ring_segments(options.file));
       return;
     }
     if (!options.hashes.empty()) {

@@ -11,9 +11,9 @@
 
 #include "base/command_line.h"
 #include "base/descriptors.h"
-#include "base/good_file.h"
 #include "base/output_name.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "recording/compare.h"
 #include "recording/mcap/mcap.h"
 #include "recording/ring.h"
@@ -290,38 +290,38 @@ void compare_recordings(Console& console, const CompareOptions& options) {
 
 // ---- repair ----
 
-// Whether there are pieces of a ring, and no file that was made of them later.
-bool has_newer_pieces(const std::string& file, const std::vector<RingPiece>& pieces) {
+// Whether there are segments of a ring, and no file that was made of them later.
+bool has_newer_segments(const std::string& file, const std::vector<RingSegment>& segments) {
   std::error_code error;  // of a file that is not there: its time is the earliest
   const auto time = std::filesystem::last_write_time(file, error);
-  return std::ranges::any_of(pieces, [&](const RingPiece& piece) {
+  return std::ranges::any_of(segments, [&](const RingSegment& segment) {
     std::error_code gone;
-    return error || std::filesystem::last_write_time(piece.path, gone) > time;
+    return error || std::filesystem::last_write_time(segment.path, gone) > time;
   });
 }
 
-// The pieces of a recorder that was killed.
-void put_together(Console& console, const std::vector<RingPiece>& pieces, const std::string& file, const std::string& output) {
-  if (const auto at_rest = check_at_rest(pieces); !at_rest) return console.fail(at_rest.error());
-  const auto done = join_ring(pieces, file, output.empty() ? file : output);
+// The segments of a recorder that was killed.
+void merge_segments(Console& console, const std::vector<RingSegment>& segments, const std::string& file, const std::string& output) {
+  if (const auto at_rest = check_not_recording(segments); !at_rest) return console.fail(at_rest.error());
+  const auto done = merge_ring(segments, file, output.empty() ? file : output);
   if (!done) return console.fail(done.error());
   if (!done->losses.empty())
     console.set_failed();
   else if (output.empty())
-    remove_pieces(pieces);
+    remove_ring_segments(segments);
   if (console.json()) {
     return console.print(Json{{"samples", done->samples},
-                              {"pieces", pieces.size()},
+                              {"pieces", segments.size()},
                               {"samples_lost", done->samples_lost},
                               {"damage", base::join(done->losses, "\n")}});
   }
-  std::cout << done->samples << " samples kept of " << names_of(pieces) << '\n';
+  std::cout << done->samples << " samples kept of " << segment_names(segments) << '\n';
   for (const auto& line : done->losses) std::cout << line << '\n';
-  if (!done->losses.empty()) std::cout << "the pieces stay\n";
+  if (!done->losses.empty()) std::cout << "the segments are kept\n";
 }
 
 void repair(Console& console, const std::string& file, const std::string& output) {
-  if (const auto pieces = ring_pieces(file); has_newer_pieces(file, pieces)) return put_together(console, pieces, file, output);
+  if (const auto segments = ring_segments(file); has_newer_segments(file, segments)) return merge_segments(console, segments, file, output);
   const auto done = mcap::repair(file, output.empty() ? file : output);
   if (!done) return console.fail(done.error());
   if (done->has_losses()) console.set_failed();
@@ -349,7 +349,7 @@ void repair(Console& console, const std::string& file, const std::string& output
 }
 
 void add_selection(base::Command& command, Selection& selection) {
-  command.add_option("FILE", selection.file, "Recording")->required()->check(base::good_file(recording_problem));
+  command.add_option("FILE", selection.file, "Recording")->required()->check(base::valid_file(recording_format_problem));
   command.add_option("CHANNEL", selection.topics, "Topics, COMPONENT:PORT or patterns (default: all)");
   command.add_option("--from", selection.from_s, "Start time [s]")->seconds_between(0.0, 1e10);
   command.add_option("--to", selection.to_s, "End time [s]")->seconds_between(0.0, 1e10);
@@ -370,7 +370,7 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
     auto* command = with_run ? recording->add_subcommand("info", "Show duration, run, attachments, channels and gaps")
                              : recording->add_subcommand("ls", "List the channels");
     auto file = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "Recording")->required()->check(base::good_file(recording_problem));
+    command->add_option("FILE", *file, "Recording")->required()->check(base::valid_file(recording_format_problem));
     choose(command, [file, with_run](const Session&, Console& console) { list(console, *file, with_run); });
   }
   auto* cat_command = recording->add_subcommand("cat", "Print samples as JSON, one per line");
@@ -395,8 +395,10 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
 
   auto* compare_command = recording->add_subcommand("compare", "Name the first difference of two recordings");
   auto compared = std::make_shared<CompareOptions>();
-  compare_command->add_option("A", compared->first, "Recording")->required()->check(base::good_file(recording_problem));
-  compare_command->add_option("B", compared->second, "Recording to compare with")->required()->check(base::good_file(recording_problem));
+  compare_command->add_option("A", compared->first, "Recording")->required()->check(base::valid_file(recording_format_problem));
+  compare_command->add_option("B", compared->second, "Recording to compare with")
+      ->required()
+      ->check(base::valid_file(recording_format_problem));
   compare_command->add_option("--channel", compared->topics, "Compare only these topics, COMPONENT:PORT or patterns");
   compare_command->add_option("--ignore", compared->tolerated.ignored, "Members to ignore, e.g. tm");
   auto tolerances = std::make_shared<std::vector<std::string>>();
@@ -415,8 +417,10 @@ void add_recording(base::Command& app, tools::Chosen& chosen) {
       recording->add_subcommand("repair", "Rebuild the summary of a truncated file, or merge the segments of a ring recording");
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
-  const auto no_ring_either = [](const std::string& path) { return ring_pieces(path).empty() ? recording_problem(path) : std::string(); };
-  repair_command->add_option("FILE", *file, "Recording")->required()->check(base::good_file(no_ring_either));
+  const auto no_ring_either = [](const std::string& path) {
+    return ring_segments(path).empty() ? recording_format_problem(path) : std::string();
+  };
+  repair_command->add_option("FILE", *file, "Recording")->required()->check(base::valid_file(no_ring_either));
   repair_command->add_option("-o,--output", *output, "Output file (default: FILE)")->check(base::output_name());
   choose(repair_command, [file, output](const Session&, Console& console) { repair(console, *file, *output); });
 }

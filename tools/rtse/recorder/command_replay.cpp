@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "base/command_line.h"
-#include "base/good_file.h"
 #include "base/interrupt.h"
 #include "base/output_name.h"
 #include "base/shell_word.h"
 #include "base/text.h"
+#include "base/valid_file.h"
 #include "base/whole_file.h"
 #include "recording/ring.h"
 #include "rtse/command.h"
@@ -368,11 +368,11 @@ void replay_file(const Session& session, Console& console, const Options& option
   std::string problem = made.problem;
   if (!problem.empty() && options.start.empty() && has_own_stamps(*run, options.component))
     problem += "; it was in a third-party process: start that with --start COMMAND";
-  // Of all that can be refused this has a reason that the component's log does not give.
+  // Of all that can be rejected this has a reason that the component's log does not give.
   if (problem.find(": activating ") != std::string::npos)
     problem = "replay: " + options.component +
-              " refuses to be activated alone; one that uses the simulator's devices finds none in the empty world of a replay (" +
-              problem + ")";
+              " cannot be activated alone; one that uses the simulator's devices finds none in the empty world of a replay (" + problem +
+              ")";
   if (problem.empty()) {
     report(console, options, result);
     problem = nothing_compared(options, result);
@@ -385,7 +385,9 @@ void replay_file(const Session& session, Console& console, const Options& option
 void add_replay(base::Command& app, tools::Chosen& chosen) {
   auto* command = app.add_subcommand("replay", "Send recorded inputs to one component, in lock step, and compare its outputs");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "Recording of rtse run --record")->required()->check(base::good_file(recording_problem));
+  command->add_option("FILE", options->file, "Recording of rtse run --record")
+      ->required()
+      ->check(base::valid_file(recording_format_problem));
   command->add_option("--into", options->component, "Instance name of the component")->required();
   command->add_flag("--compare", options->compares, "Fail unless the outputs are bit-identical to the recording");
   command->add_option("--tolerance", options->tolerances, "Absolute tolerance: MEMBER=EPS, or EPS for all members")

@@ -21,7 +21,7 @@ void add_run_like(base::Command& app, tools::Chosen& chosen) {
         if (const auto lost = run->lost(); !lost.empty()) console.warn(lost);
         return kept->emplace(std::move(*run)).options();
       },
-      recording_problem);
+      recording_format_problem);
 }
 
 }  // namespace recorder

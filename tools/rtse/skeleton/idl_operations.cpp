@@ -61,7 +61,7 @@ Result<void> run_omniidl(const std::string& file, const std::filesystem::path& f
     return Error{"omniidl: cannot be started; is package omniidl installed?"};
   int status = 0;
   waitpid(child, &status, 0);
-  if (status != 0) return Error{"IDL file " + base::in_quotes(file) + ": omniidl refused it"};
+  if (status != 0) return Error{"IDL file " + base::in_quotes(file) + ": omniidl rejected it"};
   return {};
 }
 

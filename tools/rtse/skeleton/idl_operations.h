@@ -15,7 +15,7 @@ struct Operation {
   std::string answer;       // a statement that returns something harmless
 };
 
-// Those of the interface and of the interfaces that it inherits. Fails when omniidl is missing or refuses the file.
+// Those of the interface and of the interfaces that it inherits. Fails when omniidl is missing or rejects the file.
 base::Result<std::vector<Operation>> operations_of(const NewService& service);
 
 // Interfaces that are declared in an IDL text, with their modules ("Mod::If"), in its order.

@@ -112,7 +112,7 @@ std::string to_xml(const SavedSystem& system);
 base::Result<SavedSystem> parse_yaml(const std::string& text, const std::string& file);
 std::string to_yaml(const SavedSystem& system);
 
-// XML or YAML by content. "-" is standard input. Files above 64 MiB are refused.
+// XML or YAML by content. "-" is standard input. Files above 64 MiB are rejected.
 base::Result<SavedSystem> read_system(const std::string& file);
 // By the ending: .yaml and .yml YAML, anything else XML. Written whole or not at all.
 base::Result<void> write_system(const SavedSystem& system, const std::string& file);

@@ -113,7 +113,7 @@ class _ChannelPort(_core.ChannelPort, PortBase):
         values = {one.name: one.value.value() for one in profile.properties}
         kind = values.get("dataport.interface_type", "csp_channel")
         if kind != "csp_channel":
-            self._log.RTC_WARN("connection refused: port %s has the interface csp_channel, not %s", (self._name, kind))
+            self._log.RTC_WARN("connection rejected: port %s has the interface csp_channel, not %s", (self._name, kind))
             return None
         for key in self._settings:
             if isinstance(values.get("dataport." + key), str):
@@ -130,7 +130,7 @@ class _ChannelPort(_core.ChannelPort, PortBase):
         connection = self._connections.get(profile.connector_id)
         ior = next((one.value.value() for one in profile.properties if one.name == "dataport.corba_cdr.%s_ior" % self._other), None)
         if connection is None or not ior:
-            self._log.RTC_WARN("connection refused: no other end for port %s in %s", (self._name, profile.name))
+            self._log.RTC_WARN("connection rejected: no other end for port %s in %s", (self._name, profile.name))
             return False
         peer = _CORBA.ORB_init().string_to_object(ior)._unchecked_narrow(self._peer_class)
         peer._obj = peer._obj.with_timeout()
