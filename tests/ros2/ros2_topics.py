@@ -27,8 +27,13 @@ def thin_line():
         odometry = peer.message("/leader/odom", "nav_msgs/Odometry")
         assert (odometry["header"]["frame_id"], odometry["child_frame_id"]) == ("leader/odom", "leader/base_link")
         assert odometry["pose"]["covariance"][35] == 1e-3 and len(odometry["twist"]["covariance"]) == 36
-        children = {one["child_frame_id"] for message in peer.messages("/tf_static", "tf2_msgs/TFMessage") for one in message["transforms"]}
-        assert {"leader/laser", "follower/laser", "leader/sonar_0"} <= children, children
+
+        def has_fixed_frames():
+            children = {one["child_frame_id"] for message in peer.messages("/tf_static", "tf2_msgs/TFMessage") for one in message["transforms"]}
+            assert {"leader/laser", "follower/laser", "leader/sonar_0"} <= children, children
+            return True
+
+        await_("the fixed frames of both robots", has_fixed_frames, 0.1)
         frames = peer.message("/tf", "tf2_msgs/TFMessage", lambda m: m["transforms"][0]["child_frame_id"] == "follower/base_link")
         assert frames["transforms"][0]["header"]["frame_id"] == "follower/odom"
         peer.advertise("/leader/cmd_vel", "geometry_msgs/Twist")

@@ -291,7 +291,7 @@ def broken_ring():
     there = ["r-004.mcap", "r-005.mcap"]
     newer = fresh()
     flip(newer, (chunk_of(newer, 3) + 4, 1))  # its length
-    repaired(1, 12, '"r-005.mcap": not all can be read: ', " bytes are lost; ", "the last record is truncated", "the pieces stay")
+    repaired(1, 12, '"r-005.mcap": not all can be read: ', " bytes are lost; ", "the last record is truncated", "the segments are kept")
     newer = fresh()
     flip(newer, (chunk_of(newer, 3), 0x80))  # its opcode
     repaired(1, 19, '"r-005.mcap": not all can be read: 1 samples are lost; ', "a record of kind 134 among the data")
@@ -302,7 +302,7 @@ def broken_ring():
         fresh()
         with open("r-004.mcap", "wb") as out:
             out.write(octets)
-        repaired(1, 10, '"r-004.mcap": ', "it is left out", "the pieces stay")
+        repaired(1, 10, '"r-004.mcap": ', "it is left out", "the segments are kept")
     json_said = fresh() and rtse("--json", "recording", "repair", "r.mcap").stdout
     assert json.loads(json_said) == {"samples": 20, "pieces": 2, "samples_lost": 0, "damage": ""}, json_said
 

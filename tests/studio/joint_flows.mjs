@@ -25,8 +25,11 @@ async function begin(shared) {
   await page.evaluate(() => window.studio.select(null));
   await choose(page, 'model', 'pioneer2dx');
   await until('a row for each joint', async () => (await page.locator('.joint').count()) === 3);
-  sample(mock, at_rest);
-  await until('where they are', async () => (await row(page, 'elbow').locator('.actual').textContent()) === '30.0°');
+  // Again and again, as a simulator does: the page may watch anew when it has its rows.
+  await until('where they are', async () => {
+    sample(mock, at_rest);
+    return (await row(page, 'elbow').locator('.actual').textContent()) === '30.0°';
+  });
 }
 
 // Presses the slider at a share of its width and holds it.

@@ -398,8 +398,8 @@ RTC::ReturnCode_t PortServant::break_up(const RTC::ConnectorProfile& profile, bo
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (is_same(profile.ports[i], reference())) return leave(profile.connector_id.in(), true, false);
     // If it is dead or hangs, the next one takes the lead.
-    if (const auto answer = notify_disconnect_of(profile.ports[i], profile.connector_id, profile.ports.length() - i, deadline))
-      return *answer;
+    const auto answer = notify_disconnect_of(profile.ports[i], profile.connector_id, profile.ports.length() - i, deadline);
+    if (answer) return *answer;
   }
   return code;
 }
@@ -464,9 +464,8 @@ RTC::ReturnCode_t PortServant::leave(std::string_view connector_id, bool tells_n
   }
   {
     auto state = state_.lock();
-    if (const Connection* connection = state->find(id)) {
-      state->connections.erase(state->connections.begin() + (connection - state->connections.data()));
-    }
+    const Connection* connection = state->find(id);
+    if (connection != nullptr) state->connections.erase(state->connections.begin() + (connection - state->connections.data()));
   }
   if (is_lost) tell_lost(profile);
   tell(Step::disconnected, profile, RTC::RTC_OK);
