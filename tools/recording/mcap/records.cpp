@@ -13,12 +13,16 @@ base::Result<std::optional<RecordHead>> read_head(const File& file, std::uint64_
   if (offset > end || end - offset < record_head) return std::optional<RecordHead>();
   std::string octets;
   if (const auto done = file.read(offset, record_head, octets); !done) return done.error();
+  return to_head(octets, end - offset);
+}
+
+std::optional<RecordHead> to_head(std::string_view octets, std::uint64_t room) {
   Octets in(octets);
   RecordHead head;
   head.opcode = static_cast<Opcode>(in.number<std::uint8_t>());
   head.length = in.number<std::uint64_t>();
-  if (head.length > end - offset - record_head) return std::optional<RecordHead>();
-  return std::optional<RecordHead>(head);
+  if (room < record_head || head.length > room - record_head) return std::nullopt;
+  return head;
 }
 
 base::Result<void> for_each_record(std::string_view records, const std::function<void(Opcode, std::string_view, std::uint64_t)>& take) {

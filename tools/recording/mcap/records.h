@@ -22,6 +22,8 @@ struct RecordHead {
 
 // Nothing when the record does not lie whole before `end`.
 base::Result<std::optional<RecordHead>> read_head(const File& file, std::uint64_t offset, std::uint64_t end);
+// Of the first octets of a record; nothing when it is longer than `room`, its head included [bytes].
+std::optional<RecordHead> to_head(std::string_view octets, std::uint64_t room);
 
 // The records of a chunk, decompressed and checked. An error names the file and the octet.
 base::Result<void> read_chunk(const File& file, std::uint64_t offset, std::uint64_t length, std::string& records);

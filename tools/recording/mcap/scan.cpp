@@ -45,6 +45,28 @@ void note(Index& index, const base::Error& error) {
   if (!index.damage) index.damage = error.message;
 }
 
+// Octets of a file that is read from its begin to its end: one system call for many small records.
+class BlockReader {
+ public:
+  BlockReader(const File& file, std::uint64_t end) : file_(file), end_(end) {}
+
+  // Exactly `size` octets, which lie before the end. Valid until the next call.
+  base::Result<std::string_view> octets(std::uint64_t offset, std::uint64_t size) {
+    if (offset < start_ || offset + size > start_ + block_.size()) {
+      constexpr std::uint64_t usual_size = 64 << 10;  // [bytes]
+      start_ = offset;
+      if (const auto done = file_.read(offset, std::max(size, std::min(usual_size, end_ - offset)), block_); !done) return done.error();
+    }
+    return std::string_view(block_).substr(offset - start_, size);
+  }
+
+ private:
+  const File& file_;
+  const std::uint64_t end_;
+  std::uint64_t start_ = 0;
+  std::string block_;
+};
+
 // Of the record that every file begins with.
 base::Result<std::uint64_t> read_header(const File& file, std::uint64_t size, Index& index) {
   std::string octets;
@@ -438,19 +460,21 @@ base::Result<std::optional<Index>> read_summary(const File& file, std::uint64_t 
     if (*crc != (*footer)->crc) return broken(start, "the summary does not match its CRC; the file is read without it");
   }
 
-  // Record by record: the summary of ten minutes of 2000 channels has 130 MB.
+  // Block by block: the summary of ten minutes of 2000 channels has 130 MB.
   Collector collector(file, index);
   bool has_statistics = false;
-  std::string content;
+  BlockReader blocks(file, end);
   for (std::uint64_t offset = start; offset < end;) {
-    const auto head = read_head(file, offset, end);
-    if (!head) return head.error();
-    if (!head->has_value()) return broken(start, "the summary is cut off; the file is read without it");
+    const auto octets = blocks.octets(offset, std::min<std::uint64_t>(record_head, end - offset));
+    if (!octets) return octets.error();
+    const auto head = to_head(*octets, end - offset);
+    if (!head) return broken(start, "the summary is cut off; the file is read without it");
     offset += record_head;
-    if (const auto done = file.read(offset, (*head)->length, content); !done) return done.error();
-    const auto taken = take_summary_record(file, (*head)->opcode, content, offset, start, collector, index, has_statistics);
+    const auto content = blocks.octets(offset, head->length);
+    if (!content) return content.error();
+    const auto taken = take_summary_record(file, head->opcode, *content, offset, start, collector, index, has_statistics);
     if (!taken) return damage = taken.error().message, std::optional<Index>();
-    offset += (*head)->length;
+    offset += head->length;
   }
   if (!is_enough(index, has_statistics, *header_end, start)) return std::optional<Index>();
   index.data_end = start;
