@@ -102,17 +102,17 @@ std::optional<Answer> Simulation::set_property(const std::string& payload, const
 }
 
 void Simulation::obey(Client&, std::uint8_t subtype, const std::string&) {
-  const auto nobody = [](const base::Result<shm::Reply>&) {};
+  const auto on_reply = [](const base::Result<shm::Reply>&) {};
   if (subtype == save && !std::exchange(has_refused_to_save_, true))
     base::log(
         base::Level::warn, "player-gateway",
         "SAVE of simulation is ignored: a world is written by its author, not by the simulator; rtse record keeps what happens in it");
-  if (subtype == reset) services_.async_requests.post(shm::ResetRequest{}, nobody);
+  if (subtype == reset) services_.async_requests.post(shm::ResetRequest{}, on_reply);
   if (subtype != pause || !iface().read()) return;
   if (iface().sample<shm::SimulationSample>().paused != 0) {
-    services_.async_requests.post(shm::RunRequest{}, nobody);
+    services_.async_requests.post(shm::RunRequest{}, on_reply);
   } else {
-    services_.async_requests.post(shm::PauseRequest{}, nobody);
+    services_.async_requests.post(shm::PauseRequest{}, on_reply);
   }
 }
 

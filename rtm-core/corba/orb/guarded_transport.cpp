@@ -124,7 +124,7 @@ Visitor recognise(omni::giopConnection& connection) {
 }
 
 bool may_come_in(const Visitor& visitor, OpenTo open_to) {
-  // The handshake comes next and rejects whoever has no certificate.
+  // The handshake comes next and rejects clients without a certificate.
   if (visitor.address.starts_with("giop:ssl:")) return true;
   if (visitor.is_own || open_to == OpenTo::network) return true;
   return open_to == OpenTo::host && visitor.account;
