@@ -14,7 +14,7 @@ constexpr double near_singular = 0.05;                   // of the smallest sing
 constexpr double longest_step = 0.1, widest_step = 0.3;  // [m], [rad] of error that one step takes on
 constexpr double goal_error = 1e-9;                      // [m], [rad] at which the search ends
 constexpr double accepted_error = 1e-6;                  // [m], [rad] of a solution
-constexpr int most_steps = 200;
+constexpr int max_steps = 200;
 constexpr double no_limit = 2 * M_PI;                         // of starting positions for joints without limits
 constexpr std::array other_parts{0.5, 0.35, 0.65, 0.2, 0.8};  // of the way between the limits, where the search starts again
 
@@ -126,7 +126,7 @@ std::optional<std::vector<double>> ArmKinematics::solve_near(const Eigen::Isomet
   if (joints_.empty()) return std::nullopt;
   std::vector<double> positions(from.begin(), from.end());
   for (std::size_t i = 0; i < joints_.size(); ++i) positions[i] = std::clamp(positions[i], joints_[i].low, joints_[i].high);
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     if (is_within(difference(goal, tip(positions)), goal_error)) return positions;
     if (!improve(goal, positions)) break;
   }
@@ -156,7 +156,7 @@ std::optional<std::vector<double>> ArmKinematics::solve_place(const Eigen::Vecto
                                                               std::span<const double> from) const {
   const auto search = [&](std::vector<double> positions) -> std::optional<std::vector<double>> {
     constexpr double damping = 0.01;
-    for (int step = 0; step < most_steps && !joints_.empty(); ++step) {
+    for (int step = 0; step < max_steps && !joints_.empty(); ++step) {
       const auto all = frames(positions);
       const Eigen::Vector3d at = all.back() * point;
       Eigen::Vector3d error = place - at;

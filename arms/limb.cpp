@@ -14,7 +14,7 @@ constexpr double near_place = 1e-6;           // [m], [rad] from the goal
 constexpr double limb_standing = 0.005;       // [rad] or [m] of joints that have arrived
 constexpr double widest_step_of_joint = 0.5;  // [rad] or [m] in one step: another branch
 constexpr int points_of_line = 10;            // that are looked at before the arm goes along a line
-constexpr double most_speed = 100;            // [m/s]
+constexpr double max_speed = 100;             // [m/s]
 
 // What a coordinate that is `missing` from its goal has as velocity next, when it has `now`: fast, but so that it can stop there.
 Eigen::Vector3d steered(const Eigen::Vector3d& missing, const Eigen::Vector3d& now, double speed, double acceleration, double dt) {
@@ -56,7 +56,7 @@ bool Limb::begin(std::span<const shm::Joint> joints, double tool, double speed) 
   tool_.translation().z() = tool;
   measured_ = commanded_ = home_;
   velocities_.assign(home_.size(), 0);
-  if (speed > 0 && speed <= most_speed) speed_ = speed;
+  if (speed > 0 && speed <= max_speed) speed_ = speed;
   return true;
 }
 
@@ -82,7 +82,7 @@ void Limb::measure(const shm::JointPart& part) {
 }
 
 Reply Limb::set_speed(double speed) {
-  if (!(speed > 0 && speed <= most_speed))
+  if (!(speed > 0 && speed <= max_speed))
     return wrong_value("a speed must be above 0 and at most 100 m/s, got " + number_text(speed) + "; it is ignored");
   speed_ = speed;
   return {};

@@ -9,7 +9,7 @@ namespace arms {
 namespace {
 
 constexpr double point_every = 0.005;  // [s] of a Cartesian path
-constexpr double most_points = 4000;
+constexpr double max_points = 4000;
 constexpr double widest_jump = 0.5;  // [rad] between two points of a path: the joints change to another branch
 
 Plan no_plan(std::string comment) { return {wrong_value(std::move(comment)), {}}; }
@@ -125,7 +125,7 @@ Plan Planner::to_pose(const std::vector<double>& from, const Eigen::Isometry3d& 
 int Planner::points_of(double length, double turn) const {
   const double time = std::max(length / (settings_.cartesian_ratio * settings_.max_translation),
                                turn / (settings_.cartesian_ratio * settings_.max_rotation));
-  return static_cast<int>(std::clamp(std::ceil(time / point_every), 8.0, most_points));
+  return static_cast<int>(std::clamp(std::ceil(time / point_every), 8.0, max_points));
 }
 
 // The poses are at equal parts of the way. The path is slowed down where a joint would be too fast.

@@ -13,7 +13,7 @@ namespace base {
 namespace {
 
 constexpr std::uint64_t longest_name = 4096;
-constexpr std::uint64_t most_entries = 1U << 20U;
+constexpr std::uint64_t max_entries = 1U << 20U;
 
 std::span<const std::byte> octets_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
@@ -98,7 +98,7 @@ bool HashLogReader::read_key() {
 
 bool HashLogReader::read_tick(HashTick& tick) {
   const auto run = varint(), time = varint(), count = varint();
-  if (!run || !time || !count || *count > most_entries) return false;
+  if (!run || !time || !count || *count > max_entries) return false;
   tick.run = static_cast<std::uint32_t>(*run);
   tick.time = std::chrono::nanoseconds(static_cast<std::int64_t>(*time));
   tick.entries.clear();

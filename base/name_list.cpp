@@ -12,7 +12,7 @@
 namespace base {
 namespace {
 
-constexpr std::size_t most_listed_values = 100'000;
+constexpr std::size_t max_listed_values = 100'000;
 
 bool is_list_name(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
@@ -33,7 +33,7 @@ bool append_range(const std::string& from, const std::string& to, std::vector<st
   const auto a = numbered(from), b = numbered(to);
   if (!a || !b || a->prefix != b->prefix) return false;
   const auto first = std::stoul(a->digits), last = std::stoul(b->digits);
-  if (first > last || last - first >= most_listed_values) return false;
+  if (first > last || last - first >= max_listed_values) return false;
   for (auto i = first; i <= last; ++i) {
     auto number = std::to_string(i);
     if (a->digits.size() > 1 && number.size() < a->digits.size()) number.insert(0, a->digits.size() - number.size(), '0');
@@ -55,7 +55,7 @@ Result<NameList> NameList::parse(const std::string& text) {
   const auto words = split_list(text.substr(equals + 1));
   if (words.size() == 1 && words[0].find_first_not_of("0123456789") == std::string::npos) {
     const auto count = parse_integer(words[0]).value_or(-1);
-    if (count < 1 || count > static_cast<std::int64_t>(most_listed_values)) return fail("has " + words[0] + " values, not 1 to 100000");
+    if (count < 1 || count > static_cast<std::int64_t>(max_listed_values)) return fail("has " + words[0] + " values, not 1 to 100000");
     for (std::int64_t i = 0; i < count; ++i) list.values.push_back(list.name + std::to_string(i));
     return list;
   }
@@ -68,7 +68,7 @@ Result<NameList> NameList::parse(const std::string& text) {
     }
   }
   if (list.values.empty()) return fail("has no values");
-  if (list.values.size() > most_listed_values) return fail("has more than 100000 values");
+  if (list.values.size() > max_listed_values) return fail("has more than 100000 values");
   std::set<std::string> seen;
   for (const auto& value : list.values) {
     if (value.find_first_of("{}=&?/ \t") != std::string::npos) return fail("value " + in_quotes(value) + " cannot be a part of a name");

@@ -9,9 +9,9 @@
 namespace base {
 
 bool send_packet(int socket, std::span<const std::byte> bytes, std::span<const int> files, int flags) {
-  assert(files.size() <= most_files_in_packet);
+  assert(files.size() <= max_files_in_packet);
   iovec part{const_cast<std::byte*>(bytes.data()), bytes.size()};
-  alignas(cmsghdr) char control[CMSG_SPACE(most_files_in_packet * sizeof(int))] = {};
+  alignas(cmsghdr) char control[CMSG_SPACE(max_files_in_packet * sizeof(int))] = {};
   msghdr message{};
   message.msg_iov = &part;
   message.msg_iovlen = 1;
@@ -32,7 +32,7 @@ bool send_packet(int socket, std::span<const std::byte> bytes, std::span<const i
 
 std::optional<ReceivedPacket> receive_packet(int socket, std::span<std::byte> space, int flags) {
   iovec part{space.data(), space.size()};
-  alignas(cmsghdr) char control[CMSG_SPACE(most_files_in_packet * sizeof(int))] = {};
+  alignas(cmsghdr) char control[CMSG_SPACE(max_files_in_packet * sizeof(int))] = {};
   msghdr message{};
   message.msg_iov = &part;
   message.msg_iovlen = 1;

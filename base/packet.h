@@ -10,9 +10,9 @@
 
 namespace base {
 
-inline constexpr std::size_t most_files_in_packet = 4;
+inline constexpr std::size_t max_files_in_packet = 4;
 
-// Sends one packet with up to most_files_in_packet descriptors, which the caller still owns. `flags`: of sendmsg, which never raises
+// Sends one packet with up to max_files_in_packet descriptors, which the caller still owns. `flags`: of sendmsg, which never raises
 // SIGPIPE. False: it was not sent whole; errno says why.
 bool send_packet(int socket, std::span<const std::byte> bytes, std::span<const int> files, int flags = 0);
 

@@ -33,7 +33,7 @@ Error unreadable(int code) { return {"cannot be read: " + std::generic_category(
 
 }  // namespace
 
-Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t most_bytes, struct stat* status) {
+Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t max_bytes, struct stat* status) {
   expect_no_data_held();
   struct stat is {};
   // Looked at before it is opened: opening alone can move a tape or wake a driver.
@@ -46,8 +46,8 @@ Result<std::string> read_plain_file(const std::filesystem::path& file, std::uint
   if (opened.get() < 0) return unreadable(errno);
   if (::fstat(opened.get(), &is) != 0) return unreadable(errno);
   if (!S_ISREG(is.st_mode)) return Error{"is not a regular file"};
-  if (static_cast<std::uintmax_t>(is.st_size) > most_bytes)
-    return Error{"a file of at most " + std::to_string(most_bytes >> 20U) + " MiB is expected"};
+  if (static_cast<std::uintmax_t>(is.st_size) > max_bytes)
+    return Error{"a file of at most " + std::to_string(max_bytes >> 20U) + " MiB is expected"};
   std::string bytes(static_cast<std::size_t>(is.st_size), '\0');
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -66,12 +66,12 @@ namespace {
 
 // Of a file that is not there: what in its folder has nearly its name.
 std::string meant_instead(const std::filesystem::path& file) {
-  constexpr std::size_t most_compared = 1000;
+  constexpr std::size_t max_compared = 1000;
   std::vector<std::string> names;
   std::error_code error;
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (!std::filesystem::is_directory(folder, error)) return "; there is no folder " + in_quotes(folder.string());
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < most_compared;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < max_compared;
        entry.increment(error))
     names.push_back(entry->path().filename().string());
   return suggestion(file.filename().string(), names);

@@ -16,7 +16,7 @@ namespace base {
 
 // Errors are "no such file", "is not a regular file", "a file of at most N MiB is expected", "cannot be read: REASON": without the name,
 // which the caller puts in front. `status` (may be null) receives what the bytes belong to.
-Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t most_bytes, struct stat* status = nullptr);
+Result<std::string> read_plain_file(const std::filesystem::path& file, std::uintmax_t max_bytes, struct stat* status = nullptr);
 
 // Why a file that a person has named cannot be read, in the words of read_plain_file(), with the name in the same folder that was most
 // likely meant; empty when nothing speaks against it.

@@ -21,7 +21,7 @@ void omniorb_any(CORBA::Any* any, cdrStream& stream) asm("__real__ZN5CORBA3AnylS
 namespace {
 
 // Far beyond what anybody sends: properties are texts, references, sometimes numbers or a structure.
-constexpr int most_levels = 8;  // an any in an any; omniORB's time doubles with each
+constexpr int max_levels = 8;  // an any in an any; omniORB's time doubles with each
 constexpr int deepest_type = 16;
 constexpr std::uint32_t longest_type_code = 1 << 16;  // [octets]
 
@@ -196,7 +196,7 @@ class CheckedCopy {
   CheckedCopy(cdrStream& from, cdrStream& to, bool with_unions) : from_(from), to_(to), with_unions_(with_unions) {}
 
   void any(int level) {
-    if (level > most_levels) refuse(from_);
+    if (level > max_levels) refuse(from_);
     const Type type = type_code();
     if (type.kind != CORBA::tk_null && type.kind != CORBA::tk_void) value(type, level);
   }

@@ -36,7 +36,7 @@ namespace {
 constexpr const char* usual_name = "ClockGenerator";
 constexpr unsigned long asking_limit = 1000;      // [ms]
 constexpr double shortest = 1e-6, longest = 1e6;  // period [s]
-constexpr std::size_t most_jobs = 1000, most_subscriptions = 1000;
+constexpr std::size_t max_jobs = 1000, max_subscriptions = 1000;
 
 // A name becomes part of the argument that a component is made by.
 bool is_plain(std::string_view name) {
@@ -133,7 +133,7 @@ void ClockGenerator::unbind() {
 bool ClockGenerator::post(std::function<void()> job) {
   {
     auto jobs = jobs_.lock();
-    if (jobs->size() >= most_jobs) return false;
+    if (jobs->size() >= max_jobs) return false;
     jobs->push_back(std::move(job));
   }
   posted_.notify_one();
@@ -163,8 +163,8 @@ void ClockGenerator::run(const std::stop_token& stop) {
 
 void ClockGenerator::subscribe(Context context, double period) {
   unsubscribe(context);
-  if (subscriptions_.size() >= most_subscriptions) {
-    RTC_ERROR(("a context that subscribes: there are %s subscriptions already", std::to_string(most_subscriptions).c_str()));
+  if (subscriptions_.size() >= max_subscriptions) {
+    RTC_ERROR(("a context that subscribes: there are %s subscriptions already", std::to_string(max_subscriptions).c_str()));
     return;
   }
   auto& manager = RTC::Manager::instance();

@@ -110,7 +110,7 @@ base::Result<RTC::Path2D> MapSource::plan(const RTC::Waypoint2DList& task) const
   if (task.length() < 2 || task.length() > most)
     return base::Error{"planner: expected 2 to 1000 way points, got " + std::to_string(task.length())};
   MapSettings wanted = settings();
-  wanted.options.most_cells = 2000;
+  wanted.options.max_cells = 2000;
   wanted.options.may_coarsen = true;
   for (CORBA::ULong i = 0; i < task.length(); ++i) {
     const auto& [position, heading] = task[i].target;

@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds longest_wait_of_group = 100ms;  // for a tic
 constexpr std::chrono::milliseconds longest_alone = 20ms;           // of a call, before another thread goes on
 constexpr nanoseconds worth_sharing = 500us;                        // calls of a tick
 constexpr int quiet_looks = 50;                                     // of a thread that helps, before it sleeps until it is called
-constexpr std::size_t most_group_threads = 64;
+constexpr std::size_t max_group_threads = 64;
 
 }  // namespace
 
@@ -75,7 +75,7 @@ struct TickGroup::Impl {
   std::condition_variable work;
 
   void start_thread(Data& data) {
-    if (data.threads.size() < most_group_threads && !data.is_ending) data.threads.emplace_back([this] { serve(); });
+    if (data.threads.size() < max_group_threads && !data.is_ending) data.threads.emplace_back([this] { serve(); });
   }
   static std::shared_ptr<Node> waitable(const Data& data);
   static void finish_others(Data& data, const Node* awaited);
@@ -133,7 +133,7 @@ void TickGroup::Impl::gather(Data& data, bool looks_at_all) {
 
 void TickGroup::Impl::call_helpers(Data& data, std::size_t ticks, bool was_long) {
   const std::size_t processors = std::max(std::thread::hardware_concurrency(), 1U);
-  const std::size_t helpers = was_long ? std::min({ticks, std::max(processors, data.taken_over + 1), most_group_threads}) - 1 : 0;
+  const std::size_t helpers = was_long ? std::min({ticks, std::max(processors, data.taken_over + 1), max_group_threads}) - 1 : 0;
   for (auto i = data.threads.size(); i < std::max<std::size_t>(helpers, 1) + 1; ++i) start_thread(data);
   data.wanted = helpers;
   const bool is_watched = helpers > 0 || data.resting > 0 || data.asleep == 0;

@@ -26,13 +26,13 @@ inline constexpr std::array<char, 4> little_endian_head{0, 1, 0, 0};
 enum class Byte : std::uint8_t {};
 
 // A sequence of at most `most` elements, and a text of at most as many bytes: on the wire like those without a limit.
-template <class T, std::size_t most_elements>
+template <class T, std::size_t max_elements>
 struct Bounded : std::vector<T> {
   using std::vector<T>::vector;
 };
-template <std::size_t most_bytes>
+template <std::size_t max_bytes>
 struct BoundedText : std::string {
-  static constexpr std::size_t most = most_bytes;
+  static constexpr std::size_t most = max_bytes;
   using std::string::string;
   explicit BoundedText(std::string text) : std::string(std::move(text)) {}
 };

@@ -418,11 +418,11 @@ inline constexpr std::array truth_sample{field<&TruthSample::stamp>("stamp"), fi
 
 // --- counts
 
-inline constexpr std::uint64_t most_values = std::uint64_t{1} << 24;
-inline constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
-inline constexpr std::uint64_t most_contacts = 65536;
-inline constexpr std::uint64_t most_joints = 4096;
-inline constexpr std::uint64_t most_others = 4096;  // beams of a dvl, tags, transmitters, wheels, hypotheses
+inline constexpr std::uint64_t max_values = std::uint64_t{1} << 24;
+inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 26;
+inline constexpr std::uint64_t max_contacts = 65536;
+inline constexpr std::uint64_t max_joints = 4096;
+inline constexpr std::uint64_t max_elements = 4096;  // beams of a dvl, tags, transmitters, wheels, hypotheses
 
 constexpr auto beams = [](const void* info) {
   const auto& laser = *static_cast<const LaserInfo*>(info);
@@ -457,7 +457,7 @@ constexpr IfaceRow frames(IfaceType type, std::string_view name, std::string_vie
           .info = camera_info,
           .sample = frame_head,
           .count = pixels,
-          .most = most_pixels};
+          .most = max_pixels};
 }
 
 }  // namespace detail
@@ -479,7 +479,7 @@ inline constexpr std::array iface_types{
              .info = detail::laser_info,
              .sample = detail::laser_sample,
              .count = detail::beams,
-             .most = detail::most_values,
+             .most = detail::max_values,
              .sample_tail = {2, sizeof(float), detail::value_fields},
              .filled = detail::part<&LaserSample::count>(),
              .is_always_full = true},
@@ -491,7 +491,7 @@ inline constexpr std::array iface_types{
              .info = detail::sonar_info,
              .sample = detail::sonar_sample,
              .count = detail::transducers,
-             .most = detail::most_values,
+             .most = detail::max_values,
              .info_tail = {1, sizeof(Pose), detail::pose_fields},
              .sample_tail = {1, sizeof(float), detail::value_fields},
              .filled = detail::part<&SonarSample::count>(),
@@ -538,7 +538,7 @@ inline constexpr std::array iface_types{
              .info = detail::bumper_info,
              .sample = detail::bumper_sample,
              .count = detail::capacity,
-             .most = detail::most_contacts,
+             .most = detail::max_contacts,
              .sample_tail = {1, detail::size<Contact, 192>(), detail::contact_fields},
              .filled = detail::part<&BumperSample::count>()},
     IfaceRow{.type = IfaceType::truth,
@@ -584,7 +584,7 @@ inline constexpr std::array iface_types{
              .info = detail::joints_info,
              .sample = detail::joints_sample,
              .count = detail::joints_of,
-             .most = detail::most_joints,
+             .most = detail::max_joints,
              .info_tail = {1, detail::size<Joint, 448>(), detail::joint_fields},
              .sample_tail = {1, detail::size<JointState, 40>(), detail::joint_state_fields},
              .filled = detail::part<&JointsSample::count>(),
@@ -597,7 +597,7 @@ inline constexpr std::array iface_types{
              .info = detail::logical_camera_info,
              .sample = detail::logical_camera_sample,
              .count = detail::seen_models,
-             .most = detail::most_contacts,
+             .most = detail::max_contacts,
              .sample_tail = {1, detail::size<SeenModel, 184>(), detail::seen_model_fields},
              .filled = detail::part<&LogicalCameraSample::count>()},
     IfaceRow{.type = IfaceType::boxes,
@@ -608,7 +608,7 @@ inline constexpr std::array iface_types{
              .info = detail::boxes_info,
              .sample = detail::boxes_sample,
              .count = detail::boxes_of,
-             .most = detail::most_contacts,
+             .most = detail::max_contacts,
              .sample_tail = {1, detail::size<Box, 248>(), detail::box_fields},
              .filled = detail::part<&BoxesSample::count>()},
     IfaceRow{.type = IfaceType::fiducial,
@@ -619,7 +619,7 @@ inline constexpr std::array iface_types{
              .info = detail::fiducial_info,
              .sample = detail::fiducial_sample,
              .count = detail::marks_of,
-             .most = detail::most_contacts,
+             .most = detail::max_contacts,
              .sample_tail = {1, detail::size<Mark, 216>(), detail::mark_fields},
              .filled = detail::part<&FiducialSample::count>()},
     IfaceRow{.type = IfaceType::battery,
@@ -637,7 +637,7 @@ inline constexpr std::array iface_types{
              .info = detail::dvl_info,
              .sample = detail::dvl_sample,
              .count = detail::first_word,
-             .most = detail::most_others,
+             .most = detail::max_elements,
              .info_tail = {1, detail::size<DvlBeam, 32>(), detail::dvl_beam_fields},
              .sample_tail = {1, detail::size<DvlEcho, 16>(), detail::dvl_echo_fields},
              .filled = detail::part<&DvlSample::count>(),
@@ -664,7 +664,7 @@ inline constexpr std::array iface_types{
              .info = detail::rfid_info,
              .sample = detail::rfid_sample,
              .count = detail::first_word,
-             .most = detail::most_others,
+             .most = detail::max_elements,
              .sample_tail = {1, detail::size<RfidTag, 192>(), detail::rfid_tag_fields},
              .filled = detail::part<&RfidSample::count>()},
     IfaceRow{.type = IfaceType::wireless,
@@ -675,7 +675,7 @@ inline constexpr std::array iface_types{
              .info = detail::wireless_info,
              .sample = detail::wireless_sample,
              .count = detail::first_word,
-             .most = detail::most_others,
+             .most = detail::max_elements,
              .sample_tail = {1, detail::size<Radio, 216>(), detail::radio_fields},
              .filled = detail::part<&WirelessSample::count>()},
     IfaceRow{.type = IfaceType::wheels,
@@ -686,7 +686,7 @@ inline constexpr std::array iface_types{
              .info = detail::wheels_info,
              .sample = detail::wheels_sample,
              .count = detail::first_word,
-             .most = detail::most_others,
+             .most = detail::max_elements,
              .info_tail = {1, detail::size<Wheel, 104>(), detail::wheel_fields},
              .sample_tail = {1, detail::size<WheelState, 24>(), detail::wheel_state_fields},
              .filled = detail::part<&WheelsSample::count>(),
@@ -699,7 +699,7 @@ inline constexpr std::array iface_types{
              .info = detail::localization_info,
              .sample = detail::localization_sample,
              .count = detail::first_word,
-             .most = detail::most_others,
+             .most = detail::max_elements,
              .sample_tail = {1, detail::size<Hypothesis, 80>(), detail::hypothesis_fields},
              .filled = detail::part<&LocalizationSample::count>()},
     // A new type gets its row here.

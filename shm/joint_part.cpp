@@ -13,7 +13,7 @@ namespace {
 constexpr double time_to_full_speed = 0.25;  // [s] while no acceleration is set
 // [s] that the simulator continues a motion without a new command. After a longer wait than twice the one before, the motion is where the
 // joint was told to stop, not where it would be: the joint would hurry after it, faster than its speed.
-constexpr double most_continued = 0.05;
+constexpr double max_command_age = 0.05;
 
 std::string name_of(const Joint& joint) { return {joint.name, strnlen(joint.name, sizeof joint.name)}; }
 
@@ -70,7 +70,7 @@ void JointPart::read(const Iface& iface) {
   const auto* states = reinterpret_cast<const JointState*>(iface.sample_followers(0));
   const bool is_first = time_ns_ < 0 || std::exchange(starts_anew_, false),
              is_reset = !is_first && (stamp.resets != resets_ || stamp.sim_time_ns < time_ns_);
-  const double longest = std::max(most_continued, 2 * dt_);
+  const double longest = std::max(max_command_age, 2 * dt_);
   const double dt = dt_ = is_first || is_reset ? 0 : static_cast<double>(stamp.sim_time_ns - time_ns_) * 1e-9;
   time_ns_ = stamp.sim_time_ns, resets_ = stamp.resets, was_reset_ = is_reset;
   for (Member& member : members_) {
@@ -118,10 +118,10 @@ base::Result<void> JointPart::move(std::size_t i, double goal) {
   return {};
 }
 
-base::Result<void> JointPart::turn(std::size_t i, double velocity, double most_effort) {
+base::Result<void> JointPart::turn(std::size_t i, double velocity, double max_effort) {
   const double most = members_[i].joint.max_velocity;
   if (!(std::abs(velocity) <= most)) return outside(text_of(i), "a speed", velocity, -most, most);
-  order(members_[i], RTMSIM_JOINT_VELOCITY, velocity, most_effort);
+  order(members_[i], RTMSIM_JOINT_VELOCITY, velocity, max_effort);
   return {};
 }
 
@@ -143,7 +143,7 @@ base::Result<void> JointPart::follow(std::size_t i, double position, double velo
 }
 
 base::Result<void> JointPart::set_gain(std::size_t i, double percent) {
-  if (!(percent >= 0 && percent <= most_joint_gain)) return outside(text_of(i), "a gain in percent", percent, 0, most_joint_gain);
+  if (!(percent >= 0 && percent <= max_joint_gain)) return outside(text_of(i), "a gain in percent", percent, 0, max_joint_gain);
   Member& member = members_[i];
   member.gain = static_cast<std::uint32_t>(std::lround(percent));
   member.has_changed = member.has_changed || member.mode != RTMSIM_JOINT_NONE;

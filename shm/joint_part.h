@@ -11,7 +11,7 @@
 namespace shm {
 
 // The part of its gains that a joint is controlled with, in percent: in the mode of a command, plus 1; 0 there stands for 100.
-inline constexpr std::uint32_t joint_gain_shift = 16, most_joint_gain = 200;
+inline constexpr std::uint32_t joint_gain_shift = 16, max_joint_gain = 200;
 
 // One coordinate on its way to a goal: speed rises and falls evenly, a new goal on the way is taken from there.
 struct JointMotion {
@@ -47,13 +47,13 @@ class JointPart {
 
   // Goals outside of the limits fail with a line, and nothing changes.
   base::Result<void> move(std::size_t i, double goal);
-  base::Result<void> turn(std::size_t i, double velocity, double most_effort = 0);  // 0: the joint's own
+  base::Result<void> turn(std::size_t i, double velocity, double max_effort = 0);  // 0: the joint's own
   base::Result<void> push(std::size_t i, double effort);
   // Of a path that somebody else interpolates: a position with its velocity and an effort that is added.
   base::Result<void> follow(std::size_t i, double position, double velocity, double effort);
   void brake(std::size_t i);
   void free(std::size_t i);  // it hangs
-  // Of position and velocity from the next command on; 0 to most_joint_gain [%].
+  // Of position and velocity from the next command on; 0 to max_joint_gain [%].
   base::Result<void> set_gain(std::size_t i, double percent);
   void hold(std::size_t i);  // where it is now
   base::Result<void> set_speed(std::size_t i, double speed);

@@ -31,7 +31,7 @@ inline constexpr std::uint32_t layout_version = RTMSIM_LAYOUT_VERSION;
 inline constexpr std::size_t max_name_length = 200;
 inline constexpr std::size_t text_piece = RTMSIM_TEXT_PIECE;
 inline constexpr unsigned max_holds = RTMSIM_HOLDS;
-inline constexpr std::uint32_t most_command_values = 65536;
+inline constexpr std::uint32_t max_command_values = 65536;
 inline constexpr Pose identity_pose{0, 0, 0, 1, 0, 0, 0};
 
 enum class AreaIndex : std::size_t {

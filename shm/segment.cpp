@@ -217,7 +217,7 @@ std::string check_header(const Header& header, const SegmentName& name, std::uin
     return area.count == 0 || (area.stride >= size && area.offset >= sizeof(Header));
   };
   const bool fits = element(AreaIndex::info, 1) && element(AreaIndex::cells, 8 + sizeof(Stamp)) &&
-                    element(AreaIndex::frames, sizeof(FrameHead)) && header.command_values <= most_command_values &&
+                    element(AreaIndex::frames, sizeof(FrameHead)) && header.command_values <= max_command_values &&
                     element(AreaIndex::leases, lease_size(header.command_values)) && element(AreaIndex::control, sizeof(Control)) &&
                     element(AreaIndex::requests, sizeof(RequestSlot) + 2 * text_piece) &&
                     element(AreaIndex::participants, sizeof(ParticipantSlot));

@@ -54,7 +54,7 @@ base::Result<std::unique_ptr<IfaceWriter>> Server::create(const IfaceSpec& spec)
   constexpr std::size_t largest = std::size_t{1} << 30;
   const bool is_plausible = geometry.info_size == spec.info.size() && geometry.sample_size < largest && geometry.frame_size < largest &&
                             (geometry.sample_size > 0 || geometry.frame_size > 0) && geometry.cells > 0 && geometry.leases > 0 &&
-                            geometry.command_values <= most_command_values && geometry.frame_slots >= 3 && geometry.frame_slots <= 255 &&
+                            geometry.command_values <= max_command_values && geometry.frame_slots >= 3 && geometry.frame_slots <= 255 &&
                             geometry.leases < 0xffff;
   if (!is_plausible) {
     return base::Error{std::string(to_text(spec.type)) + " " + base::in_quotes(spec.name) + ": its counts or sizes can't be; samples of " +
@@ -62,10 +62,10 @@ base::Result<std::unique_ptr<IfaceWriter>> Server::create(const IfaceSpec& spec)
   }
   const std::uint64_t wanted = static_cast<std::uint64_t>(geometry.sample_size) * geometry.cells +
                                static_cast<std::uint64_t>(geometry.frame_size) * geometry.frame_slots;
-  if (state_->bytes->load() + wanted > state_->options.most_bytes) {
+  if (state_->bytes->load() + wanted > state_->options.max_bytes) {
     return base::Error{std::string(to_text(spec.type)) + " " + base::in_quotes(spec.name) + " needs " + mebibytes(wanted) +
                        " of shared memory beside " + mebibytes(state_->bytes->load()) + " of the other ifaces, which is more than " +
-                       mebibytes(state_->options.most_bytes) + " in all (--shm-limit)"};
+                       mebibytes(state_->options.max_bytes) + " in all (--shm-limit)"};
   }
   auto segment =
       Segment::create({::geteuid(), state_->options.server_id, spec.type, spec.name}, geometry, spec.info, state_->options.access);

@@ -23,7 +23,7 @@ namespace shm {
 struct ServerOptions {
   std::uint32_t server_id = 0;
   Access access;
-  std::uint64_t most_bytes = usual_most_bytes;  // of all ifaces together
+  std::uint64_t max_bytes = usual_most_bytes;  // of all ifaces together
 
   static constexpr std::uint64_t usual_most_bytes = std::uint64_t{1536} << 20U;
 };

@@ -30,10 +30,10 @@ IfaceSpec iface_spec(IfaceType type, const std::string& name, const Info& info) 
 }
 
 // Places in the lock step: a hundred robots with ten contexts each.
-inline constexpr std::uint32_t most_participants = 4096;
+inline constexpr std::uint32_t max_participants = 4096;
 
 // Those that are more than a copy of their info.
-IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = most_participants);
+IfaceSpec simulation_spec(const SimulationInfo& info, std::uint32_t request_slots = 32, std::uint32_t participants = max_participants);
 IfaceSpec sonar_spec(const std::string& name, const SonarInfo& info, std::span<const Pose> poses);      // info.count is set to poses.size()
 IfaceSpec joints_spec(const std::string& name, const JointsInfo& info, std::span<const Joint> joints);  // info.count, likewise
 // type: camera, depth or points. stride and frame_size are computed when 0.

@@ -72,7 +72,7 @@ void WakeAhead::began(nanoseconds since, bool is_awake) {
   if (since > longest) {
     --steps_;
   } else if (!is_awake) {
-    steps_ = std::min(steps_ + 1, most_steps);
+    steps_ = std::min(steps_ + 1, max_steps);
   } else if (++count_ % retry_ticks == 0) {
     steps_ = std::max<std::int64_t>(steps_ - 1, 1);
   }

@@ -97,7 +97,7 @@ class WakeAhead {
  public:
   // Maximum time for which a woken thread polls for its tick before it sleeps again.
   static constexpr std::chrono::nanoseconds longest = std::chrono::microseconds(150);
-  static constexpr std::int64_t most_steps = 100;
+  static constexpr std::int64_t max_steps = 100;
 
   // 0: not before the tick.
   std::int64_t steps() const { return steps_; }

@@ -142,14 +142,14 @@ std::vector<double> area_of(const std::vector<Shape>& shapes, const MapOptions& 
 
 // Corners at multiples of the resolution, so that maps of one world fit on each other.
 Result<MapArea> grid_of(const std::vector<double>& area, const MapOptions& options) {
-  const double least = std::max(area[2] - area[0], area[3] - area[1]) / (options.most_cells - 2);
+  const double least = std::max(area[2] - area[0], area[3] - area[1]) / (options.max_cells - 2);
   const double r = options.may_coarsen ? std::max(options.resolution, least) : options.resolution;
   const auto down = [&](double v) { return std::floor(v / r + 1e-6); };
   const auto up = [&](double v) { return std::ceil(v / r - 1e-6); };
   const double width = up(area[2]) - down(area[0]), height = up(area[3]) - down(area[1]);
-  if (width > options.most_cells || height > options.most_cells) {
+  if (width > options.max_cells || height > options.max_cells) {
     return Error{"map: " + base::format_number(r) + " m makes " + base::format_number(width) + " x " + base::format_number(height) +
-                 " cells, expected at most " + std::to_string(options.most_cells) +
+                 " cells, expected at most " + std::to_string(options.max_cells) +
                  " a side: give a larger --resolution or a smaller --area"};
   }
   return MapArea{down(area[0]) * r,  down(area[1]) * r, r, static_cast<int>(width), static_cast<int>(height),

@@ -20,7 +20,7 @@ struct MapOptions {
   std::vector<double> area;                   // xmin, ymin, xmax, ymax [m]; empty: where something is
   bool with_movable = false;                  // models that can move, too
   std::vector<std::array<double, 2>> places;  // x, y that the map has, too, where no area is given; with them, nothing else has to be there
-  int most_cells = 8192;                      // a side
+  int max_cells = 8192;                       // a side
   bool may_coarsen = false;                   // cells grow where there would be more of them, instead of an error
 };
 

@@ -13,8 +13,8 @@
 namespace video {
 namespace {
 
-constexpr int largest_side = 16384;           // [pixel]
-constexpr std::size_t most_pixels = 1 << 26;  // a JPEG of few octets can claim any size
+constexpr int largest_side = 16384;          // [pixel]
+constexpr std::size_t max_pixels = 1 << 26;  // a JPEG of few octets can claim any size
 
 enum class Kind { colors, depth, bayer, wide_grey };
 
@@ -71,7 +71,7 @@ std::optional<Picture> from_jpeg(const RTC::CameraImage& image, std::string& pro
     return std::nullopt;
   }
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  if (picture.width > largest_side || picture.height > largest_side || pixels > most_pixels) {
+  if (picture.width > largest_side || picture.height > largest_side || pixels > max_pixels) {
     problem = "JPEG image of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " is too large";
     return std::nullopt;
   }

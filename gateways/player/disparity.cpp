@@ -81,7 +81,7 @@ class RowCosts {
 
 // In sixteenths of a pixel; 0: none that is clearly the best.
 std::uint16_t best_of(const RowCosts& costs, int x, int distances) {
-  constexpr int least_gain = side * side, most_cost = 16 * side * side;  // a grey level for each pixel, and 16
+  constexpr int least_gain = side * side, max_cost = 16 * side * side;  // a grey level for each pixel, and 16
   const int most = std::min(distances, x - reach + 1);
   int best = 0;
   for (int d = 1; d < most; ++d) {
@@ -93,7 +93,7 @@ std::uint16_t best_of(const RowCosts& costs, int x, int distances) {
   for (int d = 0; d < most; ++d) {
     if (std::abs(d - best) > 1) other = std::min(other, costs.cost(d, x));
   }
-  if (least > most_cost || other < least + least_gain || other * 10LL < least * 11LL) return 0;
+  if (least > max_cost || other < least + least_gain || other * 10LL < least * 11LL) return 0;
   const int before = costs.cost(best - 1, x), after = costs.cost(best + 1, x), bend = before + after - 2 * least;
   const double part = bend > 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
   return static_cast<std::uint16_t>(std::lround(16 * (best + part)));

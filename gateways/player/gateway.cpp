@@ -24,8 +24,8 @@ constexpr std::uint64_t which_of(std::uint64_t value) { return value & ((std::ui
 
 // Descriptors that clients leave: for ifaces, requests and the log.
 std::size_t client_limit(std::size_t descriptors) {
-  constexpr std::size_t most_left = 128;
-  return descriptors == 0 ? 256 : descriptors - std::min(most_left, descriptors / 2);
+  constexpr std::size_t other_descriptors = 128;
+  return descriptors == 0 ? 256 : descriptors - std::min(other_descriptors, descriptors / 2);
 }
 
 constexpr int look_period = 200;  // [ms] between looks at the simulator's life

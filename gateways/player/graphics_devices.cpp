@@ -9,7 +9,7 @@
 namespace gateway {
 namespace {
 
-constexpr std::size_t most_parts = 1000;
+constexpr std::size_t max_parts = 1000;
 constexpr double height_2d = 0.05;                      // [m] over the ground, which would hide it
 constexpr double line_width = 0.02, point_size = 0.05;  // [m]
 constexpr double farthest = 1e4;                        // [m]
@@ -64,10 +64,10 @@ void Graphics::on_unused() {
 void Graphics::clear() { parts_.clear(), is_changed_ = true; }
 
 bool Graphics::has_room() {
-  if (parts_.size() < most_parts) return true;
+  if (parts_.size() < max_parts) return true;
   if (!std::exchange(has_complained_, true))
     base::log(base::Level::warn, "player-gateway", "{}: more than {} points, lines and faces are not drawn", player::to_text(address()),
-              most_parts);
+              max_parts);
   return false;
 }
 

@@ -12,7 +12,7 @@ namespace gateway {
 namespace {
 
 constexpr std::int64_t show_period = 10'000'000;  // [ns] of simulated time between two messages of data
-constexpr std::size_t most_waiting = 64, most_told = 100;
+constexpr std::size_t max_waiting = 64, max_logged = 100;
 constexpr double unlimited = 1e9;  // [rad or m]; what a joint without limits says
 
 float limit(double value) { return static_cast<float>(std::clamp(value, -unlimited, unlimited)); }
@@ -40,7 +40,7 @@ void JointDevice::on_unused() {
 }
 
 void JointDevice::note(const base::Result<void>& done) {
-  if (done || told_.size() >= most_told || !told_.insert(done.error().message).second) return;
+  if (done || logged_.size() >= max_logged || !logged_.insert(done.error().message).second) return;
   base::log(base::Level::warn, "player-gateway", "{}: {}", player::to_text(address()), done.error().message);
 }
 
@@ -95,7 +95,7 @@ void JointDevice::show_sample() {
 void JointDevice::obey(Client& client, std::uint8_t subtype, const std::string& payload) {
   if (part_.size() == 0) return;
   if (!has_state_) {
-    if (waiting_.size() < most_waiting) waiting_.push_back({&client, subtype, payload});
+    if (waiting_.size() < max_waiting) waiting_.push_back({&client, subtype, payload});
     return;
   }
   commanding_client_ = &client;

@@ -65,7 +65,7 @@ class JointDevice : public Device {
   bool is_release_due_ = false;  // with the first sample
   std::deque<Waiting> waiting_;  // commands that came before the first sample
   std::int64_t shown_ns_ = -1;
-  std::set<std::string> told_;
+  std::set<std::string> logged_;
 };
 
 class ActArray final : public JointDevice {

@@ -52,11 +52,11 @@ Answer Map::tile(const std::string& payload) const {
 }
 
 void MapDevice::make(std::function<void(const shm::WorldMap*)> done) {
-  constexpr int most_cells = 4096;  // a side: seconds of work
+  constexpr int max_cells = 4096;  // a side: seconds of work
   const auto made = std::make_shared<base::Result<shm::WorldMap>>(base::Error{""});
   const auto work = [made](const base::Result<shm::Reply>& reply) {
     shm::MapOptions options;
-    options.most_cells = most_cells;
+    options.max_cells = max_cells;
     options.may_coarsen = true;
     *made = reply ? shm::make_map(reply->text, options) : base::Result<shm::WorldMap>(reply.error());
   };

@@ -20,7 +20,7 @@ base::Result<std::vector<shm::MapPlace>> planned(const base::Result<shm::Reply>&
   if (!reply) return reply.error();
   shm::MapOptions options;
   options.places = {from, to};
-  options.most_cells = 2000;
+  options.max_cells = 2000;
   options.may_coarsen = true;
   const auto map = shm::make_map(reply->text, options);
   if (!map) return map.error();

@@ -262,11 +262,11 @@ class Ports {
 }  // namespace
 
 bool is_of_player(const std::string& path) {
-  constexpr int most_lines = 1000;
+  constexpr int max_lines = 1000;
   std::ifstream file(path);
   std::string line;
   bool is_after_driver = false;
-  for (int i = 0; i < most_lines && std::getline(file, line); ++i) {
+  for (int i = 0; i < max_lines && std::getline(file, line); ++i) {
     std::string_view text = base::trim(line);
     if (text.empty() || text.starts_with('#')) continue;
     if (text.starts_with("include ") || text.starts_with("define ")) return true;

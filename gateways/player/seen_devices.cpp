@@ -10,7 +10,7 @@ namespace gateway {
 namespace {
 
 constexpr std::uint32_t least_area = 10;  // [pixel]
-constexpr std::size_t most_blobs = 256;
+constexpr std::size_t max_blobs = 256;
 constexpr int no_color = -1;
 constexpr std::array<std::uint32_t, 6> pure_colors{0xff0000, 0xffff00, 0x00ff00, 0x00ffff, 0x0000ff, 0xff00ff};
 
@@ -103,7 +103,7 @@ std::vector<player::Blob> color_blobs(std::span<const std::uint8_t> rgb, std::si
     blobs.push_back(blob);
   }
   std::ranges::stable_sort(blobs, std::greater{}, &player::Blob::area);
-  if (blobs.size() > most_blobs) blobs.resize(most_blobs);
+  if (blobs.size() > max_blobs) blobs.resize(max_blobs);
   return blobs;
 }
 

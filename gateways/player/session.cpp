@@ -115,12 +115,12 @@ void Session::handle(const player::Message& message) {
 }
 
 void Session::authenticate(const player::Message& message) {
-  constexpr int most_wrong_keys = 3;
+  constexpr int max_wrong_keys = 3;
   const auto key = player::decode_key(message.payload);
   const bool is_right = key && access_.fits(*key);
   needs_key_ = needs_key_ && !is_right;
   answer(message.header, is_right ? ack() : nack());
-  if (!is_right && needs_key_ && ++wrong_keys_ == most_wrong_keys) end("has sent three keys that are wrong");
+  if (!is_right && needs_key_ && ++wrong_keys_ == max_wrong_keys) end("has sent three keys that are wrong");
 }
 
 void Session::handle_player(const player::Message& message) {

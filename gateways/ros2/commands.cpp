@@ -65,8 +65,8 @@ void Commands::drive(const ros::Twist& twist, const std::string& topic, std::opt
 }
 
 void Commands::refuse(const std::string& topic, const std::string& why) {
-  constexpr std::uint64_t most_lines = 10;
-  if (++refused_ <= most_lines) base::log(base::Level::warn, "ros2-gateway", "{}: {}", topic, why);
+  constexpr std::uint64_t max_lines = 10;
+  if (++refused_ <= max_lines) base::log(base::Level::warn, "ros2-gateway", "{}: {}", topic, why);
 }
 
 // ---- joints ----

@@ -113,7 +113,7 @@ void Gateway::turn_loop() {
   if (rings != answered_) answer_bell();
   answered_ = rings;
   const auto now = std::chrono::steady_clock::now();
-  if (now >= next_tend_) tend(now);
+  if (now >= next_update_) update(now);
   if (are_sources_due_) choose_sources();
   tend_tick(now);
   sleep(rings);
@@ -132,13 +132,13 @@ void Gateway::sleep(std::uint32_t rings) {
   begin_tick(*tick);
 }
 
-void Gateway::tend(Time now) {
-  next_tend_ = now + tend_period;
-  node_->tend(now);
-  services_->tend(now);
+void Gateway::update(Time now) {
+  next_update_ = now + tend_period;
+  node_->update(now);
+  services_->update(now);
   if (rosout_ != nullptr) logs_.send(*rosout_);
-  for (const auto& robot : robots_) robot->node().tend(now);
-  graph_->tend(now);
+  for (const auto& robot : robots_) robot->node().update(now);
+  graph_->update(now);
   if (now >= next_look_) {
     next_look_ = now + look_period;
     are_sources_due_ = true;

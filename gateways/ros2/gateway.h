@@ -69,7 +69,7 @@ class Gateway {
   void report_losses();
   void report_lost(const Writer& writer);
   std::uint64_t growth(const std::string& what, std::uint64_t count);
-  void tend(Time now);
+  void update(Time now);
   void sleep(std::uint32_t rings);
   void choose_sources();
   void choose_clock();
@@ -107,7 +107,7 @@ class Gateway {
   bool are_sources_due_ = false;
   bool is_clock_foreign_ = false;
   std::map<std::string, std::uint64_t> reported_;  // by topic or node: samples that were lost or could not be read
-  Time next_look_{}, next_report_{}, next_tend_{};
+  Time next_look_{}, next_report_{}, next_update_{};
   bool is_over_ = false;
   std::optional<base::Error> failed_;
 };

@@ -126,11 +126,11 @@ void Graph::remove_endpoint(const NodeName& node, const Guid& guid) {
   has_changed_ = true;
 }
 
-void Graph::tend(Time now) {
-  if (has_changed_ && family_ && now >= told_ + between_messages) {
-    told_ = now;
+void Graph::update(Time now) {
+  if (has_changed_ && family_ && now >= published_ + between_messages) {
+    published_ = now;
     has_changed_ = false;
-    tell();
+    publish_nodes();
   }
   std::set<std::string> lines;
   std::erase_if(doubts_, [&](const Doubt& doubt) {
@@ -141,7 +141,7 @@ void Graph::tend(Time now) {
   for (const auto& line : lines) base::log(base::Level::warn, participant_.settings().log_name, "{}", line);
 }
 
-void Graph::tell() {
+void Graph::publish_nodes() {
   const Guid& guid = participant_.guid();
   if (*family_ == Family::humble) {
     send(*writer_, message_of<ros::HumbleParticipantEntitiesInfo, ros::HumbleNodeEntitiesInfo>(guid, nodes_, gid24));

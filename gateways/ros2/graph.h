@@ -47,7 +47,7 @@ class Graph {
   void remove_endpoint(const NodeName& node, const Guid& guid);
 
   // Sends what has changed, once per 50 ms at most; logs endpoints of peers that do not fit. Call it some times a second.
-  void tend(Time now);
+  void update(Time now);
   std::optional<Family> family() const { return family_; }
   // "/slam_toolbox" of an endpoint; "an unknown node" where nobody says.
   std::string node_of(const Guid& endpoint) const;
@@ -80,7 +80,7 @@ class Graph {
   void judge_fit(const Peer& peer);
   bool is_of_twins(const Doubt& doubt) const;
   void learn(const Received& message);
-  void tell();
+  void publish_nodes();
 
   Participant& participant_;
   std::optional<Family> family_;
@@ -94,7 +94,7 @@ class Graph {
   std::map<Guid, std::map<Guid, std::string>> named_;  // by writer of the message: endpoints and their nodes
   std::vector<Doubt> doubts_;
   bool has_changed_ = true;
-  Time told_{};
+  Time published_{};
 };
 
 // A reliable reader, and one of best effort that receives what the reliable one does not: so the topic is heard from all writers. The

@@ -14,7 +14,7 @@
 namespace ros2 {
 namespace {
 
-constexpr std::size_t most_waiting = 1000;
+constexpr std::size_t max_waiting = 1000;
 
 std::uint8_t level_of_ros(base::Level level) {
   switch (level) {
@@ -45,7 +45,7 @@ LogTopic::LogTopic() : lines_(std::make_shared<Lines>()) {
                   .logger = gateway_node.name,
                   .msg = std::string(record.message)};
     auto waiting = lines->waiting.lock();
-    if (waiting->size() < most_waiting) waiting->push_back(std::move(line));
+    if (waiting->size() < max_waiting) waiting->push_back(std::move(line));
   });
 }
 

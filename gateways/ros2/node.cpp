@@ -45,8 +45,8 @@ void Node::add_service(const std::string& name, ServiceTypes types, OnRequest on
   services_.push_back(std::move(*service));
 }
 
-void Node::tend(std::chrono::steady_clock::time_point now) {
-  for (const auto& service : services_) service->tend(now);
+void Node::update(std::chrono::steady_clock::time_point now) {
+  for (const auto& service : services_) service->update(now);
 }
 
 std::uint64_t Node::damaged() const {

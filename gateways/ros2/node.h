@@ -105,7 +105,7 @@ class Node {
                 });
   }
   // To be called some times a second while a service is called: sends replies whose client was not matched.
-  void tend(std::chrono::steady_clock::time_point now);
+  void update(std::chrono::steady_clock::time_point now);
   // Messages and requests that could not be read.
   std::uint64_t damaged() const;
   const std::vector<std::unique_ptr<Writer>>& writers() const { return writers_; }

@@ -142,8 +142,8 @@ class PortDomain {
     const auto mine = turn_.take();
     participant_->deliver();
     const auto now = std::chrono::steady_clock::now();
-    graph_->tend(now);
-    own_node_->tend(now);
+    graph_->update(now);
+    own_node_->update(now);
     return std::exchange(arrived_, {});
   }
 

@@ -11,7 +11,7 @@
 namespace ros2 {
 namespace {
 
-constexpr std::size_t most_samples = 10'000;
+constexpr std::size_t max_samples = 10'000;
 
 struct Policy {
   std::string key, value;  // the key that has the value; without a value: the first key that could have one
@@ -110,9 +110,9 @@ base::Result<void> read_qos(const coil::Properties& connection, const std::strin
   if (!keep_all) return keep_all.error();
   const auto depth = policy("history.depth", "topic.historyQos.depth", "depth");
   const auto number = base::parse_integer(depth.value.empty() ? std::to_string(endpoint.depth) : depth.value);
-  if (!number || *number < 1 || *number > static_cast<std::int64_t>(most_samples))
+  if (!number || *number < 1 || *number > static_cast<std::int64_t>(max_samples))
     return base::Error{depth.key + " must be from 1 to 10000, got " + base::in_quotes(depth.value)};
-  endpoint.depth = *keep_all ? most_samples : static_cast<std::size_t>(*number);
+  endpoint.depth = *keep_all ? max_samples : static_cast<std::size_t>(*number);
   return {};
 }
 

@@ -100,7 +100,7 @@ void Service::reply(const Client& client, const std::vector<char>& message) {
   waiting_.push_back({client, message, std::chrono::steady_clock::now() + match_wait});
 }
 
-void Service::tend(std::chrono::steady_clock::time_point now) {
+void Service::update(std::chrono::steady_clock::time_point now) {
   std::erase_if(waiting_, [&](const Waiting& one) {
     if (now < one.until && !is_matched(one.client)) return false;
     send(one.client, one.message);

@@ -39,7 +39,7 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
-  void tend(std::chrono::steady_clock::time_point now);
+  void update(std::chrono::steady_clock::time_point now);
   std::uint64_t damaged() const { return damaged_; }
 
  private:

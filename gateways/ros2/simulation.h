@@ -32,7 +32,7 @@ class SimulationServices {
                      Namespaces namespaces);
 
   // To be called some times a second.
-  void tend(std::chrono::steady_clock::time_point now) { steps_action_.tend(now); }
+  void update(std::chrono::steady_clock::time_point now) { steps_action_.update(now); }
 
  private:
   using Result = ros::SimulationResult;

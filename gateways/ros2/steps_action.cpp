@@ -11,7 +11,7 @@ namespace {
 using ros::CancelGoalResponse;
 using ros::GoalStatus;
 using ros::SimulationResult;
-constexpr std::size_t most_goals = 20;
+constexpr std::size_t max_goals = 20;
 constexpr std::chrono::milliseconds feedback_period{100};
 
 bool is_over(std::int8_t status) { return status != GoalStatus::executing && status != GoalStatus::canceling; }
@@ -49,8 +49,8 @@ StepsAction::StepsAction(Node& node, World& world, AsyncRequests& async_requests
         Goal* goal = find(request.goal_id);
         if (goal == nullptr) return reply(ros::SimulateStepsGetResultResponse{});
         if (is_over(goal->status)) return reply(ros::SimulateStepsGetResultResponse{goal->status, {goal->result}});
-        constexpr std::size_t most_waiting = 100;
-        if (goal->waiting.size() < most_waiting) goal->waiting.push_back(reply);
+        constexpr std::size_t max_waiting = 100;
+        if (goal->waiting.size() < max_waiting) goal->waiting.push_back(reply);
       });
 }
 
@@ -72,7 +72,7 @@ void StepsAction::accept(const ros::SimulateStepsSendGoalRequest& request,
   const auto problem =
       running() != nullptr ? std::optional<std::string>("another goal is executed") : problem_of_steps(world_, request.goal.steps);
   const auto oldest = std::ranges::find_if(goals_, [](const Goal& goal) { return is_over(goal.status); });
-  if (goals_.size() >= most_goals && oldest != goals_.end()) goals_.erase(oldest);
+  if (goals_.size() >= max_goals && oldest != goals_.end()) goals_.erase(oldest);
   goals_.push_back({{request.goal_id, stamp}, request.goal.steps, now ? now->steps : 0});
   reply({true, stamp});
   if (problem) return finish(goals_.back(), GoalStatus::aborted, {SimulationResult::failed, *problem});
@@ -139,7 +139,7 @@ void StepsAction::tell_status() {
   publish(*status_, message);
 }
 
-void StepsAction::tend(std::chrono::steady_clock::time_point now) {
+void StepsAction::update(std::chrono::steady_clock::time_point now) {
   Goal* goal = running();
   if (goal == nullptr) return;
   if (now >= next_feedback_) {

@@ -29,7 +29,7 @@ class StepsAction {
   StepsAction(Node& node, World& world, AsyncRequests& async_requests, AsyncRequests& steps, const std::string& name);
 
   // Sends feedback, and ends the steps of goals that are canceled; to be called some times a second.
-  void tend(std::chrono::steady_clock::time_point now);
+  void update(std::chrono::steady_clock::time_point now);
 
  private:
   using ReplyResult = std::function<void(const ros::SimulateStepsGetResultResponse&)>;

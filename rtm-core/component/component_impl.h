@@ -50,7 +50,7 @@ class LastCalls {
 };
 
 // Foreign contexts a component takes part in, and organizations it is a member of: whoever ends it asks each.
-inline constexpr std::size_t most_memberships = 64;
+inline constexpr std::size_t max_memberships = 64;
 
 struct RTObject_impl::Impl {
   enum class Phase { created, initializing, alive, exiting, finalizing, finalized };

@@ -16,7 +16,7 @@ namespace RTC {
 
 namespace {
 
-constexpr std::size_t most_own_contexts = 64;  // each may be a thread
+constexpr std::size_t max_own_contexts = 64;  // each may be a thread
 
 struct Wanted {
   std::string type;
@@ -155,8 +155,8 @@ ReturnCode_t RTObject_impl::createContexts() {
     wanted.push_back({property("exec_cxt.periodic.type", "PeriodicExecutionContext"), ""});
   else if (!base::equal_ignoring_case(base::trim(list), "none"))
     wanted = parse_contexts(list);
-  if (wanted.size() > most_own_contexts) {
-    RTC_ERROR(("execution_contexts names %zu contexts, expected at most %zu", wanted.size(), most_own_contexts));
+  if (wanted.size() > max_own_contexts) {
+    RTC_ERROR(("execution_contexts names %zu contexts, expected at most %zu", wanted.size(), max_own_contexts));
     return RTC_ERROR;
   }
   for (const Wanted& one : wanted) {
@@ -355,7 +355,7 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
     auto data = impl_->shared.lock();
     auto& list = data->foreign;
     auto free = std::find_if(list.begin(), list.end(), [](const ExecutionContext_var& context) { return CORBA::is_nil(context); });
-    const bool is_full = free == list.end() && list.size() >= most_memberships;
+    const bool is_full = free == list.end() && list.size() >= max_memberships;
     if (free == list.end() && !is_full) free = list.insert(list.end(), ExecutionContext_var());
     if (!is_full) {
       *free = ExecutionContext::_duplicate(exec_context);
@@ -368,7 +368,7 @@ ExecutionContextHandle_t RTObject_impl::attach_context(ExecutionContext_ptr exec
   if (id < 0) {
     rt::log_rejection(
         rtclog, Logger::RTL_ERROR,
-        "a further execution context is rejected: the component participates in " + std::to_string(most_memberships) + ", the maximum");
+        "a further execution context is rejected: the component participates in " + std::to_string(max_memberships) + ", the maximum");
     return -1;
   }
   chooseClock();

@@ -81,13 +81,13 @@ bool RTObject_impl::addOrganization(SDOPackage::Organization_ptr organization) {
     auto data = impl_->shared.lock();
     for (const SDOPackage::Organization_var& known : data->organizations)
       if (SDOPackage::Organization_var(known)->_is_equivalent(organization)) return true;
-    if (data->organizations.size() < most_memberships) {
+    if (data->organizations.size() < max_memberships) {
       data->organizations.push_back(SDOPackage::Organization::_duplicate(organization));
       return true;
     }
   }
   rt::log_rejection(rtclog, Logger::RTL_ERROR,
-                    "a further organization is rejected: the component is in " + std::to_string(most_memberships) + ", the maximum");
+                    "a further organization is rejected: the component is in " + std::to_string(max_memberships) + ", the maximum");
   return false;
 }
 

@@ -49,7 +49,7 @@ CallbackGate::Answer CallbackGate::enter(const char* callback, Caller caller) {
 CallbackGate::Answer CallbackGate::wait(const char* callback, Caller caller, std::chrono::steady_clock::time_point deadline) {
   auto state = state_.lock();
   const bool is_remote = caller == Caller::remote;
-  if (is_remote && state->remote_waiting >= most_waiting) return Answer::crowded;
+  if (is_remote && state->remote_waiting >= max_waiting) return Answer::crowded;
   const std::uint64_t ticket = ++state->last_ticket;
   state->waiting.push_back(ticket);
   if (is_remote) ++state->remote_waiting;

@@ -9,7 +9,7 @@
 // processes, `Caller::local` all others.
 // Failures, each an answer to the thread that wanted to enter:
 //   busy      the one inside did not leave in time, or has been given up
-//   crowded   `most_waiting` remote callers wait already
+//   crowded   `max_waiting` remote callers wait already
 //   closed    the gate is closed to remote callers; waiting ones are answered at once
 // A callback that does not return can be given up: from then on no thread waits for it. It stays inside until it returns.
 //
@@ -41,7 +41,7 @@ class CallbackGate {
     std::thread::id thread;
     bool is_given_up;  // it did not return in time; nobody waits for it
   };
-  static constexpr std::size_t most_waiting = 64;
+  static constexpr std::size_t max_waiting = 64;
 
   // Inside for its life, if the answer is so. Name of the callback: a literal.
   class Visit {

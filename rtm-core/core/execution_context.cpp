@@ -18,9 +18,9 @@ using namespace std::chrono_literals;
 // The threads on which members of other places are called. Whoever says that a member is elsewhere costs a thread, up to a limit.
 class ParallelCalls {
  public:
-  static constexpr std::size_t most_threads = 64;
+  static constexpr std::size_t max_threads = 64;
 
-  explicit ParallelCalls(std::size_t most) : threads_(std::min(most, most_threads)) {
+  explicit ParallelCalls(std::size_t most) : threads_(std::min(most, max_threads)) {
     pool_.start(threads_ - 1, [this](std::size_t number, int) { work(number); });
   }
   // Calls work(0) here and work(1) ... work(count - 1) on the others, several on each if there are more than threads, and returns when all

@@ -31,7 +31,7 @@ struct EntryLimits {
 inline constexpr EntryLimits entry_limits{};
 
 // A port of one connection calls the next one while the first still waits, so their number is the depth of a chain of calls.
-inline constexpr std::size_t most_ports_of_a_connection = 256;
+inline constexpr std::size_t max_ports_of_a_connection = 256;
 
 // `what` begins the message: "property of the connection".
 base::Result<void> check_key(std::string_view what, std::string_view key);

@@ -22,14 +22,14 @@ std::string LogRateLimiter::omitted_text(std::uint64_t left_out) {
 
 std::optional<std::string> rejection_line_end(std::string_view name) {
   constexpr unsigned burst = 10;
-  constexpr std::size_t most_names = 10'000;
+  constexpr std::size_t max_names = 10'000;
   static base::Guarded<std::map<std::string, LogRateLimiter::State, std::less<>>, base::Rank::noted> states;
   std::optional<std::uint64_t> left_out;
   {
     auto locked = states.lock();
     auto state = locked->find(name);
     if (state == locked->end()) {
-      if (locked->size() >= most_names) locked->clear();
+      if (locked->size() >= max_names) locked->clear();
       state = locked->try_emplace(std::string(name)).first;
     }
     left_out = state->second.next(burst, std::chrono::steady_clock::now());

@@ -167,7 +167,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
     if (!entry) return {PortStatus::precondition_not_met};
     entry->settle(sample.phase_counter);
     const std::size_t octets = octets_of(sample);
-    const auto is_crowded = [&] { return !entry->is_empty() && state->unread_octets() + octets > most_octets_; };
+    const auto is_crowded = [&] { return !entry->is_empty() && state->unread_octets() + octets > max_octets_; };
     const auto is_full = [&] { return entry->is_full(sample.phase_counter) || is_crowded(); };
     if (entry->settings.full == FullPolicy::do_nothing && is_full()) return {PortStatus::buffer_full};
     if (entry->settings.full == FullPolicy::block && is_full()) {
@@ -180,7 +180,7 @@ WriteResult Mailbox::write(Channel channel, Sample sample, std::chrono::nanoseco
     }
     while (is_crowded()) lost.push_back(entry->drop_oldest());
     if (!lost.empty()) freed_.notify_all();
-    if (state->all_octets() + octets > 2 * most_octets_) return {PortStatus::buffer_full};
+    if (state->all_octets() + octets > 2 * max_octets_) return {PortStatus::buffer_full};
     sample.arrival = ++state->arrivals;
     if (entry->is_full(sample.phase_counter) && !entry->ring.is_empty()) lost.push_back(entry->ring.front());
     result.overwrote = entry->put(std::move(sample)) || !lost.empty();

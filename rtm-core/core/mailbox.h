@@ -42,7 +42,7 @@ struct ReadResult {
 
 class Mailbox {
  public:
-  explicit Mailbox(std::size_t most_octets = most_octets_waiting) : most_octets_(most_octets) {}
+  explicit Mailbox(std::size_t max_octets = max_octets_waiting) : max_octets_(max_octets) {}
 
   // `name`: orders the channels where time does not.
   Channel open(const BufferSettings& settings, const std::string& name = "");
@@ -122,7 +122,7 @@ class Mailbox {
     std::optional<std::chrono::nanoseconds> longest_wait(Channel channel);
   };
 
-  const std::size_t most_octets_;
+  const std::size_t max_octets_;
   mutable base::Guarded<State, base::Rank::samples> state_;
   std::condition_variable arrived_;
   std::condition_variable freed_;

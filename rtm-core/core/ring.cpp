@@ -6,8 +6,8 @@
 
 namespace rt {
 
-Ring::Ring(std::size_t length, std::size_t most_octets)
-    : length_(length), most_octets_(most_octets), slots_(std::min<std::size_t>(length, 8)) {
+Ring::Ring(std::size_t length, std::size_t max_octets)
+    : length_(length), max_octets_(max_octets), slots_(std::min<std::size_t>(length, 8)) {
   assert(length > 0);
 }
 

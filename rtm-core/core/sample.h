@@ -77,6 +77,6 @@ inline std::size_t octets_of(const Sample& sample) {
 }
 
 // The most memory that samples take that wait in one buffer: more waits nowhere, however many places the connection asks for.
-inline constexpr std::size_t most_octets_waiting = std::size_t{1} << 30;
+inline constexpr std::size_t max_octets_waiting = std::size_t{1} << 30;
 
 }  // namespace rt

@@ -84,7 +84,7 @@ bool PeriodicWorker::wait_for_deadline() {
   }
   const auto period = context_.period();
   const auto late = (time_.now() - cycle_) / period;
-  if (late > most_late_periods) {
+  if (late > max_late_periods) {
     cycle_ += late * period;
     if (has_own_beat) context_.count_missed(static_cast<std::uint64_t>(late));
   }
@@ -169,7 +169,7 @@ std::optional<std::uint64_t> TriggeredWorker::take(std::chrono::nanoseconds time
   std::optional<std::uint64_t> number;
   {
     auto data = shared_.lock();
-    if (data->ticks.size() < most_waiting) {
+    if (data->ticks.size() < max_waiting) {
       data->ticks.push_back(time);
       number = ++data->taken;
     }

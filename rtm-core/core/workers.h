@@ -68,7 +68,7 @@ class Alarm {
 // wakes it: transitions do not wait for the period.
 class PeriodicWorker final : public Worker {
  public:
-  static constexpr std::int64_t most_late_periods = 10;
+  static constexpr std::int64_t max_late_periods = 10;
 
   PeriodicWorker(ExecutionContext& context, Steppable& steps, const SteadyTime& time = machine_time());
 
@@ -103,7 +103,7 @@ class PeriodicWorker final : public Worker {
 class TriggeredWorker final : public Worker {
  public:
   // Ticks that wait; more of them are not taken and counted as missed.
-  static constexpr std::size_t most_waiting = 100'000;
+  static constexpr std::size_t max_waiting = 100'000;
 
   TriggeredWorker(ExecutionContext& context, Steppable& steps) : context_(context), steps_(steps) {}
 

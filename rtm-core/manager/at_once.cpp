@@ -11,7 +11,7 @@
 namespace RTM {
 namespace {
 
-constexpr std::size_t most_together = 64;
+constexpr std::size_t max_threads = 64;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void at_once(std::size_t count, const std::function<void(std::size_t)>& work) {
   };
   std::vector<std::jthread> helpers;
   try {
-    while (helpers.size() + 1 < std::min(count, most_together)) helpers.emplace_back(take_part);
+    while (helpers.size() + 1 < std::min(count, max_threads)) helpers.emplace_back(take_part);
   } catch (const std::system_error&) {  // with fewer threads it takes longer
   }
   take_part();

@@ -54,7 +54,7 @@ constexpr const char* inherited_nodes[] = {"config.version",
                                            "manager.instance_name"};
 
 // Of a component in naming services: each may have folders of its own, and is looked after as long as the component lives.
-constexpr std::size_t most_names = 16;
+constexpr std::size_t max_names = 16;
 
 // Keys of a creation argument that say where and how to create, not what.
 bool is_directive(const std::string& key) { return key == "manager_name" || key == "manager_address" || key == "language"; }
@@ -296,10 +296,10 @@ std::vector<std::string> ManagerImpl::naming_names(const Managed& component, con
     }
   };
   auto formats = base::split_list(properties.getProperty("naming.formats"));
-  if (formats.size() > most_names) {
+  if (formats.size() > max_names) {
     base::log(base::Level::error, component.instance_name(), "naming.formats has {} names, expected at most {}: the others are left out",
-              formats.size(), most_names);
-    formats.resize(most_names);
+              formats.size(), max_names);
+    formats.resize(max_names);
   }
   for (const auto& format : formats) names.push_back(rt::expand_format(format, text_of));
   return names;

@@ -19,8 +19,8 @@ namespace {
 constexpr std::chrono::seconds peer_timeout{2};
 constexpr std::chrono::milliseconds ping_timeout{300};  // of a slave that has hung
 constexpr std::chrono::seconds shortest_absence{10};    // of a slave that has hung; twice as long each time
-constexpr int most_doublings = 6;
-constexpr std::size_t most_managers = 256;  // of each list
+constexpr int max_doublings = 6;
+constexpr std::size_t max_managers = 256;  // of each list
 
 // A manager answers there. Also: a reference by object key (corbaloc) is equivalent to one by IOR only after its first call has been sent
 // on.
@@ -37,7 +37,7 @@ bool answers(RTM::Manager_ptr manager) {
 
 // Adds the reference unless an equivalent one is there or there are too many.
 bool add_unique(std::vector<RTM::Manager_var>& list, RTM::Manager_ptr manager) {
-  if (list.size() >= most_managers) return false;
+  if (list.size() >= max_managers) return false;
   for (const auto& known : list) {
     if (known->_is_equivalent(manager)) return false;
   }
@@ -136,10 +136,10 @@ void ManagerServant::drop(RTM::Manager_ptr slave, bool hangs) {
     if (!hangs) return;
     auto found = std::find_if(dropped_.begin(), dropped_.end(), [&](const auto& known) { return known.manager->_is_equivalent(slave); });
     if (found == dropped_.end()) {
-      if (dropped_.size() >= most_managers) dropped_.erase(dropped_.begin());
+      if (dropped_.size() >= max_managers) dropped_.erase(dropped_.begin());
       found = dropped_.insert(dropped_.end(), Dropped{RTM::Manager_var(RTM::Manager::_duplicate(slave))});
     }
-    absence = shortest_absence * (1 << std::min(found->times, most_doublings));
+    absence = shortest_absence * (1 << std::min(found->times, max_doublings));
     ++found->times;
     found->is_told = false;
     found->may_return = std::chrono::steady_clock::now() + absence;

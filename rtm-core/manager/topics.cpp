@@ -22,10 +22,10 @@ struct Topic {
   std::string wanted;  // of those it is connected with
 };
 
-constexpr std::size_t most_topics = 64;  // of a port; each is a name in naming services, and is looked for at every component
+constexpr std::size_t max_topics = 64;  // of a port; each is a name in naming services, and is looked for at every component
 
 // A port may have several topics, separated by commas; most have none. What is too much is left out.
-std::vector<Topic> topics_of(const PortProfile& profile, std::size_t most = most_topics) {
+std::vector<Topic> topics_of(const PortProfile& profile, std::size_t most = max_topics) {
   struct Rule {
     const char* port_type;
     const char* property;
@@ -116,10 +116,10 @@ void ManagerImpl::publish_ports(const Managed& component) {
   std::vector<std::string> names;
   for (auto* port : component.ports()) {
     const PortProfile profile = port->getPortProfile();
-    auto topics = topics_of(profile, most_topics + 1);
-    if (topics.size() > most_topics) {
+    auto topics = topics_of(profile, max_topics + 1);
+    if (topics.size() > max_topics) {
       topics.pop_back();
-      RTC_ERROR(("port %s: has more than %zu topics: the others are left out", profile.name.in(), most_topics));
+      RTC_ERROR(("port %s: has more than %zu topics: the others are left out", profile.name.in(), max_topics));
     }
     for (const auto& topic : topics) {
       names.push_back(topic.context + "/" + rt::escape_name(profile.name.in()) + "." + topic.kind);

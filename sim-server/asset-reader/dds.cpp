@@ -13,7 +13,7 @@ using Pixel = std::array<std::uint8_t, 4>;
 using Block = std::array<Pixel, 16>;  // 4 x 4, row by row
 
 constexpr std::uint32_t max_dds_side = 16384;
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 27U;
+constexpr std::uint64_t max_pixels = std::uint64_t{1} << 27U;
 
 std::uint32_t word_at(Bytes bytes, std::size_t at) {
   return static_cast<std::uint32_t>(bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16) | static_cast<std::uint32_t>(bytes[at + 3]) << 24;
@@ -149,7 +149,7 @@ base::Result<Image> decode_dds(Bytes bytes) {
   std::size_t data = 128;
   if (bytes.size() < data) return base::Error{"is cut short"};
   const std::uint32_t height = word_at(bytes, 12), width = word_at(bytes, 16);
-  if (width < 1 || height < 1 || width > max_dds_side || height > max_dds_side || std::uint64_t{width} * height > most_pixels)
+  if (width < 1 || height < 1 || width > max_dds_side || height > max_dds_side || std::uint64_t{width} * height > max_pixels)
     return base::Error{"must have from 1 to 16384 pixels a side and 2^27 in all, got " + std::to_string(width) + " x " +
                        std::to_string(height)};
   const auto layout = layout_of(bytes, data);

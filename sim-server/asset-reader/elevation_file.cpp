@@ -19,8 +19,8 @@
 namespace sim {
 namespace {
 
-constexpr std::uint32_t no_data_tag = 42113;                   // of GDAL: a number as text
-constexpr std::uint64_t most_block = std::uint64_t{1} << 30U;  // [byte] of a strip or tile
+constexpr std::uint32_t no_data_tag = 42113;                  // of GDAL: a number as text
+constexpr std::uint64_t max_block = std::uint64_t{1} << 30U;  // [byte] of a strip or tile
 
 base::Error bad_tiff(std::string why) { return base::Error{std::move(why)}; }
 
@@ -113,7 +113,7 @@ base::Result<TiffLayout> layout_of(TIFF* file) {
     layout.block_height = std::min(layout.block_height, layout.height);
   }
   const std::uint64_t bytes = std::uint64_t{layout.block_width} * layout.block_height * layout.bits / 8;
-  if (bytes == 0 || bytes > most_block) return bad_tiff(fmt::format("tiles of {}x{}", layout.block_width, layout.block_height));
+  if (bytes == 0 || bytes > max_block) return bad_tiff(fmt::format("tiles of {}x{}", layout.block_width, layout.block_height));
   return layout;
 }
 
@@ -194,7 +194,7 @@ base::Result<HeightLevels> decode_elevations(std::span<const std::uint8_t> bytes
   }
   if (map.lowest > map.highest) return bad_tiff("no elevation, only marks that there is none");
   const std::uint32_t side = std::max(layout->width, layout->height);
-  map.columns = map.rows = std::min<std::uint32_t>(side, most_heights_a_side);
+  map.columns = map.rows = std::min<std::uint32_t>(side, max_heights_a_side);
   map.levels.reserve(std::size_t{map.columns} * map.rows);
   for (std::size_t row = 0; row < map.rows; ++row) {
     for (std::size_t column = 0; column < map.columns; ++column) {

@@ -93,7 +93,7 @@ base::Result<Image> decode_pgm(std::span<const std::uint8_t> bytes) {
   return image;
 }
 
-// Of a size as large as the picture, but for what most_heights_a_side leaves out. The corners stay where they are.
+// Of a size as large as the picture, but for what max_heights_a_side leaves out. The corners stay where they are.
 base::Result<HeightLevels> decode_levels(std::span<const std::uint8_t> bytes) {
   if (is_tiff(bytes)) return decode_elevations(bytes);
   PngReader reader;
@@ -109,7 +109,7 @@ base::Result<HeightLevels> decode_levels(std::span<const std::uint8_t> bytes) {
   std::vector<std::uint8_t> flat(is_deep ? 0 : std::size_t{image.width} * image.height);
   if (png_image_finish_read(&image, nullptr, is_deep ? static_cast<void*>(deep.data()) : flat.data(), 0, nullptr) == 0)
     return bad(image.message);
-  constexpr std::uint32_t most = most_heights_a_side;
+  constexpr std::uint32_t most = max_heights_a_side;
   HeightLevels map{std::min(image.width, most), std::min(image.height, most), 0, is_deep ? 65535.0 : 255.0, {}};
   map.levels.reserve(std::size_t{map.columns} * map.rows);
   for (std::size_t row = 0; row < map.rows; ++row) {
@@ -142,7 +142,7 @@ base::Result<void> read_picture(Job& job) {
   std::string own;
   auto bytes = job.content;
   if (!job.has_content) {
-    auto file = job.files.read(job.path, most_image_file);
+    auto file = job.files.read(job.path, max_image_file);
     if (!file) return file.error();
     own = std::move(*file);
     bytes = as_bytes(own);
@@ -155,7 +155,7 @@ base::Result<void> read_picture(Job& job) {
 }
 
 base::Result<void> read_levels(Job& job) {
-  const auto file = job.files.read(job.path, most_image_file);
+  const auto file = job.files.read(job.path, max_image_file);
   if (!file) return file.error();
   const auto map = decode_levels(as_bytes(*file));
   if (!map) return map.error();

@@ -61,7 +61,7 @@ base::Result<const aiScene*> Import::read(unsigned flags) {
     return base::Error{"is of no format that is read; expected " + base::join(known, ", ")};
   }
   if (extension_of(path_) == "ply") {
-    if (const auto content = files_.read(path_, most_mesh_file); content) {
+    if (const auto content = files_.read(path_, max_mesh_file); content) {
       if (const auto whole = check_ply(*content); !whole) return whole.error();
     }
   }

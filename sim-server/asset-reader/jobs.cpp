@@ -13,13 +13,13 @@ namespace sim {
 FileStamp* FileLog::add(FileStamp stamp) {
   for (FileStamp& known : stamps_)
     if (known.path == stamp.path) return &known;
-  if (stamps_.size() >= most_stamps || stamp.path.size() > most_path) return nullptr;
+  if (stamps_.size() >= max_stamps || stamp.path.size() > max_path) return nullptr;
   return &stamps_.emplace_back(std::move(stamp));
 }
 
-base::Result<std::string> FileLog::read(const std::string& path, std::uint64_t most_bytes) {
+base::Result<std::string> FileLog::read(const std::string& path, std::uint64_t max_bytes) {
   FileStamp* stamp = add(stamp_of(path));  // before: what changes meanwhile is found to be another file
-  auto bytes = base::read_plain_file(path, most_bytes);
+  auto bytes = base::read_plain_file(path, max_bytes);
   if (bytes && stamp != nullptr && stamp->content.empty()) {
     base::ContentHash hash;
     hash.add(*bytes);
@@ -49,7 +49,7 @@ base::Result<void> read_asset(AssetKind kind, Job& job) {
       case AssetKind::heights:
         return read_levels(job);
       case AssetKind::content: {
-        const auto bytes = job.files.read(job.path, most_image_file);
+        const auto bytes = job.files.read(job.path, max_image_file);
         return bytes ? base::Result<void>() : bytes.error();
       }
     }

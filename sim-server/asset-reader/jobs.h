@@ -15,7 +15,7 @@ namespace sim {
 // Opens files by the rules of worlds (base/plain_file.h), and keeps the stamps of all that were asked for, with hashes of what was read.
 class FileLog {
  public:
-  base::Result<std::string> read(const std::string& path, std::uint64_t most_bytes);
+  base::Result<std::string> read(const std::string& path, std::uint64_t max_bytes);
   // Whether it can be read; what is missing counts as asked for.
   bool exists(const std::string& path);
   const FileStamps& stamps() const { return stamps_; }

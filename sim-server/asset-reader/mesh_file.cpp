@@ -73,7 +73,7 @@ class MeshReader {
   void add_weights(const aiMesh& mesh, const aiNode& node, std::size_t first) {
     auto& weights = skin_->weights;
     weights.resize(first + mesh.mNumVertices, SkinWeights{{}, {0, 0, 0, 0}});
-    for (unsigned b = 0; b < mesh.mNumBones && skin_->bones.size() < most_bones; ++b) {
+    for (unsigned b = 0; b < mesh.mNumBones && skin_->bones.size() < max_bones; ++b) {
       const aiBone& in = *mesh.mBones[b];
       const auto found = node_by_name_.find(in.mName.C_Str());
       if (found == node_by_name_.end()) continue;
@@ -152,7 +152,7 @@ class MeshReader {
     auto& indices = indices_by_material_[mesh.mMaterialIndex];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3 || indices.size() >= most_triangles * 3) continue;
+      if (face.mNumIndices != 3 || indices.size() >= max_triangles * 3) continue;
       const std::uint32_t corners[3] = {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]};
       note_lost(corners);
       if (!is_triangle(corners)) continue;

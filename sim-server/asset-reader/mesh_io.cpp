@@ -62,7 +62,7 @@ bool MeshIo::Exists(const char* file) const { return files_.exists(file); }
 
 Assimp::IOStream* MeshIo::Open(const char* file, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
-  const auto content = files_.read(file, most_mesh_file);
+  const auto content = files_.read(file, max_mesh_file);
   if (!content) return nullptr;
   const bool is_collada = base::to_lower(std::filesystem::path(file).extension().string()) == ".dae";
   const std::string text = is_collada ? with_named_images(*content) : std::string();

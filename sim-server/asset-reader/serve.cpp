@@ -34,9 +34,9 @@ void limit(__rlimit_resource what, rlim_t most) {
 void set_limits() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_NOFILE, 64);
-  limit(RLIMIT_FSIZE, most_answer_bytes);
+  limit(RLIMIT_FSIZE, max_answer_bytes);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  limit(RLIMIT_AS, most_reader_memory);
+  limit(RLIMIT_AS, max_reader_memory);
 #endif
   // When the memory of the machine runs out, this process ends before any other.
   if (const int file = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC); file >= 0) {
@@ -72,7 +72,7 @@ struct Request {
 };
 
 bool receive(Request& request) {
-  request.words.resize(most_request_bytes);
+  request.words.resize(max_request_bytes);
   auto packet = base::receive_packet(reader_socket, std::as_writable_bytes(std::span(request.words)));
   if (!packet) return false;
   request.words.resize(packet->size);
@@ -102,7 +102,7 @@ bool answer(const Request& request) {
   if (head.magic != asset_magic) return false;
   limit_time(head.cpu_seconds);
   FileLog files;
-  const std::string path = in.text(most_path);
+  const std::string path = in.text(max_path);
   const bool has_content = in.number<std::uint64_t>() != 0;
   const std::string content = has_content && request.content.get() >= 0 ? all_of(request.content.get()) : std::string();
   const base::FileHandle made(::memfd_create("rtm-asset", MFD_CLOEXEC | MFD_ALLOW_SEALING));

@@ -32,7 +32,7 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent
     }
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3 || out.triangles.size() >= most_triangles) continue;
+      if (face.mNumIndices != 3 || out.triangles.size() >= max_triangles) continue;
       out.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
     }
   }

@@ -11,8 +11,8 @@
 namespace sim {
 namespace {
 
-constexpr double slowest = 0.01;      // [m/s] of the flow that a wing notices
-constexpr double most_of_mass = 0.5;  // of a step's damping: it must not turn the motion round
+constexpr double slowest = 0.01;          // [m/s] of the flow that a wing notices
+constexpr double max_damped_share = 0.5;  // of a step's damping: it must not turn the motion round
 
 bool is_carried_by(const FluidDef& fluid, const std::string& model) {
   return fluid.models.empty() || std::find(fluid.models.begin(), fluid.models.end(), model) != fluid.models.end();
@@ -203,7 +203,7 @@ void BodyForces::damp(const Water& water, Memory& memory, dBodyID body, double d
   Matrix6 damping = def.linear;
   for (const auto& product : def.quadratic)
     damping(product.to, product.by) += product.value * (product.is_absolute ? std::abs(v[product.with]) : v[product.with]);
-  for (int i = 0; i < 6; ++i) damping(i, i) = std::max(damping(i, i), -most_of_mass * (i < 3 ? water.mass : water.inertia[i - 3]) / dt);
+  for (int i = 0; i < 6; ++i) damping(i, i) = std::max(damping(i, i), -max_damped_share * (i < 3 ? water.mass : water.inertia[i - 3]) / dt);
   Vector6 effort = damping * v;
   if (water.has_added) effort += drag_along(water, memory, v, dt);
   push(body, pose.translation(), pose.linear() * effort.head<3>(), pose.linear() * effort.tail<3>());

@@ -209,14 +209,14 @@ int reduce(dContactGeom* contacts, int count) {
 }
 
 int merge_under_wheel(dGeomID wheel, dContactGeom* contacts, int count) {
-  constexpr double most_lean = 0.05;  // [rad] at which the tyre still touches with its whole width
+  constexpr double max_lean = 0.05;  // [rad] at which the tyre still touches with its whole width
   const dReal* r = dGeomGetRotation(wheel);
   const Eigen::Vector3d axle(r[2], r[6], r[10]), middle = ode::vector(dGeomGetPosition(wheel));
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     dContactGeom contact = contacts[i];
     const Eigen::Vector3d normal = ode::vector(contact.normal);
-    if (!(std::abs(normal.dot(axle)) < most_lean)) {
+    if (!(std::abs(normal.dot(axle)) < max_lean)) {
       contacts[kept++] = contact;
       continue;
     }

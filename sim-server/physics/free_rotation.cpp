@@ -47,14 +47,14 @@ void FreeRotation::add(dBodyID body) {
 
 void FreeRotation::finish(double dt) {
   constexpr double largest_turn = 0.1;  // [rad] of one integration step
-  constexpr int most_turns = 32;
+  constexpr int max_turns = 32;
   for (const auto& [body, start] : turning_) {
     dBodySetGyroscopicMode(body, 1);
     const Eigen::Matrix3d inertia = inertia_of(body), inverse = inertia.inverse();
     const Eigen::Vector3d spin = ode::vector(dBodyGetAngularVel(body));
     if (!spin.allFinite()) continue;
     const Eigen::Vector3d momentum = start * (inertia * (start.conjugate() * spin));
-    const int turns = std::clamp(static_cast<int>(std::ceil(std::min(spin.norm() * dt / largest_turn, 1e3))), 1, most_turns);
+    const int turns = std::clamp(static_cast<int>(std::ceil(std::min(spin.norm() * dt / largest_turn, 1e3))), 1, max_turns);
     Eigen::Quaterniond orientation = start;
     for (int i = 0; i < turns; ++i) orientation = turned(orientation, inverse, momentum, dt / turns);
     const Eigen::Vector3d now = spin_of(orientation, inverse, momentum);

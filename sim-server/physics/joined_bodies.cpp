@@ -5,7 +5,7 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_bodies = 60;
+constexpr std::size_t max_bodies = 60;
 
 Eigen::Matrix3d inverse_inertia(dBodyID body, const dMass& mass) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> inertia(mass.I);
@@ -42,7 +42,7 @@ JoinedBodies::JoinedBodies(dBodyID first) : bodies_{first} {
         if (is_pushable(body) && place_of(body) < 0) bodies_.push_back(body);
       }
     }
-    are_known_ = bodies_.size() <= most_bodies;
+    are_known_ = bodies_.size() <= max_bodies;
   }
   if (!are_known_) return;
   for (const dBodyID body : bodies_) {

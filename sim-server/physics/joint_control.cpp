@@ -11,7 +11,7 @@ constexpr double near_stop = 1e-4;           // [rad] or [m] that targets keep a
 constexpr double hardly_any = 1e-5;          // [rad] or [m] of error that nothing is done about
 constexpr double arrived = 1e-3;             // [rad] or [m] from the target
 constexpr double still = 1e-3;               // [rad/s] or [m/s]
-constexpr double most_ahead = 0.05;          // [s] that a target goes on without a new command
+constexpr double max_ahead = 0.05;           // [s] that a target goes on without a new command
 constexpr double furthest_ahead = 1;         // [rad] within a turn
 constexpr double time_to_full_speed = 0.25;  // [s] of a target that jumped
 constexpr double far = 0.05;                 // [s] of the way at full speed: further is a jump
@@ -44,7 +44,7 @@ double JointServo::way_to(double target, const JointState& now) const {
   return setup_.goes_round ? std::remainder(way, 2 * std::numbers::pi) : way;
 }
 
-double JointServo::most_effort() const {
+double JointServo::max_effort() const {
   const bool is_limited = mode_ == JointMode::velocity && order_.effort > 0;
   return is_limited ? std::min(motor_effort(), order_.effort) : motor_effort();
 }
@@ -88,7 +88,7 @@ void JointServo::move_target(const JointState& now, double dt) {
   const double before = reference_;
   if (mode_ == JointMode::velocity) {
     // Not further ahead than the motor can pull, nor than is known of a joint that goes round.
-    const double ahead = stiffness() > 0 && !setup_.turns_as_told ? most_effort() / stiffness() : 0;
+    const double ahead = stiffness() > 0 && !setup_.turns_as_told ? max_effort() / stiffness() : 0;
     // Beyond a stop as well, so that it presses with all its effort.
     const double lead = std::min(ahead + std::abs(order_.value) * dt, setup_.goes_round ? furthest_ahead : infinite);
     if (setup_.goes_round) reference_ = now.position + way_to(reference_, now);
@@ -98,8 +98,8 @@ void JointServo::move_target(const JointState& now, double dt) {
   }
   if (order_.velocity != 0) {
     // A point of a path, which the commander interpolates.
-    reference_ = clamped(order_.value + order_.velocity * std::min(since_order_, most_ahead));
-    reference_velocity_ = since_order_ < most_ahead ? order_.velocity : 0;
+    reference_ = clamped(order_.value + order_.velocity * std::min(since_order_, max_ahead));
+    reference_velocity_ = since_order_ < max_ahead ? order_.velocity : 0;
     return;
   }
   const double missing = order_.value - reference_;
@@ -117,7 +117,7 @@ JointRow JointServo::spring(const JointState& now, double gravity, double dt) co
   const JointGains& gains = setup_.gains;
   JointRow row;
   const double p = this->stiffness(), d = order_.gain * gains.d, stiffness = dt * p + d;
-  const double most = most_effort();
+  const double most = max_effort();
   const double added = (mode_ == JointMode::position ? order_.effort : 0) + gains.offset + integral_ + gravity;
   if (!(stiffness > 0)) {
     row.push = std::clamp(added, -most, most);
@@ -167,7 +167,7 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
       move_target(now, dt);
       row = spring(now, gravity, dt);
       // The last: it has become too weak for what it held while the model slept.
-      row.keeps_awake = reference_velocity_ != 0 || std::abs(way_to(reference_, now)) > hardly_any || std::abs(effort_) > most_effort();
+      row.keeps_awake = reference_velocity_ != 0 || std::abs(way_to(reference_, now)) > hardly_any || std::abs(effort_) > max_effort();
       break;
     case JointMode::effort:
       row.push = std::clamp(order_.value + order_.effort + gravity, -motor_effort(), motor_effort());
@@ -191,7 +191,7 @@ JointRow JointServo::row(const JointState& now, double gravity, double dt) {
 
 void JointServo::integrate(const JointState& now, double dt) {
   const double error = way_to(reference_, now);
-  const bool is_saturated = std::abs(effort_) >= 0.99 * most_effort() && error * effort_ > 0;
+  const bool is_saturated = std::abs(effort_) >= 0.99 * max_effort() && error * effort_ > 0;
   if (setup_.gains.i == 0 || reference_velocity_ != 0 || std::abs(error) <= hardly_any || is_saturated) return;
   const double low = std::max(setup_.gains.i_low, -motor_effort()), high = std::min(setup_.gains.i_high, motor_effort());
   integral_ = std::clamp(integral_ + order_.gain * setup_.gains.i * error * dt, std::min(low, high), std::max(low, high));
@@ -205,7 +205,7 @@ void JointServo::follow(const JointState& now, double dt) {
   const bool is_controlled = mode_ == JointMode::position || mode_ == JointMode::velocity;
   if (is_controlled) integrate(now, dt);
   const bool is_slow = std::abs(now.velocity) < std::max(0.01 * setup_.velocity, still);
-  const bool is_at_limit = std::abs(effort_) >= 0.99 * most_effort();
+  const bool is_at_limit = std::abs(effort_) >= 0.99 * max_effort();
   stalled_for_ = is_controlled && is_slow && is_at_limit ? stalled_for_ + dt : 0;
   const bool is_still = std::abs(now.velocity) < 10 * still;
   still_for_ = is_still ? still_for_ + dt : 0;

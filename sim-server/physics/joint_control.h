@@ -79,7 +79,7 @@ class JointServo {
   double way_to(double target, const JointState& now) const;  // the shorter one of a joint that goes round
   double stiffness() const { return order_.gain * setup_.gains.p; }
   double motor_effort() const { return strength_ * setup_.effort; }
-  double most_effort() const;  // now
+  double max_effort() const;  // now
 
   Setup setup_;
   JointMode mode_ = JointMode::none;

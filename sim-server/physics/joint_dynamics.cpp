@@ -167,7 +167,7 @@ double JointDynamics::inertia(std::span<const double> positions, std::size_t joi
   return effort[joint];
 }
 
-double JointDynamics::most_gravity_effort(std::size_t joint, double gravity) const {
+double JointDynamics::max_gravity_effort(std::size_t joint, double gravity) const {
   // By the way along the links from the joint to each centre of mass, stretched.
   std::vector<double> reach(bodies_.size(), -1);
   double sum = 0;

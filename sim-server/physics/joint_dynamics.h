@@ -36,7 +36,7 @@ class JointDynamics {
   // A joint's own entry of the mass matrix: what an effort of it alone has to move.
   double inertia(std::span<const double> positions, std::size_t joint) const;
   // Largest effort that gravity of this strength can ask for, whatever the positions.
-  double most_gravity_effort(std::size_t joint, double gravity) const;
+  double max_gravity_effort(std::size_t joint, double gravity) const;
 
  private:
   std::vector<Body> bodies_;

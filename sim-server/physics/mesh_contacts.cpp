@@ -8,8 +8,8 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_faces = 20000;  // that one mesh may have in the box of the other; of more, some are passed over
-constexpr double along_face = 0.3;         // cosine up to which an edge lies along a face
+constexpr std::size_t max_faces = 20000;  // that one mesh may have in the box of the other; of more, some are passed over
+constexpr double along_face = 0.3;        // cosine up to which an edge lies along a face
 
 // A place of one mesh inside the other, in the other's frame; the normal is the way out.
 struct Touch {
@@ -57,7 +57,7 @@ class Feeler {
     std::vector<std::uint32_t> faces, corners, edges;
     mine_.faces_in(common, faces);
     std::sort(faces.begin(), faces.end());
-    const std::size_t stride = faces.size() / most_faces + 1;
+    const std::size_t stride = faces.size() / max_faces + 1;
     for (std::size_t i = 0; i < faces.size(); i += stride) {
       const Solid::Face& face = mine_.faces()[faces[i]];
       corners.insert(corners.end(), face.corners.begin(), face.corners.end());

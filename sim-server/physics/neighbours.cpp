@@ -50,7 +50,7 @@ class Search {
   }
 
   bool is_full(ModelInstance& model) {
-    if (model.neighbours.size() < most_neighbours) return false;
+    if (model.neighbours.size() < max_neighbours) return false;
     crowded_ = &model;
     return true;
   }

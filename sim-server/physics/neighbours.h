@@ -24,7 +24,7 @@ class StaticIndex {
 };
 
 // A model lies near so many others at most; of more, those with the lower ids count.
-inline constexpr std::size_t most_neighbours = 500;
+inline constexpr std::size_t max_neighbours = 500;
 
 // Brings the neighbours of those that have `left` their neighbourhoods up to date. Those have none, nor are they any others' now; `moving`
 // are all models that move. Both ascending by id. Returns a model that lies near too many others, or null.

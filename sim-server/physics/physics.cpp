@@ -13,7 +13,7 @@ namespace sim {
 namespace {
 
 constexpr double margin = 0.3;  // of neighbourhoods [m]
-constexpr std::size_t most_shards = 16;
+constexpr std::size_t max_shards = 16;
 constexpr double same_event = 60;  // [s] that a model keeps to the numbers until it is told of again that it left them
 
 }  // namespace
@@ -39,7 +39,7 @@ void Physics::Impl::build(std::vector<std::string>& notes, std::vector<std::stri
   const auto moving = static_cast<std::size_t>(
       std::count_if(initial_.begin(), initial_.end(), [](const auto& blueprint) { return blueprint && !blueprint->is_static; }));
   const bool one = world_->physics.solver == PhysicsDef::Solver::iterative;
-  const std::size_t shards = one ? 1 : std::clamp<std::size_t>(moving / 3, 1, most_shards);
+  const std::size_t shards = one ? 1 : std::clamp<std::size_t>(moving / 3, 1, max_shards);
   for (std::size_t i = 0; i < shards; ++i) shards_.push_back(std::make_unique<Shard>(world_->physics, wind_.air()));
   models_.resize(initial_.size());
   for (ModelId id = 0; id < initial_.size(); ++id) {
@@ -121,7 +121,7 @@ void Physics::Impl::partition() {
   if (const auto* crowded = find_neighbours(moving, left); crowded != nullptr && !is_crowding_told_) {
     is_crowding_told_ = true;
     complaints_.push_back(fmt::format("model {}: lies near more than {} others, some of which it does not touch",
-                                      crowded->blueprint().model->name, most_neighbours));
+                                      crowded->blueprint().model->name, max_neighbours));
   }
   for (auto* model : left) model->left_neighbourhood = false;
   std::vector<std::uint32_t> parents(models_.size());

@@ -10,19 +10,19 @@
 namespace sim {
 namespace {
 
-constexpr int most_contacts = 24;  // of one pair of shapes, before they are thinned out
+constexpr int max_contacts = 24;  // of one pair of shapes, before they are thinned out
 // With more contacts at once, or shapes that are too deep in each other, the iterative solver takes fewer rounds, unless the world asks for
 // that solver.
 constexpr double affordable_contacts = 3000;
 constexpr int least_iterations = 10;
 // As many equal balls have room around one. Shapes that both touch more moving ones are in a muddle, of which some contacts are enough.
-constexpr std::uint32_t most_partners = 12;
+constexpr std::uint32_t max_partners = 12;
 // Shapes that are in each other by more than this part of half the smaller one came there by no motion. They are pushed apart by one
 // contact, and only where one of both has few such partners: that lets a crowd in one place come apart, and costs little until it has.
 constexpr double too_deep = 0.25, least_too_deep = 1e-3;  // [m] the latter, for thin sheets
-constexpr std::uint32_t most_deep_partners = 4;
+constexpr std::uint32_t max_deep_partners = 4;
 constexpr double mesh_correction = 0.1;     // [m/s] at most between meshes that are in each other
-constexpr double most_sag = 100;            // times what a body sags by its own weight
+constexpr double max_sag = 100;             // times what a body sags by its own weight
 constexpr double hard_correction = 0.1;     // [m/s] at most out of contacts without stiffness and restitution
 constexpr double bounce_correction = 2e-3;  // [m/s] likewise with restitution, between bodies that move
 constexpr double fastest_impact = 25;       // [m/s]: what is deeper than such a step came there by no impact
@@ -362,11 +362,11 @@ void Shard::collide_pair(ModelInstance& a, ModelInstance& b) {
 void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* model_b, ShapeInstance& b) {
   if (!masks_match(*a.surface, *b.surface)) return;
   const std::uint32_t partners = model_b != nullptr ? std::min(a.partners, b.partners) : 0;
-  const bool are_in_muddle = model_b != nullptr && std::min(a.deep_partners, b.deep_partners) >= most_deep_partners;
+  const bool are_in_muddle = model_b != nullptr && std::min(a.deep_partners, b.deep_partners) >= max_deep_partners;
   has_muddle_ = has_muddle_ || are_in_muddle;
-  if (partners >= most_partners || are_in_muddle) return;
-  dContactGeom found[most_contacts];
-  const int most = std::clamp(physics_.max_contacts, 1, most_contacts);
+  if (partners >= max_partners || are_in_muddle) return;
+  dContactGeom found[max_contacts];
+  const int most = std::clamp(physics_.max_contacts, 1, max_contacts);
   int count = 0;
   if (is_mesh(a) && is_mesh(b)) {
     const Solid &solid_a = solid_of(a), &solid_b = solid_of(b);
@@ -390,7 +390,7 @@ void Shard::collide(ModelInstance& model_a, ShapeInstance& a, ModelInstance* mod
       count = 1;
     }
   }
-  if (partners >= most_partners / 2) count = 1;
+  if (partners >= max_partners / 2) count = 1;
   dSurfaceParameters surface = combine(*a.surface, *b.surface, physics_.step);
   if (a_rolls || b_rolls) surface.mu = std::min(surface.mu, best_grip), surface.mu2 = std::min(surface.mu2, best_grip);
   const bool has_force = !a.surface->collide_without_contact && !b.surface->collide_without_contact;
@@ -447,7 +447,7 @@ void Shard::add_contact(ModelInstance& model_a, ShapeInstance& a, ModelInstance*
   const double weight_a = can_be_pushed(a.geom.id()) ? model_a.mass() * gravity_ : 0;
   const double weight_b = model_b != nullptr && can_be_pushed(b.geom.id()) ? model_b->mass() * gravity_ : 0;
   // A plate sags by its own weight; below a thousand tons it would sink through the floor.
-  const double carried = std::max(model_a.load_near, model_b != nullptr ? model_b->load_near : 0) * gravity_ / most_sag;
+  const double carried = std::max(model_a.load_near, model_b != nullptr ? model_b->load_near : 0) * gravity_ / max_sag;
   soften(joint_contact, std::max({weight_a, weight_b, carried}), erp_, physics_.step);
   const double lighter = weight_a > 0 && weight_b > 0 ? std::min(weight_a, weight_b) : std::max(weight_a, weight_b);
   const auto usual_contacts = static_cast<double>(std::max<std::size_t>(model_a.previous_contacts.size(), 1));

@@ -201,7 +201,7 @@ void TreeContacts::add_answers(const Acted& at, const Acted& from) {
 
 // Friction is bounded by what presses: found without it first, then again until it presses as it was taken to.
 bool TreeContacts::rub_and_press() {
-  constexpr int most_rounds = 12;
+  constexpr int max_rounds = 12;
   const auto count = static_cast<Eigen::Index>(rows_.size());
   if (count == 0) return true;
   const auto set_bounds = [&](bool has_pressed) {
@@ -217,7 +217,7 @@ bool TreeContacts::rub_and_press() {
     return change > 1e-7 * most;
   };
   set_bounds(false);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     if (!system_.solve()) return false;
     if (!set_bounds(true)) break;
   }

@@ -21,9 +21,9 @@ void TreeSolver::make(const std::vector<ModelInstance*>& models, const std::vect
 }
 
 bool TreeSolver::solve(const std::vector<ModelInstance*>& models, const std::vector<const MadeContact*>& contacts) {
-  constexpr int at_once = 10, most_rounds = 40;
+  constexpr int at_once = 10, max_rounds = 40;
   make(models, contacts);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     tree_.factor();
     tree_.load();
     tree_.sweep();

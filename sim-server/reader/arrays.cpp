@@ -7,21 +7,21 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_buffered = std::size_t{1} << 16;
+constexpr std::size_t max_buffered = std::size_t{1} << 16;
 constexpr std::size_t padded(std::size_t size) { return (size + 7) / 8 * 8; }
 
 }  // namespace
 
 void ArrayWriter::append(const void* data, std::size_t size) {
   size_ += padded(size);
-  if (file_ >= 0 && size >= most_buffered) {
+  if (file_ >= 0 && size >= max_buffered) {
     is_good_ = is_good_ && write(buffer_.data(), buffer_.size()) && write(static_cast<const char*>(data), size);
     buffer_.assign(padded(size) - size, '\0');
     return;
   }
   if (size > 0) buffer_.append(static_cast<const char*>(data), size);
   buffer_.append(padded(size) - size, '\0');
-  if (file_ < 0 || buffer_.size() < most_buffered) return;
+  if (file_ < 0 || buffer_.size() < max_buffered) return;
   is_good_ = is_good_ && write(buffer_.data(), buffer_.size());
   buffer_.clear();
 }

@@ -100,7 +100,7 @@ std::string reason_of(int status, const ReadLimits& limits) {
   if (WIFEXITED(status)) return "is damaged: its reader ended with exit status " + std::to_string(WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
   if (signal == SIGXCPU) return "takes more than " + std::to_string(limits.cpu.count()) + " s of processor time to read";
-  if (signal == SIGXFSZ) return "is larger than " + std::to_string(most_answer_bytes >> 20U) + " MiB when read";
+  if (signal == SIGXFSZ) return "is larger than " + std::to_string(max_answer_bytes >> 20U) + " MiB when read";
   if (signal == SIGKILL) return "was not read: its reader was killed";
   const char* name = ::sigdescr_np(signal);
   return "is damaged: its reader ended with signal " + std::to_string(signal) + " (" + (name == nullptr ? "unknown" : name) + ")";
@@ -182,7 +182,7 @@ struct AssetReader::State {
   };
   std::map<std::string, Deadly> deadly;
   void remember(const std::string& path, const FileStamp& stamp, const std::string& reason) {
-    if (deadly.size() >= most_stamps) deadly.clear();
+    if (deadly.size() >= max_stamps) deadly.clear();
     deadly.insert_or_assign(path, Deadly{stamp, reason});
   }
   std::atomic<bool> is_stopped{false};
@@ -257,7 +257,7 @@ std::string words_of(const AssetReader::Question& question, const ReadLimits& li
 // What a reader that answered made of the file; an error when its answer is damaged.
 base::Result<AssetReader::Answer> result_of(Packet& answer, const FileStamp& stamp) {
   errno = 0;
-  const auto memory = answer.file.get() >= 0 ? SealedMemory::map(answer.file.release(), most_answer_bytes) : nullptr;
+  const auto memory = answer.file.get() >= 0 ? SealedMemory::map(answer.file.release(), max_answer_bytes) : nullptr;
   const bool is_short = !memory && errno == ENOMEM;
   const std::size_t padded = memory ? (static_cast<std::size_t>(answer.head.result_bytes) + 7) / 8 * 8 : 0;
   if (!memory || answer.head.result_bytes > memory->bytes().size() || padded > memory->bytes().size())
@@ -288,7 +288,7 @@ AssetReader::Answer AssetReader::ask(const Question& question, const ReadLimits&
   }
 
   const std::string words = words_of(question, limits);
-  if (words.size() > most_request_bytes || question.path.size() > most_path || question.path.find('\0') != std::string::npos)
+  if (words.size() > max_request_bytes || question.path.size() > max_path || question.path.find('\0') != std::string::npos)
     return fail("has too long a name", {});
   base::FileHandle content;
   std::vector<int> sent;

@@ -125,7 +125,7 @@ class AssetReader {
 template <class T>
 class AssetShelf {
  public:
-  explicit AssetShelf(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit AssetShelf(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   struct Found {
     base::Result<std::shared_ptr<const T>> value;
@@ -191,19 +191,19 @@ class AssetShelf {
       for (const auto& [name, kept] : state->entries) sum += kept.kept ? kept.bytes : 0;
       return sum;
     };
-    while (total() > most_bytes_) {
+    while (total() > max_bytes_) {
       Entry* oldest = nullptr;
       for (auto& [name, kept] : state->entries)
         if (kept.kept && (oldest == nullptr || kept.used < oldest->used)) oldest = &kept;
       given_up.push_back(std::exchange(oldest->kept, nullptr));
     }
     // What nobody has any more, and errors, take little; yet not for ever.
-    if (state->entries.size() > most_entries)
+    if (state->entries.size() > max_entries)
       std::erase_if(state->entries, [](const auto& e) { return !e.second.kept && e.second.known.expired(); });
   }
 
-  static constexpr std::size_t most_entries = 4096;
-  std::size_t most_bytes_;
+  static constexpr std::size_t max_entries = 4096;
+  std::size_t max_bytes_;
   base::Guarded<State, base::Rank::objects> state_;
 };
 

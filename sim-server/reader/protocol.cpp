@@ -9,7 +9,7 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_hash = 64;  // characters
+constexpr std::size_t max_hash = 64;  // characters
 
 }  // namespace
 
@@ -77,9 +77,9 @@ void put(ArrayWriter& out, const FileStamps& files) {
 }
 
 FileStamps take_stamps(ArrayReader& in) {
-  FileStamps files(static_cast<std::size_t>(in.count(most_stamps)));
+  FileStamps files(static_cast<std::size_t>(in.count(max_stamps)));
   for (FileStamp& file : files) {
-    file.path = in.text(most_path);
+    file.path = in.text(max_path);
     file.exists = in.number<std::uint64_t>() != 0;
     file.device = in.number<std::uint64_t>();
     file.inode = in.number<std::uint64_t>();
@@ -87,7 +87,7 @@ FileStamps take_stamps(ArrayReader& in) {
     file.modified_ns = in.number<std::int64_t>();
     file.changed_ns = in.number<std::int64_t>();
     file.seen_ns = in.number<std::int64_t>();
-    file.content = in.text(most_hash);
+    file.content = in.text(max_hash);
   }
   return files;
 }

@@ -35,13 +35,13 @@ struct AnswerHead {
 
 inline constexpr std::uint32_t asset_magic = 0x72746101;
 inline constexpr int reader_socket = 3;  // the descriptor that the reader is started with
-inline constexpr std::size_t most_request_bytes = 32768;
-inline constexpr std::uint64_t most_answer_bytes = (std::uint64_t{1} << 30U) + (std::uint64_t{1} << 24U);  // the largest picture, and more
-inline constexpr std::uint64_t most_reader_memory = std::uint64_t{4} << 30U;                               // of address space
-inline constexpr std::uint64_t most_mesh_file = std::uint64_t{512} << 20U;
-inline constexpr std::uint64_t most_image_file = std::uint64_t{1} << 30U;
-inline constexpr std::size_t most_path = 4096;
-inline constexpr std::size_t most_stamps = 4096;
+inline constexpr std::size_t max_request_bytes = 32768;
+inline constexpr std::uint64_t max_answer_bytes = (std::uint64_t{1} << 30U) + (std::uint64_t{1} << 24U);  // the largest picture, and more
+inline constexpr std::uint64_t max_reader_memory = std::uint64_t{4} << 30U;                               // of address space
+inline constexpr std::uint64_t max_mesh_file = std::uint64_t{512} << 20U;
+inline constexpr std::uint64_t max_image_file = std::uint64_t{1} << 30U;
+inline constexpr std::size_t max_path = 4096;
+inline constexpr std::size_t max_stamps = 4096;
 
 // A file as it was when it was opened, or looked for.
 struct FileStamp {

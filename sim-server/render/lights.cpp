@@ -48,9 +48,9 @@ Lights collect_lights(const Scene& scene, std::span<const Eigen::Isometry3d> pos
     out.suns.insert(is_first_shadow ? out.suns.begin() : out.suns.end(), sun);
   }
   std::stable_sort(out.lamps.begin(), out.lamps.end(), [](const Lamp& a, const Lamp& b) { return a.strength > b.strength; });
-  if (out.lamps.size() > most_lamps) {
+  if (out.lamps.size() > max_lamps) {
     out.all = out.lamps;
-    out.lamps.resize(most_lamps);
+    out.lamps.resize(max_lamps);
   }
   std::stable_partition(out.lamps.begin(), out.lamps.end(), [](const Lamp& lamp) { return !lamp.is_spot; });
   for (const auto& lamp : out.lamps) ++(lamp.is_spot ? out.spots : out.points);

@@ -24,12 +24,12 @@ struct Lights {
   std::vector<Sun> suns;  // the one with the shadow first
   bool has_shadow = false;
   Eigen::Vector3d to_shadow_light{0, 0, 1};
-  std::vector<Lamp> lamps;  // points, then spots; at most most_lamps, the strongest at the camera's place
+  std::vector<Lamp> lamps;  // points, then spots; at most max_lamps, the strongest at the camera's place
   int points = 0, spots = 0;
-  std::vector<Lamp> all;  // lamps of the scene if there are more than most_lamps, else empty
+  std::vector<Lamp> all;  // lamps of the scene if there are more than max_lamps, else empty
 };
 
-inline constexpr int most_lamps = 8;
+inline constexpr int max_lamps = 8;
 
 Lights collect_lights(const Scene& scene, std::span<const Eigen::Isometry3d> poses, const View& view);
 

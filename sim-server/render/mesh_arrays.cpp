@@ -8,9 +8,9 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t most_vertices = 80'000'000, most_indices = 60'000'000, most_parts = 100'000, most_images = 10'000,
-                        most_nodes = 1'000'000, most_keys = 50'000'000;
-constexpr std::uint64_t most_name = 65536;
+constexpr std::uint64_t max_vertices = 80'000'000, max_indices = 60'000'000, max_parts = 100'000, max_images = 10'000,
+                        max_nodes = 1'000'000, max_keys = 50'000'000;
+constexpr std::uint64_t max_name = 65536;
 
 struct PlainMaterial {
   Color ambient, diffuse, specular, emissive;
@@ -46,7 +46,7 @@ MaterialDef take_material(ArrayReader& in) {
   out.has_pbr = m.has_pbr != 0;
   out.double_sided = m.double_sided != 0;
   out.has_alpha_texture = m.has_alpha_texture != 0;
-  out.texture = in.text(most_name);
+  out.texture = in.text(max_name);
   return out;
 }
 
@@ -79,10 +79,10 @@ bool check_vertices(std::vector<Vertex>& vertices, const std::vector<std::uint32
 }
 
 bool take_skin(ArrayReader& in, const Mesh& mesh, Skin& skin) {
-  skin.nodes.resize(static_cast<std::size_t>(in.count(most_nodes)));
+  skin.nodes.resize(static_cast<std::size_t>(in.count(max_nodes)));
   for (std::size_t i = 0; i < skin.nodes.size() && in.ok(); ++i) {
     SkinNode& node = skin.nodes[i];
-    node.name = in.text(most_name);
+    node.name = in.text(max_name);
     node.parent = static_cast<int>(in.number<std::int64_t>());
     node.in_parent = take_pose(in);
     if (node.parent < -1 || node.parent >= static_cast<int>(i)) return false;
@@ -93,8 +93,8 @@ bool take_skin(ArrayReader& in, const Mesh& mesh, Skin& skin) {
     bone.from_mesh = take_pose(in);
     if (bone.node >= skin.nodes.size()) return false;
   }
-  skin.vertices = in.array<Vertex>(most_vertices);
-  skin.weights = in.array<SkinWeights>(most_vertices);
+  skin.vertices = in.array<Vertex>(max_vertices);
+  skin.weights = in.array<SkinWeights>(max_vertices);
   skin.scale = in.number<double>();
   if (!in.ok() || !std::isfinite(skin.scale) || skin.scale == 0 || skin.nodes.empty()) return false;
   if (skin.vertices.size() != mesh.vertices.size() || skin.weights.size() != mesh.vertices.size()) return false;
@@ -143,9 +143,9 @@ void put(ArrayWriter& out, const MeshFile& file, const Skin* skin) {
 
 bool take(ArrayReader& in, MeshFile& file, Skin* skin) {
   Mesh& mesh = file.mesh;
-  mesh.vertices = in.array<Vertex>(most_vertices);
-  mesh.indices = in.array<std::uint32_t>(most_indices);
-  mesh.parts.resize(static_cast<std::size_t>(in.count(most_parts)));
+  mesh.vertices = in.array<Vertex>(max_vertices);
+  mesh.indices = in.array<std::uint32_t>(max_indices);
+  mesh.parts.resize(static_cast<std::size_t>(in.count(max_parts)));
   std::uint64_t next = 0;
   for (MeshPart& part : mesh.parts) {
     part.first_index = in.number<std::uint32_t>();
@@ -155,10 +155,10 @@ bool take(ArrayReader& in, MeshFile& file, Skin* skin) {
     next += part.index_count;
   }
   if (!in.ok() || next != mesh.indices.size() || mesh.indices.empty()) return false;
-  file.images.resize(static_cast<std::size_t>(in.count(most_images)));
+  file.images.resize(static_cast<std::size_t>(in.count(max_images)));
   for (EmbeddedImage& image : file.images) {
-    image.name = in.text(most_name);
-    image.bytes = in.array<std::uint8_t>(most_image_file);
+    image.name = in.text(max_name);
+    image.bytes = in.array<std::uint8_t>(max_image_file);
   }
   if (!in.ok() || !check_vertices(mesh.vertices, mesh.indices)) return false;
   return skin == nullptr || take_skin(in, mesh, *skin);
@@ -176,13 +176,13 @@ void put(ArrayWriter& out, const std::vector<RawTrack>& tracks) {
 }
 
 bool take_tracks(ArrayReader& in, std::vector<RawTrack>& tracks) {
-  tracks.resize(static_cast<std::size_t>(in.count(most_nodes)));
+  tracks.resize(static_cast<std::size_t>(in.count(max_nodes)));
   for (RawTrack& track : tracks) {
-    track.node = in.text(most_name);
-    track.position_times = in.array<double>(most_keys);
-    track.rotation_times = in.array<double>(most_keys);
-    track.positions = in.array<std::array<float, 3>>(most_keys);
-    track.rotations = in.array<std::array<float, 4>>(most_keys);
+    track.node = in.text(max_name);
+    track.position_times = in.array<double>(max_keys);
+    track.rotation_times = in.array<double>(max_keys);
+    track.positions = in.array<std::array<float, 3>>(max_keys);
+    track.rotations = in.array<std::array<float, 4>>(max_keys);
     if (track.position_times.size() != track.positions.size() || track.rotation_times.size() != track.rotations.size()) return false;
   }
   return in.ok();

@@ -12,7 +12,7 @@
 
 namespace sim {
 
-inline constexpr std::size_t most_bones = 4096;
+inline constexpr std::size_t max_bones = 4096;
 inline constexpr int largest_image = 16384;  // [pixel] a side
 
 // `skin`: null for a mesh alone. Textures have the names that the file has for them; those inside the file are among the images.

@@ -155,7 +155,7 @@ class Builder {
 
  private:
   void rank_grounds(const std::vector<Eigen::AlignedBox3d>& boxes) {
-    constexpr int most_ranks = 8;
+    constexpr int max_ranks = 8;
     std::vector<std::size_t> grounds;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (scene_.drawables[i].is_ground) grounds.push_back(i);
@@ -163,7 +163,7 @@ class Builder {
     const auto area = [&](std::size_t i) { return boxes[i].sizes().x() * boxes[i].sizes().y(); };
     std::stable_sort(grounds.begin(), grounds.end(), [&](std::size_t a, std::size_t b) { return area(a) < area(b); });
     for (std::size_t i = 0; i < grounds.size(); ++i)
-      scene_.drawables[grounds[i]].ground_rank = std::min(static_cast<int>(i) + 1, most_ranks);
+      scene_.drawables[grounds[i]].ground_rank = std::min(static_cast<int>(i) + 1, max_ranks);
   }
 
   // Of a link with meshes that cannot be read the shapes that bodies meet are drawn instead, in grey; a magenta box if there are none.

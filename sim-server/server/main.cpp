@@ -177,7 +177,7 @@ int run(const Options& options, Signals& signals) {
   // Who only looks takes no server's place; ids of this kind cannot be asked for.
   const std::uint32_t server_id = options.check ? shm::first_unnamed_server + static_cast<std::uint32_t>(getpid()) : options.server_id;
   if (options.check) shm::remove_stale(shm::first_unnamed_server);
-  auto server = shm::Server::start({.server_id = server_id, .access = *access, .most_bytes = options.shm_limit << 20U});
+  auto server = shm::Server::start({.server_id = server_id, .access = *access, .max_bytes = options.shm_limit << 20U});
   if (!server) return fail(server.error().message);
   shm::SimulationInfo info{};
   info.step_ns = std::llround(world->physics.step * 1e9);
@@ -273,7 +273,7 @@ int serve(int argc, char** argv) {
                "exit when standard input, a pipe, is closed: when the program that started this one exits");
   app.add_flag("--lockstep", options.is_lockstep, "run in lock step: time waits for all participants of each tick");
   app.add_option("--wait-for", options.wait_for, "number of participants that must join before time starts (default 0)")
-      ->check(base::integer_between(0, static_cast<int>(shm::most_participants)));
+      ->check(base::integer_between(0, static_cast<int>(shm::max_participants)));
   app.add_option("--participant-timeout", options.participant_timeout,
                  "remove a participant that hangs longer than this [wall-clock s] (default 0: never)")
       ->check(base::number_between(0.0, 1e6));

@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto most_behind = 500ms;  // of wall time that is caught up; the rest is given up
+constexpr auto max_behind = 500ms;  // of wall time that is caught up; the rest is given up
 
 double seconds(std::chrono::nanoseconds t) { return static_cast<double>(t.count()) * 1e-9; }
 
@@ -27,7 +27,7 @@ std::optional<Pace::Wall> Pace::due(Wall now, std::chrono::nanoseconds simulated
   if (is_free()) return std::nullopt;
   const auto passed = static_cast<double>((simulated - pace_.simulated).count()) / wanted_;
   const auto due = pace_.wall + std::chrono::nanoseconds(std::llround(passed));
-  if (now <= due + most_behind) return due;
+  if (now <= due + max_behind) return due;
   pace_ = {now, simulated};  // the watch over shortfalls goes on
   return std::nullopt;
 }

@@ -11,7 +11,7 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_compared = 2000;  // names, for a suggestion: it is made between two steps
+constexpr std::size_t max_compared = 2000;  // names, for a suggestion: it is made between two steps
 
 shm::Reply refused(shm::RequestStatus status, std::string message) {
   shm::Reply reply;
@@ -23,7 +23,7 @@ shm::Reply failed(const base::Error& error) { return refused(shm::RequestStatus:
 
 shm::Reply no_model(const Physics& physics, const std::string& name) {
   std::vector<std::string> known;
-  for (ModelId id = 0; id < physics.model_slots() && known.size() < most_compared; ++id) {
+  for (ModelId id = 0; id < physics.model_slots() && known.size() < max_compared; ++id) {
     if (!physics.exists(id)) continue;
     const ModelDef& model = physics.def(id);
     known.push_back(model.name);
@@ -47,7 +47,7 @@ shm::Reply no_iface(const Simulation& simulation, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& device : simulation.devices()) {
     const std::string& other = device->iface().name();
-    if (other != name && known.size() < most_compared) known.push_back(other);
+    if (other != name && known.size() < max_compared) known.push_back(other);
   }
   return refused(shm::RequestStatus::not_found, "no iface " + name + base::suggestion(name, known));
 }

@@ -102,7 +102,7 @@ void remove_all(std::vector<pugi::xml_node> nodes) {
 }  // namespace
 
 bool check_numbers(pugi::xml_node entity, Complaints& complaints) {
-  constexpr std::size_t most_bad_values = 2000;
+  constexpr std::size_t max_bad_values = 2000;
   NumberCheck check{complaints, {}, {}};
   check.walk(entity);
   std::set<std::size_t> seen;
@@ -113,8 +113,8 @@ bool check_numbers(pugi::xml_node entity, Complaints& complaints) {
       if (seen.insert(node.hash_value()).second) once.push_back(node);
     }
   }
-  if (once.size() > most_bad_values) {
-    complaints.drop(entity, describe(entity) + " has more than " + std::to_string(most_bad_values) + " bad values and is left out");
+  if (once.size() > max_bad_values) {
+    complaints.drop(entity, describe(entity) + " has more than " + std::to_string(max_bad_values) + " bad values and is left out");
     return false;
   }
   remove_all(std::move(once));

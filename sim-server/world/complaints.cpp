@@ -7,7 +7,7 @@
 namespace sim {
 
 namespace {
-constexpr std::size_t most_findings = 500;
+constexpr std::size_t max_findings = 500;
 }
 
 std::string Place::text() const { return line > 0 ? file + ":" + std::to_string(line) : file; }
@@ -34,7 +34,7 @@ Place Complaints::place_of(pugi::xml_node node) const {
 
 void Complaints::add(Finding::Severity severity, const Place& place, std::string message) {
   dropped_ = dropped_ || severity == Finding::Severity::dropped;
-  if (findings_.size() >= most_findings) {
+  if (findings_.size() >= max_findings) {
     ++cut_;
     return;
   }

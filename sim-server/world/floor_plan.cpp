@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t most_plan_pixels = 4096;
-constexpr std::size_t most_walls = 20'000;
+constexpr std::int64_t max_plan_pixels = 4096;
+constexpr std::size_t max_walls = 20'000;
 
 struct Picture {
   std::int64_t width = 0, height = 0;
@@ -42,8 +42,8 @@ base::Result<Picture> read_picture(const fs::path& file) {
   const AssetReader::Question question{AssetKind::image, file.string(), "image", details.bytes()};
   const auto answer = AssetReader::mine().ask(question);
   auto picture = AssetReader::decoded<Picture>(question, answer, take_picture);
-  if (picture && std::max(picture->width, picture->height) > most_plan_pixels)
-    return base::Error{fmt::format("image {} is larger than {} pixels a side", file.string(), most_plan_pixels)};
+  if (picture && std::max(picture->width, picture->height) > max_plan_pixels)
+    return base::Error{fmt::format("image {} is larger than {} pixels a side", file.string(), max_plan_pixels)};
   return picture;
 }
 
@@ -128,10 +128,10 @@ void insert_one(pugi::xml_node include, const fs::path& folder, const ModelPath&
   if (!plan || !threshold) return;
   const auto boxes = boxes_of(dark_pixels(*picture, *threshold), static_cast<int>(picture->width), static_cast<int>(picture->height));
   if (boxes.empty()) return complaints.drop(include, words + " has no dark pixel and is left out");
-  if (boxes.size() > most_walls)
+  if (boxes.size() > max_walls)
     return complaints.drop(include, fmt::format("{} is left out: it has {} walls, expected at most {}; a lower <threshold> or a picture "
                                                 "without noise has fewer",
-                                                words, boxes.size(), most_walls));
+                                                words, boxes.size(), max_walls));
   add_model(include, *picture, *plan, boxes);
 }
 

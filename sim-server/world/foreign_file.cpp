@@ -9,10 +9,10 @@ namespace {
 
 // The first words and signs outside of comments ("# ..." to the end of the line) and of quotes.
 std::vector<std::string> first_words(std::string_view text) {
-  constexpr std::size_t most_text = 100'000, most_words = 2'000;
+  constexpr std::size_t max_text = 100'000, max_words = 2'000;
   std::vector<std::string> words;
-  text = text.substr(0, most_text);
-  for (std::size_t i = 0; i < text.size() && words.size() < most_words;) {
+  text = text.substr(0, max_text);
+  for (std::size_t i = 0; i < text.size() && words.size() < max_words;) {
     const auto c = static_cast<unsigned char>(text[i]);
     if (c == '#') {
       while (i < text.size() && text[i] != '\n') ++i;

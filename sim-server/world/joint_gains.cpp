@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 20U;
 constexpr int deepest = 32;
-constexpr std::size_t most_nodes = 100'000;  // with what aliases repeat
+constexpr std::size_t max_nodes = 100'000;  // with what aliases repeat
 
 std::string key_of(const YAML::Node& node) { return node.IsScalar() ? node.Scalar() : std::string(); }
 
@@ -28,7 +28,7 @@ class GainsReader {
   GainsReader(std::string file, std::vector<std::string>& left_out) : file_(std::move(file)), left_out_(left_out) {}
 
   void look(const YAML::Node& node, int depth) {
-    if (depth > deepest || ++nodes_ > most_nodes) return;
+    if (depth > deepest || ++nodes_ > max_nodes) return;
     if (node.IsSequence()) {
       for (const auto& one : node) look(one, depth + 1);
     }

@@ -224,7 +224,7 @@ void apply_line(MaterialDef& material, const std::vector<std::string>& words) {
 
 namespace {
 
-constexpr std::size_t most_ancestors = 32;
+constexpr std::size_t max_ancestors = 32;
 
 struct ScriptBlock {
   std::string parent;                                  // may be empty
@@ -272,10 +272,10 @@ std::map<std::string, MaterialDef> parse_material_script(const std::string& text
       const auto next = blocks.find(parent);
       at = parent.empty() || next == blocks.end() ? nullptr : &*next;
       if (!parent.empty() && !at) material = built_in_material(parent).value_or(material);
-      if (!is_in_line(at) && line.size() < most_ancestors) continue;
+      if (!is_in_line(at) && line.size() < max_ancestors) continue;
       if (at && faults) {
         (*faults)[start.first] = is_in_line(at) ? "inherits from itself through " + base::in_quotes(line.back()->first)
-                                                : "inherits over more than " + std::to_string(most_ancestors) + " generations";
+                                                : "inherits over more than " + std::to_string(max_ancestors) + " generations";
       }
       break;
     }

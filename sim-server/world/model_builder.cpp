@@ -345,8 +345,8 @@ class ModelBuilder {
     for (pugi::xml_node child : node.children("collision")) {
       if (child.child("laser_retro")) return;
     }
-    constexpr std::size_t most_comparisons = 10'000'000;
-    if (link.collisions.size() * link.visuals.size() > most_comparisons) return;
+    constexpr std::size_t max_comparisons = 10'000'000;
+    if (link.collisions.size() * link.visuals.size() > max_comparisons) return;
     for (CollisionDef& collision : link.collisions) {
       const auto distance = [&](const VisualDef& visual) {
         return (visual.pose.translation() - collision.pose.translation()).squaredNorm();

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_elements_of_a_model = 100000;
-constexpr std::size_t most_nested_files = 16;
+constexpr std::size_t max_elements_of_a_model = 100000;
+constexpr std::size_t max_nested_files = 16;
 
 // "1.9" -> 109, "1.10" -> 110; 0 for what is no version.
 int version_number(std::string_view text) {
@@ -251,8 +251,8 @@ base::Result<pugi::xml_node> ModelFiles::load(const fs::path& file) {
     return base::Error{message};
   };
   if (being_loaded_.contains(key)) return base::Error{key + ": includes itself"};
-  if (being_loaded_.size() >= most_nested_files)
-    return failed(key + ": files are included in each other more than " + std::to_string(most_nested_files) + " deep");
+  if (being_loaded_.size() >= max_nested_files)
+    return failed(key + ": files are included in each other more than " + std::to_string(max_nested_files) + " deep");
   base::Result<std::string> text = read_file(file);
   if (!text) return failed(text.error().message);
   base::Result<pugi::xml_document> document = open_text(*text, key);
@@ -263,8 +263,8 @@ base::Result<pugi::xml_node> ModelFiles::load(const fs::path& file) {
   const bool is_fit = complete(found, file.parent_path());
   being_loaded_.erase(key);
   if (!is_fit) return failed(key + ": the " + found.name() + " is not fit to be used");
-  if (element_count(found) > most_elements_of_a_model) {
-    return failed(key + ": the model has more than " + std::to_string(most_elements_of_a_model) + " elements with all it includes");
+  if (element_count(found) > max_elements_of_a_model) {
+    return failed(key + ": the model has more than " + std::to_string(max_elements_of_a_model) + " elements with all it includes");
   }
   return find_entity(documents_.emplace(key, std::move(*document)).first->second.child("sdf"));
 }
@@ -376,8 +376,8 @@ void ModelFiles::expand_includes(pugi::xml_node model, const fs::path& folder) {
     if (found && std::string_view(found.name()) != "model") {
       complaints_.drop(
           include, "a model is expected to be included in " + describe_in_context(model) + ", got " + describe(found) + "; it is left out");
-    } else if (found && (elements += element_count(found)) > most_elements_of_a_model) {
-      complaints_.drop(include, describe_in_context(model) + " has more than " + std::to_string(most_elements_of_a_model) +
+    } else if (found && (elements += element_count(found)) > max_elements_of_a_model) {
+      complaints_.drop(include, describe_in_context(model) + " has more than " + std::to_string(max_elements_of_a_model) +
                                     " elements with all it includes; " + base::in_quotes(text_of(include.child("uri"))) + " is left out");
     } else if (found) {
       pugi::xml_node copy = model.insert_copy_before(found, include);

@@ -221,7 +221,7 @@ std::vector<std::string> ModelPath::models() const {
   for (const fs::path& place : folders_) {
     for (const fs::path& folder : {place, place / "models"}) {
       for (const fs::path& model : folders_in(folder)) {
-        if (names.size() >= most_listed) break;
+        if (names.size() >= max_listed) break;
         const std::string name = model.filename().string();
         const bool is_model = is_there(model / "model.config") || is_there(model / "model.sdf");
         if (is_model && find("model://" + name, {})) names.insert(name);

@@ -39,8 +39,8 @@ class ModelPath {
   std::string other_version(std::string_view uri, const std::filesystem::path& found) const;
 
   // Every NAME that find("model://NAME") gives a model for: folders with a model.config or model.sdf, sorted, each once. At most
-  // `most_listed` of them; unreadable folders have none. Fuel caches are not looked into.
-  static constexpr std::size_t most_listed = 10'000;
+  // `max_listed` of them; unreadable folders have none. Fuel caches are not looked into.
+  static constexpr std::size_t max_listed = 10'000;
   std::vector<std::string> models() const;
   // "; did you mean NAME?" for a URI that find() knows nothing for, when a model has nearly the name in it; else empty.
   std::string suggestion_for(std::string_view uri) const;

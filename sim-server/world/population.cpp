@@ -15,7 +15,7 @@ namespace sim {
 
 namespace {
 
-constexpr int most_models = 10000;
+constexpr int max_models = 10000;
 
 // Equal on every machine, unlike the distributions of the standard library.
 class Dice {
@@ -82,8 +82,8 @@ std::vector<Eigen::Isometry3d> places_of(pugi::xml_node population, Complaints& 
   const int rows = integer_at(population, "distribution/rows", 1), columns = integer_at(population, "distribution/cols", 1);
   const bool is_grid = kind == "grid";
   const bool is_right =
-      is_grid ? rows >= 1 && columns >= 1 && static_cast<double>(rows) * columns <= most_models : count >= 1 && count <= most_models;
-  if (!is_right) return refuse("must have from 1 to " + std::to_string(most_models) + " models");
+      is_grid ? rows >= 1 && columns >= 1 && static_cast<double>(rows) * columns <= max_models : count >= 1 && count <= max_models;
+  if (!is_right) return refuse("must have from 1 to " + std::to_string(max_models) + " models");
   const std::optional<Region> region = region_of(population);
   if (!region && !is_grid) return refuse("has neither a <box> nor a <cylinder>");
   std::vector<Eigen::Vector3d> points;

@@ -24,7 +24,7 @@ bool is_first_report(const std::string& path) {
   State state{path, now.inode, now.changed_ns};
   auto states = told().lock();
   if (states->contains(state)) return false;
-  if (states->size() >= most_stamps) states->clear();
+  if (states->size() >= max_stamps) states->clear();
   states->insert(std::move(state));
   return true;
 }

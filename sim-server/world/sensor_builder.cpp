@@ -48,9 +48,9 @@ std::string must(pugi::xml_node sensor, const std::string& what, const std::stri
 
 namespace {
 
-constexpr int most_rays = 4000000;  // of one scan
-constexpr int most_pixels_a_side = 16384;
-constexpr double most_pixels = 1 << 26;  // an iface holds no larger frames
+constexpr int max_rays = 4000000;  // of one scan
+constexpr int max_pixels_a_side = 16384;
+constexpr double max_pixels = 1 << 26;  // an iface holds no larger frames
 
 ScanDef build_scan(pugi::xml_node node) {
   ScanDef scan;
@@ -58,7 +58,7 @@ ScanDef build_scan(pugi::xml_node node) {
   // Gazebo lets some rays stand for more points and fills in between; here every point has its own ray.
   scan.resolution = number_at(node, "resolution", 1);
   const double points = std::round(scan.samples * scan.resolution);
-  if (scan.samples >= 1) scan.samples = static_cast<int>(std::clamp(points, 1.0, most_rays + 1.0));
+  if (scan.samples >= 1) scan.samples = static_cast<int>(std::clamp(points, 1.0, max_rays + 1.0));
   scan.min_angle = number_at(node, "min_angle", 0);
   scan.max_angle = number_at(node, "max_angle", 0);
   return scan;
@@ -79,12 +79,12 @@ std::optional<RayDef> build_ray(pugi::xml_node sensor, BuildContext& context) {
   if (ray.vertical.samples == 0) ray.vertical.samples = 1;
   std::string wrong;
   for (const ScanDef* scan : {&ray.horizontal, &ray.vertical}) {
-    if (scan->samples < 1 || scan->samples > most_rays) wrong = must(sensor, "number of samples", "from 1 to 4000000", scan->samples);
+    if (scan->samples < 1 || scan->samples > max_rays) wrong = must(sensor, "number of samples", "from 1 to 4000000", scan->samples);
     if (scan->min_angle > scan->max_angle) wrong = must(sensor, "smallest angle", "at most the largest", scan->min_angle);
     if (scan->max_angle - scan->min_angle > 4 * std::numbers::pi)
       wrong = must(sensor, "angle", "within two turns", scan->max_angle - scan->min_angle);
   }
-  if (wrong.empty() && static_cast<double>(ray.horizontal.samples) * ray.vertical.samples > most_rays) {
+  if (wrong.empty() && static_cast<double>(ray.horizontal.samples) * ray.vertical.samples > max_rays) {
     wrong = must(sensor, "number of rays", "at most 4000000", static_cast<double>(ray.horizontal.samples) * ray.vertical.samples);
   }
   // "inf" stands for a sensor that sees to the end of the world.
@@ -144,9 +144,9 @@ std::optional<CameraDef> build_camera(pugi::xml_node sensor, pugi::xml_node node
   }
   camera.visibility_mask = static_cast<std::uint32_t>(std::strtoul(text_at(node, "visibility_mask", "4294967295").c_str(), nullptr, 0));
   std::string wrong;
-  if (camera.width < 1 || camera.width > most_pixels_a_side) wrong = must(sensor, "image width", "from 1 to 16384", camera.width);
-  if (camera.height < 1 || camera.height > most_pixels_a_side) wrong = must(sensor, "image height", "from 1 to 16384", camera.height);
-  if (const double pixels = static_cast<double>(camera.width) * camera.height; wrong.empty() && pixels > most_pixels) {
+  if (camera.width < 1 || camera.width > max_pixels_a_side) wrong = must(sensor, "image width", "from 1 to 16384", camera.width);
+  if (camera.height < 1 || camera.height > max_pixels_a_side) wrong = must(sensor, "image height", "from 1 to 16384", camera.height);
+  if (const double pixels = static_cast<double>(camera.width) * camera.height; wrong.empty() && pixels > max_pixels) {
     wrong = must(sensor, "number of pixels", "at most 67108864", pixels);
   }
   if (!(camera.horizontal_fov > 0.001 && camera.horizontal_fov <= 2 * std::numbers::pi + 1e-3)) {

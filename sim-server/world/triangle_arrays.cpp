@@ -15,7 +15,7 @@ void put(ArrayWriter& out, const MeshShape& shape) {
 MeshShape take_shape(ArrayReader& in, const std::string& path) {
   MeshShape shape;
   shape.path = path;
-  shape.submesh = in.text(most_request_bytes);
+  shape.submesh = in.text(max_request_bytes);
   shape.center_submesh = in.number<std::uint64_t>() != 0;
   for (int i = 0; i < 3; ++i) shape.scale[i] = in.number<double>();
   return shape;
@@ -28,8 +28,8 @@ void put(ArrayWriter& out, const TriangleMesh& mesh) {
 }
 
 bool take_triangles(ArrayReader& in, TriangleMesh& mesh) {
-  const auto corners = in.array<std::array<double, 3>>(3 * most_triangles + most_triangles);
-  mesh.triangles = in.array<std::array<std::uint32_t, 3>>(most_triangles);
+  const auto corners = in.array<std::array<double, 3>>(3 * max_triangles + max_triangles);
+  mesh.triangles = in.array<std::array<std::uint32_t, 3>>(max_triangles);
   if (!in.ok() || mesh.triangles.empty()) return false;
   mesh.vertices.reserve(corners.size());
   for (const auto& corner : corners) {
@@ -56,7 +56,7 @@ bool take_levels(ArrayReader& in, HeightLevels& map) {
   map.rows = in.number<std::uint32_t>();
   map.lowest = in.number<double>();
   map.highest = in.number<double>();
-  constexpr std::uint64_t most = most_heights_a_side;
+  constexpr std::uint64_t most = max_heights_a_side;
   map.levels = in.array<float>(most * most);
   const bool has_size = map.columns >= 2 && map.rows >= 2 && map.columns <= most && map.rows <= most;
   const bool has_range = map.lowest <= map.highest && std::max(-map.lowest, map.highest) <= largest_coordinate;

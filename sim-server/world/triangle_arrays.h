@@ -10,10 +10,10 @@
 
 namespace sim {
 
-inline constexpr std::size_t most_triangles = 20'000'000;
+inline constexpr std::size_t max_triangles = 20'000'000;
 inline constexpr double largest_coordinate = 1e7;  // [m]
 inline constexpr int largest_height_map = 8193;    // [pixel] a side
-inline constexpr int most_heights_a_side = 2049;   // what larger maps have between is left out: every height costs some 250 bytes
+inline constexpr int max_heights_a_side = 2049;    // what larger maps have between is left out: every height costs some 250 bytes
 
 void put(ArrayWriter& out, const MeshShape& shape);
 MeshShape take_shape(ArrayReader& in, const std::string& path);

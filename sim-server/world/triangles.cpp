@@ -12,18 +12,18 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t most_corners = 5000;  // of all outlines of a polyline: joining and clipping them costs more than their square
+constexpr std::size_t max_corners = 5000;  // of all outlines of a polyline: joining and clipping them costs more than their square
 
 using MeshShelf = AssetShelf<TriangleMesh>;
 using LevelShelf = AssetShelf<HeightLevels>;
-constexpr std::size_t most_kept = std::size_t{256} << 20U;  // [byte] of what nobody uses any more
+constexpr std::size_t max_kept = std::size_t{256} << 20U;  // [byte] of what nobody uses any more
 
 MeshShelf& mesh_shelf() {
-  static auto& shelf = *new MeshShelf(most_kept);  // never destroyed: as the reader
+  static auto& shelf = *new MeshShelf(max_kept);  // never destroyed: as the reader
   return shelf;
 }
 LevelShelf& level_shelf() {
-  static auto& shelf = *new LevelShelf(most_kept);
+  static auto& shelf = *new LevelShelf(max_kept);
   return shelf;
 }
 
@@ -125,7 +125,7 @@ std::vector<std::array<std::uint32_t, 3>> clip_ears(const Outline& outline) {
 base::Result<TriangleMesh> polyline_triangles(const PolylineShape& shape) {
   std::size_t corners = 0;
   for (const Outline& ring : shape.outlines) corners += ring.size();
-  if (corners > most_corners) return base::Error{fmt::format("polyline: has {} corners, at most {} are expected", corners, most_corners)};
+  if (corners > max_corners) return base::Error{fmt::format("polyline: has {} corners, at most {} are expected", corners, max_corners)};
   TriangleMesh mesh;
   Outline outline;
   const auto add_walls = [&](const Outline& ring) {

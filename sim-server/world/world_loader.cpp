@@ -31,10 +31,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_frames = 5000;            // of one model; libsdformat resolves them in a time that grows with the square: 9 s
-constexpr std::size_t most_frames_of_world = 10000;  // where models stand relative to each other
+constexpr std::size_t max_frames = 5000;            // of one model; libsdformat resolves them in a time that grows with the square: 9 s
+constexpr std::size_t max_frames_of_world = 10000;  // where models stand relative to each other
 // A small file may include a large model many times. One of these elements costs 0.6 to 0.8 KiB once it is simulated: 1.5 GiB.
-constexpr std::size_t most_elements_of_world = 10000000;
+constexpr std::size_t max_elements_of_world = 10000000;
 constexpr std::size_t batch_text = 48 * 1024;  // libsdformat needs some hundred times the text it reads; this is what it gets at once
 
 // A model as it is written, however often it stands in the world.
@@ -85,7 +85,7 @@ class Loader {
   void collect_include(pugi::xml_node world, pugi::xml_node include, const fs::path& folder);
   void add_instance(std::size_t distinct, pugi::xml_node named, pugi::xml_node pose_node, std::string name);
   std::size_t distinct_for(const std::string& key, pugi::xml_node node);
-  bool is_too_large() const { return elements_ > most_elements_of_world; }
+  bool is_too_large() const { return elements_ > max_elements_of_world; }
   static bool has_world_frames(pugi::xml_node world);
   void repair_world_references(pugi::xml_node world);
   bool resolve_whole_world(pugi::xml_node world);
@@ -119,8 +119,8 @@ std::size_t Loader::distinct_for(const std::string& key, pugi::xml_node node) {
   model.node = node;
   model.is_usable = repair_model(node, complaints_);
   model.elements = element_count(node);
-  if (model.is_usable && frames_of(node) > most_frames) {
-    complaints_.drop(node, describe(node) + " has more than " + std::to_string(most_frames) +
+  if (model.is_usable && frames_of(node) > max_frames) {
+    complaints_.drop(node, describe(node) + " has more than " + std::to_string(max_frames) +
                                " links, joints, frames and nested models in all and is left out");
     model.is_usable = false;
   }
@@ -230,8 +230,8 @@ void Loader::repair_world_references(pugi::xml_node world) {
 bool Loader::resolve_whole_world(pugi::xml_node world) {
   std::size_t count = static_cast<std::size_t>(std::distance(world.children("frame").begin(), world.children("frame").end()));
   for (const Instance& instance : instances_) count += 1 + frames_of(distinct_[instance.distinct].node);
-  if (count > most_frames_of_world) {
-    complaints_.drop(world, "frames of the world, and of models in it, are more than " + std::to_string(most_frames_of_world) +
+  if (count > max_frames_of_world) {
+    complaints_.drop(world, "frames of the world, and of models in it, are more than " + std::to_string(max_frames_of_world) +
                                 "; poses are taken relative to the world");
     return false;
   }
@@ -382,7 +382,7 @@ base::Result<LoadResult> Loader::world(const std::string& text, const fs::path& 
   if (!files_.complete(world, folder)) return base::Error{name + ": the world is not fit to be used"};
   collect(world, folder);
   if (is_too_large())
-    return base::Error{name + ": the world has more than " + std::to_string(most_elements_of_world) + " elements with all it includes"};
+    return base::Error{name + ": the world has more than " + std::to_string(max_elements_of_world) + " elements with all it includes"};
   if (has_world_frames(world)) resolve_whole_world(world);
   busy_with_ = "the tree of its frames";
   resolve_models();

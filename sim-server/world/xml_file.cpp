@@ -11,10 +11,10 @@ namespace sim {
 
 namespace {
 
-constexpr std::uintmax_t most_bytes = 64U << 20U;
-constexpr int most_depth = 100;
-constexpr std::size_t most_elements = 400000;
-constexpr std::size_t most_attributes = 1000;  // of one element; they are found by walking through them
+constexpr std::uintmax_t max_bytes = 64U << 20U;
+constexpr int max_depth = 100;
+constexpr std::size_t max_elements = 400000;
+constexpr std::size_t max_attributes = 1000;  // of one element; they are found by walking through them
 
 class LineTable {
  public:
@@ -38,18 +38,18 @@ base::Result<void> mark_lines(pugi::xml_document& document, const LineTable& lin
   pugi::xml_node node = document.first_child();
   while (node) {
     if (node.type() == pugi::node_element) {
-      if (++elements > most_elements) return base::Error{file_name + ": has more than " + std::to_string(most_elements) + " elements"};
+      if (++elements > max_elements) return base::Error{file_name + ": has more than " + std::to_string(max_elements) + " elements"};
       const int line = lines.line_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)));
-      if (static_cast<std::size_t>(std::distance(node.attributes_begin(), node.attributes_end())) > most_attributes) {
+      if (static_cast<std::size_t>(std::distance(node.attributes_begin(), node.attributes_end())) > max_attributes) {
         return base::Error{file_name + ":" + std::to_string(line) + ": " + describe(node) + " has more than " +
-                           std::to_string(most_attributes) + " attributes"};
+                           std::to_string(max_attributes) + " attributes"};
       }
       node.remove_attribute(line_mark);
       node.remove_attribute(file_mark);
       node.append_attribute(line_mark) = line;
       if (depth == 0) node.append_attribute(file_mark) = file;
-      if (depth >= most_depth) {
-        return base::Error{file_name + ":" + std::to_string(line) + ": elements are nested deeper than " + std::to_string(most_depth)};
+      if (depth >= max_depth) {
+        return base::Error{file_name + ":" + std::to_string(line) + ": elements are nested deeper than " + std::to_string(max_depth)};
       }
     }
     if (node.first_child()) {
@@ -135,14 +135,14 @@ bool is_lfs_pointer_file(const std::filesystem::path& path) {
 }
 
 base::Result<std::string> read_file(const std::filesystem::path& path) {
-  auto text = base::read_plain_file(path, most_bytes);
+  auto text = base::read_plain_file(path, max_bytes);
   if (!text) return base::Error{path.string() + ": " + text.error().message};
   return text;
 }
 
 base::Result<pugi::xml_document> parse_xml(const std::string& text, const std::string& file_name, Complaints& complaints) {
   const int file = complaints.add_file(file_name);
-  if (text.size() > most_bytes) return base::Error{file_name + ": a text of at most 64 MiB is expected"};
+  if (text.size() > max_bytes) return base::Error{file_name + ": a text of at most 64 MiB is expected"};
   if (base::trim(text).empty()) return base::Error{file_name + ": is empty"};
   if (is_lfs_pointer(text)) return base::Error{file_name + ": " + std::string(lfs_pointer_fault)};
   // Other encodings (a byte order mark of UTF-16) are left to the parser; lines are then only near.

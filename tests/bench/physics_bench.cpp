@@ -23,7 +23,7 @@ double processor_time() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-double most_megabytes() {
+double max_megabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
@@ -83,7 +83,7 @@ void bench_overlapping(int count, double at_least) {
   for (int i = 0; i < count; ++i) models.push_back(body("box" + std::to_string(i), BoxShape{{0.3, 0.3, 0.3}}, at(0, 0, 0.15), 2));
   PhysicsFixture f(world_of(std::move(models)));
   char line[100];
-  std::snprintf(line, sizeof line, "%d boxes in one place, 0.2 s (%.0f MiB of memory so far)", count, most_megabytes());
+  std::snprintf(line, sizeof line, "%d boxes in one place, 0.2 s (%.0f MiB of memory so far)", count, max_megabytes());
   print(line, speed(f, 0.2), "times", at_least);
 }
 
@@ -149,5 +149,5 @@ int main(int argc, char** argv) {
   sim::bench::bench_overlapping(3000, 0.002);
   sim::bench::bench_many();
   sim::bench::bench_hooks(1.02);
-  std::printf("most memory: %.0f MiB\n", sim::bench::most_megabytes());
+  std::printf("most memory: %.0f MiB\n", sim::bench::max_megabytes());
 }

@@ -31,8 +31,8 @@ void expect_even(const std::vector<std::vector<double>>& points, std::size_t pie
 TEST(Samples, of_a_latin_hypercube_are_one_in_each_piece) { expect_even(*unit_samples(Plan::Sampling::latin, 50, 4, 7), 50); }
 
 TEST(Samples, of_sobol_are_even_in_every_dimension) {
-  expect_even(*unit_samples(Plan::Sampling::sobol, 256, most_sobol_dimensions, 3), 256);
-  EXPECT_FALSE(unit_samples(Plan::Sampling::sobol, 4, most_sobol_dimensions + 1, 3));
+  expect_even(*unit_samples(Plan::Sampling::sobol, 256, max_sobol_dimensions, 3), 256);
+  EXPECT_FALSE(unit_samples(Plan::Sampling::sobol, 4, max_sobol_dimensions + 1, 3));
 }
 
 TEST(Samples, are_the_same_for_the_same_seed_only) {

@@ -147,7 +147,7 @@ TEST(CallbackGate, a_limited_number_of_remote_callers_waits) {
   std::vector<std::future<Answer>> answers;
   std::atomic<int> crowded{0};
   constexpr int more = 6;
-  for (std::size_t i = 0; i < CallbackGate::most_waiting + more; ++i)
+  for (std::size_t i = 0; i < CallbackGate::max_waiting + more; ++i)
     answers.push_back(std::async(std::launch::async, [&] {
       Visit visit(gate, "onError", Caller::remote);
       if (visit.wait(watchdog()) == Answer::crowded) ++crowded;
@@ -158,7 +158,7 @@ TEST(CallbackGate, a_limited_number_of_remote_callers_waits) {
   insider.leave();
   int inside = 0;
   for (auto& answer : answers) inside += answer.get() == Answer::inside;
-  EXPECT_EQ(inside, static_cast<int>(CallbackGate::most_waiting));
+  EXPECT_EQ(inside, static_cast<int>(CallbackGate::max_waiting));
   EXPECT_EQ(crowded, more);
 }
 

@@ -119,7 +119,7 @@ TEST(Joints, the_spring_of_a_position_gives_way_as_a_spring_whatever_the_step) {
     rig.command(0, RTMSIM_JOINT_POSITION, 0);
     rig.f.run(20);
     EXPECT_NEAR(rig.state(0).position, 0.005, 1e-4) << step;
-    rig.command(0, with_gain(shm::most_joint_gain + 1), 1);
+    rig.command(0, with_gain(shm::max_joint_gain + 1), 1);
     rig.f.run(1);
     EXPECT_NEAR(rig.state(0).position, 0.005, 1e-4) << "not a command";
   }

@@ -179,15 +179,15 @@ TEST(TreeSolver, what_falls_among_things_stays_whole) {
   };
   std::vector<Eigen::Vector3d> before;
   for (std::uint32_t link = 0; link < 13; ++link) before.push_back(place_in_plate(link));
-  std::uint32_t most_contacts = 0;
+  std::uint32_t max_contacts = 0;
   for (int i = 0; i < 100; ++i) {
     f.run(0.02);
-    most_contacts = std::max(most_contacts, f.physics.statistics().contacts);
+    max_contacts = std::max(max_contacts, f.physics.statistics().contacts);
     for (std::uint32_t link = 0; link < 13; ++link)
       ASSERT_LT((place_in_plate(link) - before[link]).norm(), 0.002) << i << ", link " << link;
     ASSERT_LT(f.physics.link_twist({id, 0}).linear.norm(), 6) << i << ": nothing throws it about";
   }
-  EXPECT_GT(most_contacts, 9U * 4U) << "it has met the crates";
+  EXPECT_GT(max_contacts, 9U * 4U) << "it has met the crates";
   EXPECT_LT(f.physics.link_twist({id, 0}).linear.norm(), 0.05) << "and lies";
   EXPECT_GT(f.position("sled").z(), 0.1) << "on them";
 }

@@ -153,12 +153,12 @@ TEST(Hydrodynamics, coriolis_forces_of_added_mass_do_no_work) {
   };
   f.run(0.01);
   const double start = energy();
-  double most_turn = 0;
+  double max_turn = 0;
   for (int i = 0; i < 20000; ++i) {
     f.physics.step();
-    most_turn = std::max(most_turn, std::abs(f.physics.link_twist(f.link("sub")).angular.z()));
+    max_turn = std::max(max_turn, std::abs(f.physics.link_twist(f.link("sub")).angular.z()));
   }
-  EXPECT_GT(most_turn, 0.1);
+  EXPECT_GT(max_turn, 0.1);
   EXPECT_NEAR(energy() / start, 1, 0.005);
 }
 

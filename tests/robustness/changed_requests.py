@@ -76,7 +76,7 @@ class Ear:
     """A port before that of a server. What comes is kept by its operation; what goes back names this port instead of the server's, in references and in texts of them, and what comes names the
     server's again."""
 
-    most_of_one = 24  # messages of one operation
+    max_of_one = 24  # messages of one operation
 
     def __init__(self, port):
         self.server = port
@@ -118,7 +118,7 @@ class Ear:
         if one[7] in (0, 3):
             found = re.search(rb"[a-zA-Z_]{3,}\0", one[20 + int.from_bytes(one[20:24], "little"):]) if one[7] == 0 else None
             kept = self.heard.setdefault(found.group()[:-1] if found else b"locate", [])
-            if len(kept) < self.most_of_one and one not in kept:
+            if len(kept) < self.max_of_one and one not in kept:
                 kept.append(one)
         return one
 

@@ -17,7 +17,7 @@ import zlib
 case, bin_dir, *_ = sys.argv[1:]
 magic = b"\x89MCAP0\r\n"
 cdr = b"\0\1\0\0"  # little-endian
-most_memory = 900 << 20  # [octets] of addresses: a chunk of 128 MiB, its values, their text, and the program with its libraries
+max_memory = 900 << 20  # [octets] of addresses: a chunk of 128 MiB, its values, their text, and the program with its libraries
 
 
 def text(value):
@@ -78,7 +78,7 @@ def summarized(path, messages):
 
 
 def rtse(*words):
-    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (most_memory, most_memory))  # noqa: E731
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (max_memory, max_memory))  # noqa: E731
     return subprocess.run([f"{bin_dir}/rtse", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit, timeout=120)
 
 

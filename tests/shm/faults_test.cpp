@@ -56,7 +56,7 @@ int rounds(int wanted) {
   return text != nullptr ? std::atoi(text) : wanted;
 }
 
-void pass_time(std::mt19937& random, unsigned most_us) { std::this_thread::sleep_for(std::chrono::microseconds(random() % most_us)); }
+void pass_time(std::mt19937& random, unsigned max_us) { std::this_thread::sleep_for(std::chrono::microseconds(random() % max_us)); }
 
 TEST(ProcessWatch, the_death_of_a_process_is_told_at_once) {
   auto watch = ProcessWatch::start().value();

@@ -306,7 +306,7 @@ TEST(Iface, an_iface_without_commands_refuses_them) {
 TEST(Iface, an_iface_whose_commands_are_larger_than_its_leases_is_not_opened) {
   Fixture f;
   auto writer = f.make(iface_spec(IfaceType::position2d, "base", Position2dInfo{}));
-  for (const std::uint32_t claimed : {13U, most_command_values, ~0U}) {  // 12 fit into a lease of this iface, which is rounded up
+  for (const std::uint32_t claimed : {13U, max_command_values, ~0U}) {  // 12 fit into a lease of this iface, which is rounded up
     writer->segment().header().command_values = claimed;
     EXPECT_FALSE(Segment::open(writer->segment().name())) << claimed;
   }

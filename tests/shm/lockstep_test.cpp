@@ -163,11 +163,11 @@ TEST(Barrier, more_participants_than_places_are_refused) {
 }
 
 TEST(Barrier, a_hundred_robots_with_several_contexts_each_take_part) {
-  BarrierFixture f({}, most_participants);
+  BarrierFixture f({}, max_participants);
   std::vector<Participant> all;
-  for (std::uint32_t i = 0; i < most_participants; ++i) all.push_back(f.join("p" + std::to_string(i), i * 3 / most_participants));
+  for (std::uint32_t i = 0; i < max_participants; ++i) all.push_back(f.join("p" + std::to_string(i), i * 3 / max_participants));
   EXPECT_FALSE(Participant::join(f.id, {"one more", 1, 1ms}));
-  ASSERT_EQ(f.barrier->refresh(), most_participants);
+  ASSERT_EQ(f.barrier->refresh(), max_participants);
   // One after the other, in the order of their phases.
   std::vector<std::uint64_t> ticks(all.size());
   std::thread thread([&] {
@@ -188,16 +188,16 @@ TEST(Barrier, a_hundred_robots_with_several_contexts_each_take_part) {
 
 // Who is woken wakes those on the same bit of the same word.
 TEST(Participant, places_on_one_bit_are_of_such_as_have_their_ticks_together) {
-  BarrierFixture f({}, most_participants);
+  BarrierFixture f({}, max_participants);
   std::vector<Participant> all;
   constexpr std::size_t bits = 32 * RTMSIM_TICK_WORDS, count = 4 * bits;
-  static_assert(count <= most_participants);
+  static_assert(count <= max_participants);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t kind = i % 6;  // phases, and periods of one phase
     all.push_back(f.join("p", kind < 4 ? kind : 4, kind < 5 ? 10ms : 20ms));
   }
   const Segment& segment = f.simulation->segment();
-  for (std::size_t i = bits; i < most_participants; ++i) {
+  for (std::size_t i = bits; i < max_participants; ++i) {
     const auto& slot = slot_at(segment, i);
     if (load(slot.owner) == 0) continue;
     const auto& same_bit = slot_at(segment, i % bits);

@@ -34,10 +34,10 @@ async function read_all(changes) {
   const { playback, store, wire, world } = window.studio;
   const turn = () => new Promise((resolve) => { const { port1, port2 } = new MessageChannel(); port1.onmessage = resolve; port2.postMessage(0); });
   // Nothing is on its way: no request, no world. A turn is one of the event loop, not a time.
-  const most_turns = 20000;
+  const max_turns = 20000;
   const settle = async () => {
     let still = 0;
-    for (let i = 0; i < most_turns && still < 5; ++i) {
+    for (let i = 0; i < max_turns && still < 5; ++i) {
       await turn();
       still = wire.open.size === 0 && world.loading < 0 ? still + 1 : 0;
     }

@@ -143,7 +143,7 @@ TEST(ClientMessage, says_in_one_line_what_is_wrong) {
         std::string(R"({"op":"request","id":1,"name":7})"), std::string(R"({"op":"request","id":1,"name":"run","args":[]})"),
         std::string(R"({"op":"subscribe"})"), std::string(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"),
         std::string(R"({"op":"subscribe","subscriptions":[1]})"), std::string(R"({"op":"unsubscribe","subscriptionIds":[4294967296]})"),
-        deep, std::string(studio::most_message + 1, ' ')}) {
+        deep, std::string(studio::max_message + 1, ' ')}) {
     const auto message = studio::parse_message(text);
     ASSERT_FALSE(message) << text.substr(0, 100);
     EXPECT_EQ(message.error().message.find('\n'), std::string::npos);

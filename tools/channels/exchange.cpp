@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t smallest_block = 1024;  // [bytes]
 constexpr std::size_t largest_free = 4 << 20;
-constexpr std::size_t most_free = 8;
+constexpr std::size_t max_free = 8;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ struct Blocks {
     block->heads.clear();
     block->used = 0;
     auto blocks = free.lock();
-    if (blocks->size() < most_free && block->capacity <= largest_free) blocks->push_back(std::move(block));
+    if (blocks->size() < max_free && block->capacity <= largest_free) blocks->push_back(std::move(block));
   }
 };
 
@@ -82,7 +82,7 @@ bool Batch::is_empty() const { return !block_; }
 namespace {
 
 constexpr std::chrono::seconds last_wait{5};
-constexpr std::size_t most_channels = 65535;
+constexpr std::size_t max_channels = 65535;
 constexpr std::chrono::milliseconds gather_period{10};  // after the first sample, before a sink is given what has come
 
 using SharedBlock = std::shared_ptr<const Block>;
@@ -114,7 +114,7 @@ class Outlet {
     const std::size_t size = block->size();
     auto data = data_.lock();
     const auto has_room = [&] {
-      return data->failure || data->is_ending || data->queue.empty() || data->octets + size <= options_.most_octets;
+      return data->failure || data->is_ending || data->queue.empty() || data->octets + size <= options_.max_octets;
     };
     if (!has_room()) {
       changed_.notify_one();
@@ -169,7 +169,7 @@ class Outlet {
 
   // What is not to wait for more samples.
   bool is_urgent(const Data& data) const {
-    return data.is_ending || data.rests_wanted != data.rests_done || data.octets >= options_.most_octets / 4;
+    return data.is_ending || data.rests_wanted != data.rests_done || data.octets >= options_.max_octets / 4;
   }
 
   Work next() {
@@ -273,7 +273,7 @@ void Exchange::attach(std::shared_ptr<Sink> sink, const QueueOptions& options) {
 
 base::Result<ChannelId> Exchange::open(Channel channel) {
   auto data = state_->data.lock();
-  if (data->channels.size() >= most_channels) return base::Error{"channel " + channel.topic + ": is one too many; at most 65535"};
+  if (data->channels.size() >= max_channels) return base::Error{"channel " + channel.topic + ": is one too many; at most 65535"};
   data->channels.push_back(std::make_shared<const Channel>(std::move(channel)));
   data->sequences.push_back(0);
   data->dropped.push_back(0);

@@ -35,7 +35,7 @@ class Sink {
 };
 
 struct QueueOptions {
-  std::size_t most_octets = 64 << 20;
+  std::size_t max_octets = 64 << 20;
   std::chrono::milliseconds timeout{0};
 };
 

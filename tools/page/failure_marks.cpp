@@ -7,7 +7,7 @@
 namespace page {
 namespace {
 
-constexpr std::size_t most_marks = 500;
+constexpr std::size_t max_marks = 500;
 
 // As a word of its own: "Laser0" is not in "RTCLaser0".
 std::size_t place_of(const std::string& text, const std::string& name) {
@@ -63,7 +63,7 @@ void mark_failures(Json& summary, const studio::RecordingFacts& facts, const Jso
     summary["at"] = mark.at("time");
     if (!mark.value("subject", "").empty()) summary["select"] = mark.at("subject");
   }
-  while (marks.size() > most_marks) marks.erase(marks.size() - 1);
+  while (marks.size() > max_marks) marks.erase(marks.size() - 1);
   summary["marks"] = std::move(marks);
   summary.erase("failures");
 }

@@ -16,13 +16,13 @@ using base::Result;
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-constexpr nanoseconds sample_interval = 20ms;          // of a signal, at least
-constexpr nanoseconds bulk_interval = 100ms;           // of one with many numbers
-constexpr std::size_t bulk = 64;                       // numbers of a sample; arrays of as many are rounded
-constexpr std::size_t most_numbers = 20000;            // of a sample
-constexpr std::size_t most_bytes = 20 * most_numbers;  // of a sample; as text a number has up to 20
-constexpr double resolution = 1000;                    // of rounded numbers: 1/1000 of their unit
-constexpr std::size_t most_sonars = 64;                // of a ring
+constexpr nanoseconds sample_interval = 20ms;        // of a signal, at least
+constexpr nanoseconds bulk_interval = 100ms;         // of one with many numbers
+constexpr std::size_t bulk = 64;                     // numbers of a sample; arrays of as many are rounded
+constexpr std::size_t max_numbers = 20000;           // of a sample
+constexpr std::size_t max_bytes = 20 * max_numbers;  // of a sample; as text a number has up to 20
+constexpr double resolution = 1000;                  // of rounded numbers: 1/1000 of their unit
+constexpr std::size_t max_sonars = 64;               // of a ring
 
 // Rounds arrays of many numbers; returns how many numbers the value has.
 std::size_t rounded(Json& value, bool& is_rounded) {
@@ -95,7 +95,7 @@ void PageSamples::find_channels(nanoseconds from) {
       add(found->second, {.topic = topic});
     } else {
       std::size_t count = 0;
-      while (count < most_sonars && topics.contains(topic + "/" + std::to_string(count))) ++count;
+      while (count < max_sonars && topics.contains(topic + "/" + std::to_string(count))) ++count;
       for (std::size_t i = 0; i < count; ++i)
         add(topics.at(topic + "/" + std::to_string(i)), {.topic = topic, .of_ring = count, .number = i});
       if (count > 0 && !rings_.contains(topic)) rings_[topic] = Json{{"ranges", std::vector<double>(count, 0.0)}};
@@ -140,7 +140,7 @@ Result<void> PageSamples::add_message(const mcap::Message& message, PagePart& pa
     return {};
   }
   if (signal.is_image) return add_image(message, signal, part);
-  if (message.data.size() > most_bytes) {  // its values alone would take many times as much memory
+  if (message.data.size() > max_bytes) {  // its values alone would take many times as much memory
     signal.next = time + bulk_interval - 1ms;
     ++too_large_[signal.topic];
     return {};
@@ -157,7 +157,7 @@ Result<void> PageSamples::add_message(const mcap::Message& message, PagePart& pa
   const std::size_t numbers = rounded(*value, is_rounded);
   if (is_rounded) rounded_.insert(signal.topic);
   signal.next = time + (numbers >= bulk ? bulk_interval : sample_interval) - 1ms;  // what comes at this rate is kept
-  if (numbers > most_numbers) {
+  if (numbers > max_numbers) {
     ++too_large_[signal.topic];
   } else {
     add_sample(signal.topic, facts_->seconds(time), std::move(*value), part);
@@ -187,7 +187,7 @@ std::vector<std::string> PageSamples::left_out() const {
   for (const auto& [topic, count] : thinned_)
     lines.push_back(topic + ": " + std::to_string(count) + " samples between those that are shown");
   for (const auto& [topic, count] : too_large_)
-    lines.push_back(topic + ": " + std::to_string(count) + " samples with more than " + std::to_string(most_numbers) + " numbers");
+    lines.push_back(topic + ": " + std::to_string(count) + " samples with more than " + std::to_string(max_numbers) + " numbers");
   for (const auto& topic : rounded_) lines.push_back(topic + ": arrays are rounded to 0.001");
   return lines;
 }

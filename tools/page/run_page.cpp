@@ -34,8 +34,8 @@ constexpr std::string_view marker = "<!--run-->";   // in the viewer: the place 
 constexpr nanoseconds unsettled = 2s;               // at the end of a recording that grows: samples of these times may still come
 constexpr std::uintmax_t first_growth = 4U << 20U;  // [bytes] of a recording, until it is looked at
 constexpr std::chrono::milliseconds look_interval{100};
-constexpr double growth_share = 1.25;       // and looked at again: all looks together read a few times what there is
-constexpr std::size_t most_changes = 1000;  // of the parameters of one component
+constexpr double growth_share = 1.25;      // and looked at again: all looks together read a few times what there is
+constexpr std::size_t max_changes = 1000;  // of the parameters of one component
 
 Result<std::string> file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -300,7 +300,7 @@ class RunPage {
     for (const auto& [id, channel] : reader.channels()) {
       if (channel.topic != "/rtc/" + instance + "/configuration") continue;
       reader.seek({.channels = {id}});
-      while (times.size() < most_changes) {
+      while (times.size() < max_changes) {
         const auto message = reader.next();
         if (!message || !message->has_value()) break;
         times.push_back(studio::to_nanoseconds((*message)->log_time));

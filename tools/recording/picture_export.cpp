@@ -14,7 +14,7 @@ namespace recorder {
 
 namespace {
 
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
+constexpr std::uint64_t max_pixels = std::uint64_t{1} << 26;
 
 std::uint32_t bytes_of(Picture::Kind kind) {
   switch (kind) {
@@ -33,7 +33,7 @@ std::uint32_t bytes_of(Picture::Kind kind) {
 base::Result<Picture> checked(Picture picture) {
   const auto wrong = base::Error{"a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels in " +
                                  std::to_string(picture.pixels.size()) + " bytes"};
-  if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > most_pixels) return wrong;
+  if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > max_pixels) return wrong;
   if (picture.stride < std::size_t{bytes_of(picture.kind)} * picture.width || picture.stride > INT32_MAX) return wrong;
   if (picture.pixels.size() < picture.stride * (picture.height - 1) + std::size_t{bytes_of(picture.kind)} * picture.width) return wrong;
   return picture;

@@ -7,7 +7,7 @@ namespace recorder {
 
 namespace {
 
-constexpr std::size_t most_ahead = 8 << 20;     // that wait
+constexpr std::size_t max_ahead = 8 << 20;      // that wait
 constexpr std::size_t piece_octets = 64 << 10;  // that are handed over together
 constexpr std::chrono::seconds wait_period{1};  // of who waits; whoever has something says so at once
 
@@ -27,8 +27,8 @@ ReadAhead::~ReadAhead() {
 // False when nobody wants more.
 bool ReadAhead::hand_over(std::deque<Sample>& samples, std::size_t octets) {
   auto data = data_.lock();
-  while (!data->is_ending && data->octets > most_ahead)
-    data.wait_for(changed_, wait_period, [&] { return data->is_ending || data->octets <= most_ahead; });
+  while (!data->is_ending && data->octets > max_ahead)
+    data.wait_for(changed_, wait_period, [&] { return data->is_ending || data->octets <= max_ahead; });
   for (Sample& sample : samples) data->samples.push_back(std::move(sample));
   data->octets += octets;
   samples.clear();

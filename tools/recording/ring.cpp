@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* record_name = "ring";
-constexpr std::size_t most_held = 256 << 20;  // [bytes] of latched samples
+constexpr std::size_t max_held = 256 << 20;  // [bytes] of latched samples
 
 std::uint64_t number_at(const mcap::Texts& texts, const char* key) {
   const auto found = texts.find(key);
@@ -146,8 +146,8 @@ base::Result<void> RingMerge::hold(std::uint16_t channel, const mcap::Message& m
   Held& held = held_[channel];
   held_octets_ += message.data.size();
   held_octets_ -= held.data.size();
-  if (held_octets_ > most_held)
-    return base::Error{"what holds in a ring is more than " + std::to_string(most_held >> 20) + " MiB, which is not put together"};
+  if (held_octets_ > max_held)
+    return base::Error{"what holds in a ring is more than " + std::to_string(max_held >> 20) + " MiB, which is not put together"};
   held = {message, std::string(message.data)};
   return {};
 }

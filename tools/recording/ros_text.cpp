@@ -19,7 +19,7 @@ using RosKind = RosDefinition::Kind;
 using Message = RosDefinition::Message;
 
 constexpr int deepest_message = 32;                  // messages in each other
-constexpr std::size_t most_definitions = 10'000;     // in one text
+constexpr std::size_t max_definitions = 10'000;      // in one text
 constexpr std::size_t of_message = 2, of_field = 3;  // what a message and its name for a field cost beside the values
 
 base::Error wrong(const std::string& what) { return base::Error{"ros2msg: " + what}; }
@@ -112,7 +112,7 @@ class Cdr {
 class Decoder {
  public:
   Decoder(const std::vector<Message>& messages, Cdr cdr)
-      : messages_(messages), cdr_(cdr), values_left_(std::min(16 * cdr.left() + 1000, most_values)) {}
+      : messages_(messages), cdr_(cdr), values_left_(std::min(16 * cdr.left() + 1000, max_values)) {}
 
   // Empty when the octets end too early.
   std::optional<Json> message(std::size_t place, int depth) {
@@ -221,7 +221,7 @@ base::Result<RosDefinition> RosDefinition::parse(std::string_view text) {
     begin = end + 1;
     if (line.starts_with("====")) continue;
     if (line.starts_with("MSG:")) {
-      if (all.messages_.size() >= most_definitions) return wrong("more than " + std::to_string(most_definitions) + " definitions");
+      if (all.messages_.size() >= max_definitions) return wrong("more than " + std::to_string(max_definitions) + " definitions");
       const auto name = short_name(trimmed(line.substr(4)));
       places.emplace(name, all.messages_.size());
       all.messages_.push_back({name, {}});
@@ -267,7 +267,7 @@ base::Result<Json> RosDefinition::decode(std::string_view octets) const {
   auto value = Decoder(messages_, Cdr(octets.substr(4), octets[1] == 1)).message(0, 0);
   if (!value)
     return wrong("a sample ends too early, is deeper than " + std::to_string(deepest_message) + " messages, or has more than " +
-                 std::to_string(most_values) + " values");
+                 std::to_string(max_values) + " values");
   return std::move(*value);
 }
 

@@ -14,7 +14,7 @@
 namespace recorder {
 
 // Of one sample that is shown as JSON; each takes sixteen octets of memory, a named one more.
-inline constexpr std::size_t most_values = std::size_t{1} << 23;
+inline constexpr std::size_t max_values = std::size_t{1} << 23;
 
 class RosDefinition {
  public:

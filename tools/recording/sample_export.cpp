@@ -62,7 +62,7 @@ class FileNames {
   std::set<std::string> used_;
 };
 
-constexpr std::size_t most_columns = std::size_t{1} << 18;
+constexpr std::size_t max_columns = std::size_t{1} << 18;
 
 // A table: time and the members of the first sample are its columns.
 class Table {
@@ -77,7 +77,7 @@ class Table {
   }
   void add(mcap::Time time, const Json& value) {
     std::map<std::string, Json> members;
-    for (auto& [name, member] : members_of(value, most_columns)) members[name] = std::move(member);
+    for (auto& [name, member] : members_of(value, max_columns)) members[name] = std::move(member);
     out_ << seconds_text(time);
     for (const std::string& column : columns_) {
       const auto member = members.find(column);
@@ -122,9 +122,9 @@ base::Result<Exported> export_tables(const ExportOptions& options, tools::Report
     if (!value) return fail(value.error());
     auto found = tables.find(message.channel);
     if (found == tables.end()) {
-      const auto first = members_of(*value, most_columns + 1);
-      if (first.size() > most_columns)
-        return fail({"channel " + base::in_quotes(topic) + ": has more than " + std::to_string(most_columns) +
+      const auto first = members_of(*value, max_columns + 1);
+      if (first.size() > max_columns)
+        return fail({"channel " + base::in_quotes(topic) + ": has more than " + std::to_string(max_columns) +
                      " members, which is too much for a table; recording cat prints them"});
       const auto file = std::filesystem::path(options.folder) / (names.of(topic, message.channel) + ".csv");
       found = tables.emplace(message.channel, std::make_unique<Table>(file, first)).first;

@@ -57,7 +57,7 @@ base::Result<void> check_json(std::string_view text) {
     if ((c == ']' || c == '}') && depth > 0) --depth;
     if ((c == '[' || c == '{') && ++depth > deepest)
       return base::Error{"a sample is nested deeper than " + std::to_string(deepest) + " levels"};
-    if (values > most_values) return base::Error{"a sample has more than " + std::to_string(most_values) + " values"};
+    if (values > max_values) return base::Error{"a sample has more than " + std::to_string(max_values) + " values"};
   }
   return {};
 }
@@ -94,7 +94,7 @@ base::Result<Json> SampleValues::of(const mcap::Message& message) {
   if (CORBA::is_nil(type)) return wrong("the data type " + base::in_quotes(name) + " is not known");
   if (message.data.size() < 4) return wrong("a sample has no bytes for its byte order");
   const auto* octets = reinterpret_cast<const unsigned char*>(message.data.data());
-  auto value = tools::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, most_values);
+  auto value = tools::decode(type, {octets + 4, message.data.size() - 4}, octets[1] == 1, max_values);
   if (!value) return wrong(value.error().message);
   return std::move(*value);
 }

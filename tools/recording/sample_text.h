@@ -14,7 +14,7 @@ namespace recorder {
 using Json = nlohmann::ordered_json;
 
 // What the samples of a file say: types of ports by their IDL, definitions of ROS 2, JSON as it is; of others an error that names the
-// encoding. Keeps what it has learnt of the schemas. A sample of more than most_values values, or of JSON that is nested too deep, is an
+// encoding. Keeps what it has learnt of the schemas. A sample of more than max_values values, or of JSON that is nested too deep, is an
 // error.
 class SampleValues {
  public:
@@ -29,7 +29,7 @@ class SampleValues {
 };
 
 // "data.vx" -> 0.5, "ranges[0]" -> 3.1: the numbers, texts and truths of a value with their places, in its order; not more than `most`.
-std::vector<std::pair<std::string, Json>> members_of(const Json& value, std::size_t most = most_values);
+std::vector<std::pair<std::string, Json>> members_of(const Json& value, std::size_t most = max_values);
 // "data" and "vx" -> "data.vx".
 std::string place_of(const std::string& outer, const std::string& key);
 

@@ -11,7 +11,7 @@ namespace recorder {
 
 namespace {
 
-constexpr std::size_t most_told = 5;  // broken chunks
+constexpr std::size_t max_shown = 5;  // broken chunks
 
 mcap::Time to_time(double seconds) { return mcap::Time(static_cast<std::uint64_t>(std::llround(seconds * 1e9))); }
 
@@ -64,13 +64,13 @@ std::vector<base::Error> for_each(mcap::Reader& reader, const Selection& selecti
   for (int n = 0; selection.count <= 0 || n < selection.count;) {
     const auto message = reader.next();
     if (!message) {
-      if (++broken <= most_told) errors.push_back(message.error());
+      if (++broken <= max_shown) errors.push_back(message.error());
       continue;
     }
     if (!message->has_value() || !take(**message)) break;
     ++n;
   }
-  if (broken > most_told) errors.push_back({base::in_quotes(selection.file) + ": ... and " + std::to_string(broken - most_told) + " more"});
+  if (broken > max_shown) errors.push_back({base::in_quotes(selection.file) + ": ... and " + std::to_string(broken - max_shown) + " more"});
   return errors;
 }
 

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 using base::Error;
 using base::Result;
 
-constexpr std::size_t most_row_bytes = std::size_t{4} << 20;  // of rows
-constexpr std::chrono::minutes campaign_limit{1};             // the end of the studio waits as long
+constexpr std::size_t max_row_bytes = std::size_t{4} << 20;  // of rows
+constexpr std::chrono::minutes campaign_limit{1};            // the end of the studio waits as long
 
 // Without the name of the program before it.
 Result<std::string> output_of_rtse(std::vector<std::string> words) {
@@ -58,7 +58,7 @@ std::vector<std::string> replay_words(const std::string& file, const std::string
 Result<Json> campaign_results(const fs::path& folder, const fs::path& file) {
   const auto csv = output_of_rtse(base::command_words({"results"}, {file.string()}, {"--csv"}));
   if (!csv) return csv.error();
-  if (csv->size() > most_row_bytes)
+  if (csv->size() > max_row_bytes)
     return Error{"campaign " + base::in_quotes(file.string()) + ": has more than 4 MiB of rows; rtse results shows them"};
   return Json{{"csv", *csv}, {"recordings", recordings_of(folder, fs::path(file).replace_extension(".runs"))}};
 }

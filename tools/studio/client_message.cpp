@@ -12,9 +12,9 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr std::size_t most_depth = 24;
-constexpr std::size_t most_name = 64;
-constexpr std::size_t most_pairs = 1024;
+constexpr std::size_t max_depth = 24;
+constexpr std::size_t max_name = 64;
+constexpr std::size_t max_pairs = 1024;
 
 Result<std::uint32_t> id_of(const Json& json, const char* what) {
   if (!json.is_number_integer() || json < 0 || json > std::numeric_limits<std::uint32_t>::max())
@@ -34,7 +34,7 @@ Result<ClientMessage> request_of(const Json& json) {
   if (!id.is_number_integer()) return Error{"request: expected a whole number as id"};
   request.id = id.get<std::int64_t>();
   const Json& name = member(json, "name");
-  if (!name.is_string() || name.get_ref<const std::string&>().size() > most_name) return Error{"request: expected a name"};
+  if (!name.is_string() || name.get_ref<const std::string&>().size() > max_name) return Error{"request: expected a name"};
   request.name = name.get<std::string>();
   request.args = member(json, "args");
   if (request.args.is_null()) request.args = Json::object();
@@ -58,14 +58,14 @@ bool is_flat_enough(std::string_view text) {
       continue;
     }
     if (c == '"') is_in_text = true;
-    if ((c == '{' || c == '[') && ++depth > most_depth) return false;
+    if ((c == '{' || c == '[') && ++depth > max_depth) return false;
     if ((c == '}' || c == ']') && depth > 0) --depth;
   }
   return true;
 }
 
 Result<ClientMessage> parse_message(std::string_view text) {
-  if (text.size() > most_message) return Error{"message: is longer than 1 MiB"};
+  if (text.size() > max_message) return Error{"message: is longer than 1 MiB"};
   if (!is_flat_enough(text)) return Error{"message: its brackets are more than 24 deep"};
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return Error{"message: expected a JSON object"};
@@ -76,7 +76,7 @@ Result<ClientMessage> parse_message(std::string_view text) {
   auto foxglove = parse_foxglove(name, json);
   if (!foxglove) return foxglove.error();
   if (*foxglove) return std::visit([](auto& message) { return ClientMessage(std::move(message)); }, **foxglove);
-  return ClientMessage(Unused{name.substr(0, most_name)});
+  return ClientMessage(Unused{name.substr(0, max_name)});
 }
 
 std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -123,7 +123,7 @@ Result<std::uint32_t> whole_number_of(const Json& args, const std::string& key) 
 
 Result<std::vector<std::uint32_t>> whole_numbers_of(const Json& args, const std::string& key) {
   const Json& list = member(args, key);
-  if (!list.is_array() || list.size() > most_subscriptions) return expected(key, "a list of at most 1024 whole numbers");
+  if (!list.is_array() || list.size() > max_subscriptions) return expected(key, "a list of at most 1024 whole numbers");
   std::vector<std::uint32_t> numbers;
   for (const Json& entry : list) {
     const auto number = id_of(entry, key.c_str());
@@ -171,9 +171,9 @@ Result<std::vector<std::pair<std::string, std::string>>> values_of(const Json& a
   std::vector<std::pair<std::string, std::string>> values;
   const Json& object = member(args, key);
   if (object.is_null()) return values;
-  if (!object.is_object() || object.size() > most_pairs) return expected(key, "an object of texts");
+  if (!object.is_object() || object.size() > max_pairs) return expected(key, "an object of texts");
   for (const auto& [name, value] : object.items()) {
-    if (!value.is_string()) return expected(key + "." + name.substr(0, most_name), "a text");
+    if (!value.is_string()) return expected(key + "." + name.substr(0, max_name), "a text");
     const auto& text = value.get_ref<const std::string&>();
     if (name.empty() || name.find('\0') != std::string::npos || text.find('\0') != std::string::npos)
       return expected(key, "an object of texts without the octet 0");

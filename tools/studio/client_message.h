@@ -14,10 +14,10 @@
 
 namespace studio {
 
-inline constexpr std::size_t most_message = 1 << 20;   // octets of a frame
-inline constexpr std::size_t most_open_requests = 32;  // of a viewer
-inline constexpr std::size_t most_watches = 512;       // signals that all viewers watch
-inline constexpr std::size_t most_members = 256;       // of a watch
+inline constexpr std::size_t max_message = 1 << 20;   // octets of a frame
+inline constexpr std::size_t max_open_requests = 32;  // of a viewer
+inline constexpr std::size_t max_watches = 512;       // signals that all viewers watch
+inline constexpr std::size_t max_members = 256;       // of a watch
 
 // Of rtmsim.studio.v1.
 struct Request {

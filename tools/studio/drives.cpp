@@ -11,7 +11,7 @@ namespace studio {
 namespace {
 
 constexpr std::chrono::milliseconds timeout{500};
-constexpr std::size_t most_handles = 256;
+constexpr std::size_t max_handles = 256;
 
 // In the order of RTMSIM_JOINT_POSITION to RTMSIM_JOINT_BRAKE.
 constexpr std::array<std::string_view, 5> modes{"position", "velocity", "effort", "free", "brake"};
@@ -66,7 +66,7 @@ base::Result<Drives::Handle*> Drives::handle_of(std::uint64_t viewer, const std:
   if (known != handles_.end() && known->second.iface.type() == type && known->second.iface.status() == shm::Status::live)
     return &known->second;
   handles_.erase(key);
-  if (handles_.size() >= most_handles) return base::Error{"iface " + name + ": 256 robots and arms are moved by hand already"};
+  if (handles_.size() >= max_handles) return base::Error{"iface " + name + ": 256 robots and arms are moved by hand already"};
   auto opened = shm::Iface::open(server_id_, type, name);
   if (!opened) return opened.error();
   return &handles_.emplace(key, Handle{std::move(*opened), Clock::now()}).first->second;

@@ -13,7 +13,7 @@ constexpr char published_octet = 1, call_octet = 2;
 Result<FoxgloveText> subscribe_of(const Json& json) {
   Subscribe message;
   const auto list = json.find("subscriptions");
-  if (list == json.end() || !list->is_array() || list->size() > most_subscriptions)
+  if (list == json.end() || !list->is_array() || list->size() > max_subscriptions)
     return Error{"subscribe: expected a list of at most 1024 subscriptions"};
   for (const Json& entry : *list) {
     const auto id = whole_number_of(entry, "id"), channel = whole_number_of(entry, "channelId");
@@ -34,7 +34,7 @@ Result<FoxgloveText> ids_of(const Json& json, const std::string& key) {
 Result<FoxgloveText> advertise_of(const Json& json) {
   Advertise message;
   const auto list = json.find("channels");
-  if (list == json.end() || !list->is_array() || list->size() > most_subscriptions)
+  if (list == json.end() || !list->is_array() || list->size() > max_subscriptions)
     return Error{"advertise: expected a list of at most 1024 channels"};
   for (const Json& entry : *list) {
     const auto id = whole_number_of(entry, "id");
@@ -53,13 +53,13 @@ std::optional<std::string> answer_id(const Json& json) {
 }
 
 Result<FoxgloveText> get_of(const Json& json) {
-  auto names = texts_of(json, "parameterNames", 0, most_subscriptions);
+  auto names = texts_of(json, "parameterNames", 0, max_subscriptions);
   if (!names) return names.error();
   return FoxgloveText(GetParameters{std::move(*names), answer_id(json)});
 }
 
 Result<FoxgloveText> wish_of(const Json& json, bool is_wanted) {
-  auto names = texts_of(json, "parameterNames", 0, most_subscriptions);
+  auto names = texts_of(json, "parameterNames", 0, max_subscriptions);
   if (!names) return names.error();
   return FoxgloveText(ParameterWish{std::move(*names), is_wanted});
 }
@@ -68,7 +68,7 @@ Result<FoxgloveText> set_of(const Json& json) {
   SetParameters message;
   message.id = answer_id(json);
   const auto list = json.find("parameters");
-  if (list == json.end() || !list->is_array() || list->size() > most_subscriptions)
+  if (list == json.end() || !list->is_array() || list->size() > max_subscriptions)
     return Error{"setParameters: expected a list of at most 1024 parameters"};
   for (const Json& entry : *list) {
     auto name = text_of(entry, "name");

@@ -16,7 +16,7 @@ namespace studio {
 
 using Json = nlohmann::ordered_json;
 
-inline constexpr std::size_t most_subscriptions = 1024;  // of a viewer; also of channels that it publishes, and names in a message
+inline constexpr std::size_t max_subscriptions = 1024;  // of a viewer; also of channels that it publishes, and names in a message
 
 struct Subscribe {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> subscriptions;  // id, channel

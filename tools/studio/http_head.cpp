@@ -113,13 +113,13 @@ std::optional<HeadProblem> check_length(const SingleFields& fields) {
 HeadEnd find_head_end(std::string_view octets) {
   const auto end = octets.find(head_end);
   const auto head = octets.substr(0, end == std::string_view::npos ? octets.size() : end + head_end.size());
-  for (std::size_t i = 0; i < std::min(head.size(), most_head); ++i) {
+  for (std::size_t i = 0; i < std::min(head.size(), max_head); ++i) {
     if (head[i] == '\r'   ? i + 1 < head.size() && head[i + 1] != '\n'
         : head[i] == '\n' ? i == 0 || head[i - 1] != '\r'
                           : is_control(head[i]))
       return {HeadEnd::State::malformed, 0};
   }
-  if (head.size() > most_head) return {HeadEnd::State::too_long, 0};
+  if (head.size() > max_head) return {HeadEnd::State::too_long, 0};
   if (head.starts_with("\r\n")) return {HeadEnd::State::malformed, 0};
   return {end == std::string_view::npos ? HeadEnd::State::incomplete : HeadEnd::State::complete, head.size()};
 }

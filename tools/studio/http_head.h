@@ -9,7 +9,7 @@
 
 namespace studio {
 
-inline constexpr std::size_t most_head = 8192;  // [byte] with the empty line at its end
+inline constexpr std::size_t max_head = 8192;  // [byte] with the empty line at its end
 
 // How much of what has come is a head.
 struct HeadEnd {

@@ -10,8 +10,8 @@
 namespace studio {
 namespace {
 
-constexpr std::size_t most_lines = 1000;
-constexpr std::size_t most_at_once = 200;
+constexpr std::size_t max_lines = 1000;
+constexpr std::size_t max_at_once = 200;
 constexpr double longest_simulation = 1e9;  // [s] later stamps are of the wall clock
 constexpr std::size_t longest_line = 4000;  // [bytes]
 
@@ -49,7 +49,7 @@ LogBook::~LogBook() {
 void LogBook::add(Json line) {
   if (line["time"] > longest_simulation && now_.count() > 0) line["time"] = std::chrono::duration<double>(now_).count();
   lines_.push_back(std::move(line));
-  if (lines_.size() > most_lines) lines_.pop_front();
+  if (lines_.size() > max_lines) lines_.pop_front();
   ++count_;
   told_();
 }
@@ -112,7 +112,7 @@ void LogBook::set_watched(bool is_watched) {
 }
 
 std::optional<std::string> LogBook::event_since(std::uint64_t& seen) const {
-  const auto fresh = std::min<std::uint64_t>({count_ - std::min(seen, count_), lines_.size(), most_at_once});
+  const auto fresh = std::min<std::uint64_t>({count_ - std::min(seen, count_), lines_.size(), max_at_once});
   seen = count_;
   if (fresh == 0) return std::nullopt;
   Json list = Json::array();

@@ -20,7 +20,7 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr std::size_t most_found = 400;  // members of one signal
+constexpr std::size_t max_found = 400;  // members of one signal
 constexpr int deepest = 12;
 constexpr std::chrono::seconds picture_limit{25};
 constexpr double longest_side = 4096;  // [pixels]
@@ -28,7 +28,7 @@ constexpr double longest_side = 4096;  // [pixels]
 // ---- members
 
 void add_member(Json& list, const std::string& path, const char* type) {
-  if (list.size() < most_found && !path.empty()) list.push_back({{"path", path}, {"type", type}});
+  if (list.size() < max_found && !path.empty()) list.push_back({{"path", path}, {"type", type}});
 }
 
 // Of a sequence its first element.
@@ -63,7 +63,7 @@ void add_members(Json& list, const Json& value, const std::string& path) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) add_members(list, inner, (path.empty() ? "" : path + ".") + key);
   } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size() && list.size() < most_found; ++i)
+    for (std::size_t i = 0; i < value.size() && list.size() < max_found; ++i)
       add_members(list, value[i], path + "[" + std::to_string(i) + "]");
   } else {
     add_member(list, path, value.is_boolean() ? "boolean" : value.is_string() ? "text" : "number");

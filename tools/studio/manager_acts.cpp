@@ -23,7 +23,7 @@ using base::Result;
 using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds program_limit{30};
-constexpr std::size_t most_places = 10000;
+constexpr std::size_t max_places = 10000;
 using tools::highest_phase;
 using tools::highest_turn;
 
@@ -255,7 +255,7 @@ Result<Places> places_of(const Json& args) {
   Places places;
   const auto all = args.find("positions");
   if (all == args.end()) return places;
-  if (!all->is_object() || all->size() > most_places) return Error{"positions: expected an object of at most 10000 places"};
+  if (!all->is_object() || all->size() > max_places) return Error{"positions: expected an object of at most 10000 places"};
   for (const auto& [path, numbers] : all->items()) {
     const auto is_number = [](const Json& number) { return number.is_number() && std::abs(number.get<double>()) < 1e6; };
     if (path.empty() || !numbers.is_array() || numbers.size() != 4 || !std::all_of(numbers.begin(), numbers.end(), is_number))

@@ -25,7 +25,7 @@ class Outbox {
   // Makes the frame when its turn comes; nothing: there is nothing new after all.
   using Maker = std::function<std::optional<Frame>()>;
 
-  explicit Outbox(std::size_t most_octets) : most_octets_(most_octets) {}
+  explicit Outbox(std::size_t max_octets) : max_octets_(max_octets) {}
 
   void put(Frame frame);
   // Takes the place of one with this key that still waits.
@@ -36,7 +36,7 @@ class Outbox {
   std::optional<Frame> next();
   bool is_empty() const { return entries_.empty(); }
   // More answers wait than one may hold: the viewer asks and does not read.
-  bool is_overfull() const { return octets_ > most_octets_; }
+  bool is_overfull() const { return octets_ > max_octets_; }
 
  private:
   struct Entry {
@@ -45,7 +45,7 @@ class Outbox {
   };
   void replace(const std::string& key, std::variant<Frame, Maker> what);
 
-  const std::size_t most_octets_;
+  const std::size_t max_octets_;
   std::size_t octets_ = 0;  // of those in order
   std::deque<Entry> entries_;
 };

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_files = 200;
-constexpr std::uintmax_t most_octets = 16 << 20;
+constexpr std::size_t max_files = 200;
+constexpr std::uintmax_t max_octets = 16 << 20;
 constexpr int compression_level = 9;
 
 constexpr std::string_view unbuilt_page =
@@ -83,11 +83,11 @@ base::Result<PageFiles> PageFiles::read(const std::string& folder) {
     const auto name = entry.path().filename().string();
     if (entry.is_regular_file(error) && is_plain(name)) found.emplace_back("/assets/" + name, entry.path());
   }
-  if (found.size() > most_files) return base::Error{"folder " + base::in_quotes(folder) + ": has more than 200 files"};
+  if (found.size() > max_files) return base::Error{"folder " + base::in_quotes(folder) + ": has more than 200 files"};
   std::uintmax_t octets = 0;
   for (const auto& [url, path] : found) {
     octets += fs::file_size(path, error);
-    if (octets > most_octets) return base::Error{"folder " + base::in_quotes(folder) + ": holds more than 16 MiB"};
+    if (octets > max_octets) return base::Error{"folder " + base::in_quotes(folder) + ": holds more than 16 MiB"};
     auto file = read_file(path);
     if (!file) return file.error();
     page.files_[url] = std::move(*file);

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr nanoseconds longest_stride = 2s;  // what is farther is jumped to
 constexpr nanoseconds first_span = 1s;      // before a moment in which its samples are looked for at first
 constexpr int span_growth = 8;
-constexpr std::size_t most_sonars = 64;  // of a ring
+constexpr std::size_t max_sonars = 64;  // of a ring
 constexpr char recorded_picture_octet = static_cast<char>(0x83);
 
 Frame event(std::uint32_t watch, Json more) {
@@ -260,7 +260,7 @@ Result<std::string> Playhead::picture(std::uint32_t number, Channel channel) {
 // ---- wishes ----
 
 Result<Playhead::News> Playhead::begin(std::uint32_t number, Watch watch) {
-  if (watches_.size() >= most_watches && !watches_.contains(number)) return Error{"watch: 512 signals are watched already"};
+  if (watches_.size() >= max_watches && !watches_.contains(number)) return Error{"watch: 512 signals are watched already"};
   auto& kept = watches_[number] = std::move(watch);
   kept.shown = UINT64_MAX;  // whatever it is, it was not shown
   if (const auto found = find(kept.channels, std::max(now_, facts_->from)); !found) return found.error();
@@ -275,7 +275,7 @@ Result<Playhead::News> Playhead::watch(std::uint32_t number, const WatchOrder& o
   if (const auto channel = channel_of(order.topic)) {
     watch.channels = {*channel};
   } else {
-    for (std::size_t i = 0; i < most_sonars; ++i) {
+    for (std::size_t i = 0; i < max_sonars; ++i) {
       const auto one = channel_of(order.topic + "/" + std::to_string(i));
       if (!one) break;
       watch.channels.push_back(*one);

@@ -19,8 +19,8 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr std::size_t most_waiting = 64;     // samples of a channel
-constexpr std::size_t most_of_viewer = 256;  // channels
+constexpr std::size_t max_waiting = 64;     // samples of a channel
+constexpr std::size_t max_of_viewer = 256;  // channels
 
 // Plain CDR, little endian, of a sample in one of the encodings.
 Result<std::vector<unsigned char>> encoded(CORBA::TypeCode_ptr type, const std::string& encoding, const std::string& payload) {
@@ -55,7 +55,7 @@ Result<void> Publications::open(std::uint64_t viewer, const Publication& channel
   const auto what = "channel " + std::to_string(channel.id) + " (" + channel.topic + "): ";
   if (lines_.contains(key)) return Error{what + "is advertised already"};
   const auto first = lines_.lower_bound({viewer, 0}), last = lines_.upper_bound({viewer, UINT32_MAX});
-  if (static_cast<std::size_t>(std::distance(first, last)) >= most_of_viewer) return Error{what + "256 channels are advertised already"};
+  if (static_cast<std::size_t>(std::distance(first, last)) >= max_of_viewer) return Error{what + "256 channels are advertised already"};
   if (channel.encoding != "json" && channel.encoding != "cdr")
     return Error{what + "encoding " + base::in_quotes(channel.encoding) + ", expected json or cdr"};
   for (const Json& component : list_in(system, "components")) {
@@ -90,7 +90,7 @@ Result<void> Publications::publish(std::uint64_t viewer, std::uint32_t channel, 
   if (found == lines_.end()) return Error{"channel " + std::to_string(channel) + ": is not advertised"};
   Line& line = found->second;
   line.waiting.emplace_back(payload);
-  if (line.waiting.size() > most_waiting) line.waiting.pop_front();
+  if (line.waiting.size() > max_waiting) line.waiting.pop_front();
   send(found->first, line);
   return {};
 }

@@ -18,7 +18,7 @@ using base::Error;
 using base::Result;
 
 constexpr std::size_t maker_threads = 2;
-constexpr std::size_t most_points = 20000;  // of a line of a plot
+constexpr std::size_t max_points = 20000;  // of a line of a plot
 
 }  // namespace
 
@@ -133,7 +133,7 @@ void RecordedStudio::hear(Viewer& viewer, std::string_view text) {
 
 void RecordedStudio::handle(ClientSession& session, const Request& request) {
   const auto viewer = session.viewer->id();
-  if (++session.open_requests > most_open_requests) return finish(viewer, request.id, Error{"32 requests are not answered yet"}, {});
+  if (++session.open_requests > max_open_requests) return finish(viewer, request.id, Error{"32 requests are not answered yet"}, {});
   if (request.name == "series") {
     auto order = series_of(request.args);
     return order ? start_series(session, request.id, std::move(*order)) : finish(viewer, request.id, order.error(), {});
@@ -182,7 +182,7 @@ Result<RecordedStudio::Work> RecordedStudio::work_for(const Request& request) co
   if (!topic) return topic.error();
   WatchOrder order{*topic, {}, 0};
   if (args.contains("members")) {
-    auto members = texts_of(args, "members", 0, most_members);
+    auto members = texts_of(args, "members", 0, max_members);
     if (!members) return members.error();
     order.members = std::move(*members);
   }
@@ -192,9 +192,9 @@ Result<RecordedStudio::Work> RecordedStudio::work_for(const Request& request) co
 Result<SeriesOrder> RecordedStudio::series_of(const Json& args) const {
   const auto topic = text_of(args, "topic");
   if (!topic) return topic.error();
-  auto members = texts_of(args, "members", 1, most_members);
+  auto members = texts_of(args, "members", 1, max_members);
   if (!members) return members.error();
-  const auto points = std::clamp(number_or(args, "points", 4000), 10.0, static_cast<double>(most_points));
+  const auto points = std::clamp(number_or(args, "points", 4000), 10.0, static_cast<double>(max_points));
   SeriesOrder order{*topic, std::move(*members), facts_->time_of(number_or(args, "from", -HUGE_VAL)),
                     facts_->time_of(number_or(args, "to", HUGE_VAL)), static_cast<std::size_t>(points)};
   if (order.to < order.from) return Error{"to: expected a time that is not before `from`"};

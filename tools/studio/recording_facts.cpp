@@ -17,8 +17,8 @@ using base::Error;
 using base::Result;
 using std::chrono::nanoseconds;
 
-constexpr std::size_t most_log_lines = 5000;           // of logs that a page is given
-constexpr std::size_t most_states = 100000;            // changes of state, of all components
+constexpr std::size_t max_log_lines = 5000;            // of logs that a page is given
+constexpr std::size_t max_states = 100000;             // changes of state, of all components
 constexpr const char* path_of_unsaved = "/recorded/";  // of a component that no profile names
 
 std::string text_in(const mcap::Texts& texts, const std::string& key) {
@@ -224,7 +224,7 @@ class Facts {
       const auto message = reader_.next();
       if (!message) return message.error();
       if (!message->has_value()) return {};
-      if ((*message)->channel == logs_ && facts_.lines.size() >= most_log_lines) {
+      if ((*message)->channel == logs_ && facts_.lines.size() >= max_log_lines) {
         ++facts_.lines_left_out;
         continue;
       }
@@ -233,7 +233,7 @@ class Facts {
       const double time = facts_.seconds(to_nanoseconds((*message)->log_time));
       if ((*message)->channel == logs_) {
         facts_.lines.push_back({time, level_text(value->value("level", 0)), value->value("name", ""), value->value("msg", "")});
-      } else if (++changes <= most_states) {
+      } else if (++changes <= max_states) {
         facts_.states[states_.at((*message)->channel)].push_back({time, value->value("state", "")});
       }
     }

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 using base::Error;
 using base::Result;
 
-constexpr std::size_t most_recordings = 200;
-constexpr int most_entries = 20000;  // of folders that are looked through
+constexpr std::size_t max_recordings = 200;
+constexpr int max_entries = 20000;  // of folders that are looked through
 constexpr int deepest_folder = 3;
 
 double seconds_of(fs::file_time_type time) {
@@ -38,7 +38,7 @@ Json files_in(const fs::path& folder, const std::string& extension) {
   int looked_at = 0;
   for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, problem), end; !problem && at != end;
        at.increment(problem)) {
-    if (++looked_at > most_entries) break;
+    if (++looked_at > max_entries) break;
     if (at.depth() >= deepest_folder || at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
     std::error_code ignored;  // it was deleted meanwhile
     if (at->path().extension() != extension || !at->is_regular_file(ignored)) continue;
@@ -47,7 +47,7 @@ Json files_in(const fs::path& folder, const std::string& extension) {
     if (!ignored) found.push_back({at->path().lexically_relative(folder).string(), size, seconds_of(time)});
   }
   std::ranges::sort(found, std::greater(), &Found::time);
-  if (found.size() > most_recordings) found.resize(most_recordings);
+  if (found.size() > max_recordings) found.resize(max_recordings);
   Json list = Json::array();
   for (const auto& [name, size, time] : found) list.push_back({{"file", name}, {"size", size}, {"time", time}});
   return list;

@@ -16,7 +16,7 @@ namespace {
 using base::Error;
 using base::Result;
 
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 26;
+constexpr std::uint64_t max_pixels = std::uint64_t{1} << 26;
 constexpr int jpeg_quality = 85;
 
 struct Coding {
@@ -120,8 +120,8 @@ Result<std::string> jpeg_of(const RawPicture& picture, base::JpegEncoder& encode
   if (coding == codings().end())
     return Error{"its pictures are of encoding " + base::in_quotes(std::string(picture.encoding)) + ", which is not shown"};
   const auto row = coding->second.bytes * picture.width;
-  if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > most_pixels || picture.stride < row ||
-      picture.stride > most_pixels * 4 || picture.data.size() < picture.stride * (picture.height - 1) + row)
+  if (picture.width == 0 || picture.height == 0 || std::uint64_t{picture.width} * picture.height > max_pixels || picture.stride < row ||
+      picture.stride > max_pixels * 4 || picture.data.size() < picture.stride * (picture.height - 1) + row)
     return Error{"a picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels in " +
                  std::to_string(picture.data.size()) + " bytes"};
   if (coding->second.pixels)

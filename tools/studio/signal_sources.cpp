@@ -18,9 +18,9 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto source_return_period = 500ms;  // a source that is away is looked for so often
-constexpr std::size_t most_samples_waiting = 256;
-constexpr double farthest_stamp = 1000;                   // [s] from now: what is farther is of another clock
-constexpr std::size_t most_octets_of_samples = 16 << 20;  // of samples of a port that wait
+constexpr std::size_t max_samples_waiting = 256;
+constexpr double farthest_stamp = 1000;                  // [s] from now: what is farther is of another clock
+constexpr std::size_t max_octets_of_samples = 16 << 20;  // of samples of a port that wait
 
 // Without a lease for subscribing it shows what others have the sensor measure.
 class IfaceSource final : public SignalSource {
@@ -128,13 +128,13 @@ class PortTap : public std::enable_shared_from_this<PortTap> {
 
   // On the ORB's threads.
   void put(std::span<const unsigned char> payload, bool is_little_endian) {
-    if (payload.size() > most_octets_of_samples) return;
+    if (payload.size() > max_octets_of_samples) return;
     Octets octets{{payload.begin(), payload.end()}, is_little_endian};
     auto data = data_.lock();
     data->heard = Clock::now();
     data->octets += payload.size();
     data->waiting.push_back(std::move(octets));
-    while (data->waiting.size() > most_samples_waiting || data->octets > most_octets_of_samples) {
+    while (data->waiting.size() > max_samples_waiting || data->octets > max_octets_of_samples) {
       data->octets -= data->waiting.front().payload.size();
       data->waiting.pop_front();
     }

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto signals_period = 10ms;
-constexpr std::size_t most_samples = 256;  // of an event
+constexpr std::size_t max_samples = 256;  // of an event
 constexpr auto rate_period = 1s;
 
 }  // namespace
@@ -51,7 +51,7 @@ Signals::~Signals() {
 
 base::Result<void> Signals::watch(const WatchKey& key, WatchOrder order) {
   auto data = data_.lock();
-  if (data->orders.size() >= most_watches && !data->orders.contains(key)) return base::Error{"watch: 512 signals are watched already"};
+  if (data->orders.size() >= max_watches && !data->orders.contains(key)) return base::Error{"watch: 512 signals are watched already"};
   data->orders[key] = std::move(order);
   ++data->changes;
   changed_.notify_all();
@@ -158,8 +158,8 @@ void Signals::flush(const WatchKey& key, Watch& watch, Source& from) {
   }
   if (watch.times.empty()) return;
   watch.next = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / watch.order.hz));
-  if (const auto count = watch.times.size(); count > most_samples) {
-    const auto surplus = static_cast<std::ptrdiff_t>(count - most_samples);
+  if (const auto count = watch.times.size(); count > max_samples) {
+    const auto surplus = static_cast<std::ptrdiff_t>(count - max_samples);
     watch.times.erase(watch.times.begin(), watch.times.begin() + surplus);
     watch.rows.erase(watch.rows.begin(), watch.rows.begin() + surplus);
   }

@@ -23,8 +23,8 @@ using base::Result;
 
 constexpr std::size_t worker_threads = 8;
 constexpr std::chrono::milliseconds tend_period{100};
-constexpr std::size_t most_in_line = 256;  // acts that wait for one about the same component or model
-constexpr unsigned tends_per_look = 10;    // for channels, whose simulator may have come back
+constexpr std::size_t max_queued = 256;  // acts that wait for one about the same component or model
+constexpr unsigned tends_per_look = 10;  // for channels, whose simulator may have come back
 
 constexpr const char* poses_key = "poses";
 constexpr const char* lines_key = "logs";
@@ -160,7 +160,7 @@ Result<Json> Studio::start_watch(const ClientSession& session, const Json& args)
   if (!topic) return topic.error();
   order.topic = book_.source_of(*topic);
   if (args.contains("members")) {
-    auto members = texts_of(args, "members", 1, most_members);
+    auto members = texts_of(args, "members", 1, max_members);
     if (!members) return members.error();
     order.members = std::move(*members);
   }
@@ -211,7 +211,7 @@ void Studio::start_act(ClientSession& session, const Request& request, const Act
 }
 
 Result<void> Studio::carry_out(ClientSession& session, const std::string& subject, Plan plan, Finish finish) {
-  if (session.open_requests >= most_open_requests) return Error{"32 requests are not answered yet"};
+  if (session.open_requests >= max_open_requests) return Error{"32 requests are not answered yet"};
   const auto work = [this, subject, viewer = session.viewer->id(), plan = std::move(plan), finish = std::move(finish)] {
     Result<Json> result = Error{"internal error (unexpected exception)"};
     try {
@@ -234,7 +234,7 @@ Result<void> Studio::carry_out(ClientSession& session, const std::string& subjec
 bool Studio::give(const std::string& subject, std::function<void()> work) {
   if (subject.empty()) return workers_->give(std::move(work));
   if (const auto line = lines_.find(subject); line != lines_.end()) {
-    if (line->second.size() >= most_in_line) return false;
+    if (line->second.size() >= max_queued) return false;
     line->second.push_back(std::move(work));
     return true;
   }

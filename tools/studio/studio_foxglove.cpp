@@ -212,7 +212,7 @@ void Studio::subscribe(ClientSession& session, const Subscribe& message) {
     const auto known = static_cast<channels::ChannelId>(channel);
     if (channel != known || !channels_->open_channels().contains(known)) {
       session.viewer->send(text_frame(status(2, "channel " + std::to_string(channel) + ": is not there")));
-    } else if (session.subscriptions.size() >= most_subscriptions) {
+    } else if (session.subscriptions.size() >= max_subscriptions) {
       session.viewer->send(text_frame(status(2, "too many subscriptions, at most 1024")));
     } else {
       session.subscriptions[id] = known;

@@ -23,7 +23,7 @@ using tools::Transition;
 using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds exit_limit{10};
-constexpr std::size_t most_ports = 64;
+constexpr std::size_t max_ports = 64;
 
 Session session_of(const ActContext& context) { return {context.orb, context.name_server, context.call_limit}; }
 
@@ -103,7 +103,7 @@ Result<Ends> find_ends(const ActContext& context, const std::vector<std::string>
 }
 
 Result<Plan> connect(const ActContext& context, const Json& args) {
-  const auto paths = texts_of(args, "ports", 2, most_ports);
+  const auto paths = texts_of(args, "ports", 2, max_ports);
   if (!paths) return paths.error();
   const auto values = values_of(args, "properties");
   if (!values) return values.error();
@@ -264,7 +264,7 @@ std::string misfit(const std::vector<const tools::PortView*>& ports) {
 }
 
 Result<Plan> connection_options(const ActContext& context, const Json& args) {
-  const auto paths = texts_of(args, "ports", 2, most_ports);
+  const auto paths = texts_of(args, "ports", 2, max_ports);
   if (!paths) return paths.error();
   return Plan{"", [context, paths = *paths]() -> Result<Json> {
                 const auto ends = find_ends(context, paths);

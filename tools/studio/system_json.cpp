@@ -72,7 +72,7 @@ class PortIndex {
   explicit PortIndex(const std::vector<ComponentView>& components) {
     for (const auto& component : components) {
       for (const auto& port : component.ports) {
-        if (!CORBA::is_nil(port.object)) ports_.emplace(port.object->_hash(most_hash), Known{port.object, port_path(component, port)});
+        if (!CORBA::is_nil(port.object)) ports_.emplace(port.object->_hash(max_hash), Known{port.object, port_path(component, port)});
       }
     }
   }
@@ -80,7 +80,7 @@ class PortIndex {
   // Empty: nobody's.
   std::string path_of(RTC::PortService_ptr port) const {
     if (CORBA::is_nil(port)) return {};
-    const auto [first, last] = ports_.equal_range(port->_hash(most_hash));
+    const auto [first, last] = ports_.equal_range(port->_hash(max_hash));
     for (auto known = first; known != last; ++known) {
       if (known->second.object->_is_equivalent(port)) return known->second.path;
     }
@@ -88,7 +88,7 @@ class PortIndex {
   }
 
  private:
-  static constexpr CORBA::ULong most_hash = 0x7fffffff;
+  static constexpr CORBA::ULong max_hash = 0x7fffffff;
   struct Known {
     RTC::PortService_ptr object;  // of the component, which lives as long
     std::string path;

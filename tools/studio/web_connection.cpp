@@ -19,7 +19,7 @@ using Code = boost::system::error_code;
 using Response = http::response<http::span_body<const char>>;
 
 constexpr std::chrono::seconds reading_limit{10}, idle_limit{60}, writing_limit{120};
-constexpr std::size_t most_buffered = 2 * most_head;
+constexpr std::size_t max_buffered = 2 * max_head;
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -76,7 +76,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     if (head.state == HeadEnd::State::too_long) return refuse(431, "the header is longer than 8 KiB");
     if (head.state == HeadEnd::State::malformed) return refuse(400, "this is no HTTP request");
     if (head.state == HeadEnd::State::complete) return have_head(head.size);
-    const auto room = std::min<std::size_t>(most_buffered - buffer_.size(), 4096);
+    const auto room = std::min<std::size_t>(max_buffered - buffer_.size(), 4096);
     stream_.async_read_some(buffer_.prepare(room), [self = shared_from_this()](Code problem, std::size_t count) {
       self->buffer_.commit(count);
       self->have_read(problem);
@@ -133,7 +133,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
     if (path != "/ws") return refuse(404, "the WebSocket is at /ws");
     if (protocol.empty())
       return refuse(400, "expected the WebSocket subprotocol rtmsim.studio.v1, foxglove.sdk.v1 or foxglove.websocket.v1");
-    if (shared_->viewers >= most_viewers) return refuse(503, "there are 32 viewers already");
+    if (shared_->viewers >= max_viewers) return refuse(503, "there are 32 viewers already");
     stream_.expires_never();  // the WebSocket has its own
     serve_viewer(shared_, std::move(stream_), std::move(request_), protocol);
   }
@@ -218,7 +218,7 @@ class Connection final : public HttpPeer, public std::enable_shared_from_this<Co
 
   std::shared_ptr<WebShared> shared_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{most_buffered};
+  beast::flat_buffer buffer_{max_buffered};
   HttpRequest request_;
   std::unique_ptr<Response> response_;
   std::optional<http::serializer<false, http::span_body<const char>>> serializer_;

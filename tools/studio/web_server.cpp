@@ -44,7 +44,7 @@ class Listener final : public WebServer {
   void serve(tcp::socket socket) {
     Code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    if (shared_->peers.size() + shared_->viewers >= most_connections) (void)make_room();
+    if (shared_->peers.size() + shared_->viewers >= max_connections) (void)make_room();
     serve_connection(shared_, std::move(socket));
   }
 

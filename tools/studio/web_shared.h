@@ -16,8 +16,8 @@ namespace studio {
 
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
-inline constexpr std::size_t most_connections = 128;
-inline constexpr std::size_t most_viewers = 32;
+inline constexpr std::size_t max_connections = 128;
+inline constexpr std::size_t max_viewers = 32;
 
 // A connection of HTTP. It may have to go so that another can come; a viewer never has to.
 class HttpPeer {

@@ -18,7 +18,7 @@ namespace websocket = beast::websocket;
 using Code = boost::system::error_code;
 
 constexpr std::chrono::seconds handshake_limit{10}, silence_limit{30};
-constexpr std::size_t most_octets_waiting = 16 << 20;
+constexpr std::size_t max_octets_waiting = 16 << 20;
 constexpr int send_buffer = 256 << 10;  // [octet] what the system keeps for a viewer that is slow
 constexpr int unsent_mark = 32 << 10;   // [octet] with so much unsent the next frame waits here, where a newer one takes its place
 
@@ -47,7 +47,7 @@ class SocketViewer final : public Viewer, public std::enable_shared_from_this<So
       response.set(beast::http::field::server, "rtm-studio");
       response.set(beast::http::field::sec_websocket_protocol, protocol);
     }));
-    socket_.read_message_max(most_message);
+    socket_.read_message_max(max_message);
     socket_.auto_fragment(false);  // some clients expect whole messages
     const int handle = beast::get_lowest_layer(socket_).socket().native_handle();
     setsockopt(handle, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
@@ -118,8 +118,8 @@ class SocketViewer final : public Viewer, public std::enable_shared_from_this<So
   HttpRequest request_;
   std::string_view protocol_;
   std::uint64_t id_;
-  beast::flat_buffer buffer_{most_message};
-  Outbox outbox_{most_octets_waiting};
+  beast::flat_buffer buffer_{max_message};
+  Outbox outbox_{max_octets_waiting};
   std::optional<Frame> sending_;
   bool is_open_ = false;
 };

@@ -7,7 +7,7 @@
 namespace studio {
 namespace {
 
-constexpr std::size_t most_acts_waiting = 256;
+constexpr std::size_t max_acts_waiting = 256;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Workers::~Workers() {
 bool Workers::give(Work work) {
   {
     auto data = data_.lock();
-    if (data->is_ending || data->waiting.size() >= most_acts_waiting) return false;
+    if (data->is_ending || data->waiting.size() >= max_acts_waiting) return false;
     data->waiting.push_back(std::move(work));
   }
   changed_.notify_one();

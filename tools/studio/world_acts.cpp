@@ -16,7 +16,7 @@ using Touches = Plan::Touches;
 
 constexpr std::chrono::seconds usual_limit{10};
 constexpr std::chrono::hours step_limit{24};  // a simulator that dies is noticed anyway, and pause ends it
-constexpr double most_steps = 1e9;
+constexpr double max_steps = 1e9;
 
 using Read = std::function<Json(const shm::Reply&)>;
 
@@ -90,7 +90,7 @@ Result<Plan> step(const ActContext& context, const Json& args) {
     if (!until) return until.error();
     steps = *until;
   }
-  if (!(steps >= 1 && steps <= most_steps)) return Error{"steps: expected 1 to 1e9"};
+  if (!(steps >= 1 && steps <= max_steps)) return Error{"steps: expected 1 to 1e9"};
   const bool is_paced = flag_of(args, "paced");
   std::vector<std::string> words{"step", base::format_number(steps)};
   if (is_paced) words.emplace_back("--paced");

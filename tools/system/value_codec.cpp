@@ -75,10 +75,10 @@ std::u16string to_utf16(const std::string& text) {
 
 class Reader {
  public:
-  Reader(std::span<const unsigned char> bytes, bool little_endian, std::size_t most_values)
+  Reader(std::span<const unsigned char> bytes, bool little_endian, std::size_t max_values)
       : bytes_(bytes),
-        most_values_(most_values),
-        values_left_(most_values),
+        max_values_(max_values),
+        values_left_(max_values),
         swap_(little_endian != (std::endian::native == std::endian::little)) {}
 
   Json read(CORBA::TypeCode_ptr declared) {
@@ -184,12 +184,12 @@ class Reader {
     return array;
   }
   void charge(std::size_t values) {
-    if (values > values_left_) throw ValueFailure{"has more than " + std::to_string(most_values_) + " values"};
+    if (values > values_left_) throw ValueFailure{"has more than " + std::to_string(max_values_) + " values"};
     values_left_ -= values;
   }
 
   std::span<const unsigned char> bytes_;
-  const std::size_t most_values_;
+  const std::size_t max_values_;
   std::size_t values_left_;
   std::size_t at_ = 0;
   bool swap_;
@@ -362,9 +362,9 @@ class Writer {
 
 }  // namespace
 
-Result<Json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian, std::size_t most_values) {
+Result<Json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian, std::size_t max_values) {
   try {
-    return Reader(payload, little_endian, most_values).read(type);
+    return Reader(payload, little_endian, max_values).read(type);
   } catch (const ValueFailure& failure) {
     return Error{std::string("payload of ") + type->id() + " " + failure.message};
   }

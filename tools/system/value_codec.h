@@ -19,7 +19,7 @@ std::vector<std::string> known_data_types();
 // Decodes plain CDR (alignment from the first octet). Cut short, with wild lengths, or more than so many values: an error. A value takes
 // sixteen octets of memory, its octet in the payload one.
 base::Result<nlohmann::ordered_json> decode(CORBA::TypeCode_ptr type, std::span<const unsigned char> payload, bool little_endian = true,
-                                            std::size_t most_values = SIZE_MAX);
+                                            std::size_t max_values = SIZE_MAX);
 // Missing members of objects are zero; unknown ones, wrong kinds and values out of range are errors that name the member.
 base::Result<std::vector<unsigned char>> encode(CORBA::TypeCode_ptr type, const nlohmann::ordered_json& value, bool little_endian = true);
 

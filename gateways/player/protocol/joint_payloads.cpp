@@ -4,7 +4,7 @@
 namespace player {
 namespace {
 
-constexpr std::size_t most_joints = 4096;
+constexpr std::size_t max_joints = 4096;
 
 void put(XdrWriter& out, const Point3d& point) {
   for (const double value : {point.x, point.y, point.z}) out.f64(value);
@@ -59,7 +59,7 @@ std::optional<std::int32_t> decode_joint(std::string_view payload) {
 
 std::optional<std::vector<float>> decode_joint_numbers(std::string_view payload) {
   return whole(payload, [](XdrReader& in) {
-    std::vector<float> values(in.count(sizeof(float), most_joints));
+    std::vector<float> values(in.count(sizeof(float), max_joints));
     for (float& value : values) value = in.f32();
     return values;
   });

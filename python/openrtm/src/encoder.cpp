@@ -13,7 +13,7 @@ namespace python {
 namespace {
 
 // Longer than any message can be.
-constexpr Py_ssize_t most_elements = Py_ssize_t{1} << 28;
+constexpr Py_ssize_t max_elements = Py_ssize_t{1} << 28;
 
 TextCoding chosen_coding = TextCoding::automatic;
 
@@ -250,8 +250,7 @@ void write_sequence(Writer& to, const Type& type, PyObject* value) {
     }
     if (PyBytes_Check(value)) refuse(type, value);
     // Other arrays by their elements.
-    if (const Py_ssize_t size = PySequence_Check(value) ? PySequence_Size(value) : -1; size < 0 || size > most_elements)
-      refuse(type, value);
+    if (const Py_ssize_t size = PySequence_Check(value) ? PySequence_Size(value) : -1; size < 0 || size > max_elements) refuse(type, value);
     list = Ref(PyObject_HasAttrString(value, "tolist") ? PyObject_CallMethod(value, "tolist", nullptr) : PySequence_List(value));
     if (!list || !PyList_Check(list.get())) refuse(type, value);
     value = list.get();

@@ -19,7 +19,7 @@ Courier::~Courier() {
 void Courier::send(Message message) {
   {
     auto data = shared_.lock();
-    if (data->stopping || data->is_finishing || data->gave_up || data->waiting.size() >= most_waiting) return;
+    if (data->stopping || data->is_finishing || data->gave_up || data->waiting.size() >= max_waiting) return;
     data->waiting.push_back(std::move(message));
   }
   condition_.notify_one();

@@ -19,7 +19,7 @@ class Courier {
   // Calls another process; may throw CORBA exceptions. After one the notifier logs one line and stops.
   using Message = std::function<void()>;
   // Maximum number of waiting messages. Further ones are dropped: such a queue belongs to a peer that hangs.
-  static constexpr std::size_t most_waiting = 1000;
+  static constexpr std::size_t max_waiting = 1000;
 
   explicit Courier(std::string name);
   ~Courier();

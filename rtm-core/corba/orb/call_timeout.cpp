@@ -48,12 +48,12 @@ bool is_time_out(const CORBA::Exception& problem) {
 
 namespace {
 
-constexpr int most_timeouts = 3;
+constexpr int max_timeouts = 3;
 
 }  // namespace
 
 ChainDeadline::ChainDeadline(std::chrono::milliseconds timeout_of_one)
-    : timeout_of_one_(timeout_of_one), end_(std::chrono::steady_clock::now() + most_timeouts * timeout_of_one) {}
+    : timeout_of_one_(timeout_of_one), end_(std::chrono::steady_clock::now() + max_timeouts * timeout_of_one) {}
 
 std::chrono::milliseconds ChainDeadline::left() const {
   return std::chrono::ceil<std::chrono::milliseconds>(end_ - std::chrono::steady_clock::now());

@@ -41,7 +41,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::string_view prefix = "giop:guarded:";
 constexpr std::chrono::seconds first_message_time{10};  // for the first whole message of a connection
 constexpr std::chrono::seconds silence{30};             // in the middle of a message
-constexpr std::size_t most_connections = 2000;          // each has a thread
+constexpr std::size_t max_connections = 2000;           // each has a thread
 constexpr std::size_t leaving_files = 16;               // of connections that have been sent away and are not gone yet
 constexpr std::size_t reserved_files = 64;              // for everything that is no connection from outside, and for those
 
@@ -49,7 +49,7 @@ class GuardedConnection;
 
 struct GateState {
   AccessSettings settings{};
-  std::size_t most = most_connections;
+  std::size_t most = max_connections;
   std::map<const omni::giopConnection*, GuardedConnection*> connections{};  // by the connection that is guarded
   Clock::time_point last_complaint{};
   std::size_t complaints = 0;         // that were not logged
@@ -388,7 +388,7 @@ class GuardedTransport final : public omni::giopTransportImpl {
 void set_access(const AccessSettings& settings) {
   static GuardedTransport& transport = *new GuardedTransport;  // known to the ORB from now on
   (void)transport;
-  std::size_t most = most_connections;
+  std::size_t most = max_connections;
   if (const std::size_t allowed = base::raise_descriptor_limit(); allowed > 0) {
     most = std::min(most, allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2);
   }

@@ -32,15 +32,14 @@
 
 namespace {
 
-constexpr std::size_t most_threads = 2000;  // each connection has one
+constexpr std::size_t max_threads = 2000;   // each connection has one
 constexpr std::size_t reserved_files = 64;  // for what is no connection, and for those that are leaving
 
 // So many at a time.
-int most_connections() {
+int max_connections() {
   static const int most = [] {
     const std::size_t allowed = base::raise_descriptor_limit();
-    return static_cast<int>(
-        std::clamp<std::size_t>(allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2, 8, most_threads));
+    return static_cast<int>(std::clamp<std::size_t>(allowed > 2 * reserved_files ? allowed - reserved_files : allowed / 2, 8, max_threads));
   }();
   return most;
 }
@@ -59,7 +58,7 @@ in_port_t own_port(int file) {
 void end_most_silent(int latest) {
   static int highest = 0;  // of all files that were connections; new files have the lowest number that is free
   highest = std::max(highest, latest);
-  if (highest < most_connections()) return;
+  if (highest < max_connections()) return;
   const in_port_t port = own_port(latest);
   int count = 0, silent = -1;
   unsigned longest = 0;  // [ms]
@@ -73,7 +72,7 @@ void end_most_silent(int latest) {
     silent = file;
     longest = info.tcpi_last_data_recv;
   }
-  if (silent < 0 || count <= most_connections()) return;
+  if (silent < 0 || count <= max_connections()) return;
   shutdown(silent, SHUT_RDWR);
   // Its thread closes it, which nobody announces. Without the wait new ones would come faster than old ones go, until there are no files
   // left.
@@ -210,7 +209,7 @@ int let_in(int connection) {
   return connection;
 }
 
-[[gnu::constructor]] void raise_limit() { (void)most_connections(); }
+[[gnu::constructor]] void raise_limit() { (void)max_connections(); }
 
 }  // namespace
 

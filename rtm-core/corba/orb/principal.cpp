@@ -29,7 +29,7 @@
 namespace corba {
 namespace {
 
-constexpr std::size_t most_given = 1'000'000;  // some 40 MB; each connection that a stranger makes gives one or two
+constexpr std::size_t max_references = 1'000'000;  // some 40 MB; each connection that a stranger makes gives one or two
 
 thread_local Principal principal_of_thread = Principal::own;
 
@@ -68,7 +68,7 @@ Principal sender_of(omniObjRef* reference) {
 bool remember(std::uint64_t print, Principal principal) {
   Given& given = Given::instance();
   auto references = given.references.lock();
-  if (references->size() >= most_given && !references->contains(print)) return false;
+  if (references->size() >= max_references && !references->contains(print)) return false;
   const auto [place, is_new] = references->try_emplace(print, principal);
   if (!is_new && place->second != principal) place->second = Principal::network;
   given.are_any.store(true, std::memory_order_release);  // pairs with the load in sender_of
@@ -127,7 +127,8 @@ bool may_keep(CORBA::Object_ptr object, std::chrono::milliseconds timeout) {
   }
   // Not before: it may be one of ours, that we call for ourselves meanwhile.
   if (remember(fingerprint(reference), principal_of_thread)) return true;
-  base::log(base::Level::warn, "doors", "{}: a reference of its call is rejected: untrusted callers have sent {}", caller(), most_given);
+  base::log(base::Level::warn, "doors", "{}: a reference of its call is rejected: untrusted callers have sent {}", caller(),
+            max_references);
   return false;
 }
 

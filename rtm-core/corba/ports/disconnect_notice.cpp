@@ -34,7 +34,7 @@ constexpr auto longest_pause = std::chrono::milliseconds(1000);
 constexpr auto longest_hang = std::chrono::minutes(10);
 constexpr auto longest_absence = std::chrono::hours(24);
 // Each is a thread. Who gives a thousand addresses to ports and answers at none of them is told nothing at further ones.
-constexpr std::size_t most_processes = 1024;
+constexpr std::size_t max_processes = 1024;
 
 std::chrono::milliseconds timeout_of_one() { return std::min(port_call_timeout(), disconnect_notice_limit); }
 
@@ -183,7 +183,7 @@ void tell_later(const std::string& address, RTC::PortService_ptr port, const cha
     auto state = DisconnectNotices::instance().state.lock();
     if (state->is_ending) return;
     const bool has_thread = state->processes.contains(address);
-    if (!has_thread && state->processes.size() >= most_processes) return;
+    if (!has_thread && state->processes.size() >= max_processes) return;
     Process& process = state->processes[address];
     process.hangs = process.hangs || hangs;
     process.untold.push_back({RTC::PortService::_duplicate(port), connector_id, Clock::now() + lasts, std::move(connects)});

@@ -34,7 +34,7 @@ class DirectFetcher final : public Fetcher {
   std::shared_ptr<OutConnection> source_;
 };
 
-constexpr std::size_t most_unread_of_closed = 64;
+constexpr std::size_t max_unread_of_closed = 64;
 
 bool is_same_sample(const rt::Sample& a, const rt::Sample& b) {
   if (a.value || b.value) return a.value == b.value;
@@ -49,7 +49,7 @@ std::uint64_t phase_counter_of_reader() {
 // [octets] of a message with a sample: without end for types that are, as pictures, as long as their user likes.
 std::size_t room_of(const TypeOps& ops) {
   constexpr std::uint64_t around_it = 64 * 1024;  // the head of the message
-  const auto most = ops.codec ? std::nullopt : ops.shape.most_octets();
+  const auto most = ops.codec ? std::nullopt : ops.shape.max_octets();
   return static_cast<std::size_t>(most ? *most + around_it : std::numeric_limits<std::size_t>::max());
 }
 
@@ -264,7 +264,7 @@ void InEngine::tidy() {
   for (auto it = lists->closed->rbegin(); it != lists->closed->rend(); ++it) {
     const std::size_t count = (*it)->unread();
     unread += count;
-    if (count > 0 && unread <= most_unread_of_closed) kept->insert(kept->begin(), *it);
+    if (count > 0 && unread <= max_unread_of_closed) kept->insert(kept->begin(), *it);
   }
   before = std::exchange(lists->closed, std::move(kept));
 }

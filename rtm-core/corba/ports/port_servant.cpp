@@ -28,9 +28,9 @@ constexpr auto longest_wait = std::chrono::seconds(10);
 
 // Every name that the protocol needs is far shorter than the limits; longer ones only fill the memory of all peers.
 base::Result<void> check_profile(const RTC::ConnectorProfile& profile) {
-  if (profile.ports.length() > rt::most_ports_of_a_connection) {
+  if (profile.ports.length() > rt::max_ports_of_a_connection) {
     return base::Error{"connection: has " + std::to_string(profile.ports.length()) + " ports, expected at most " +
-                       std::to_string(rt::most_ports_of_a_connection)};
+                       std::to_string(rt::max_ports_of_a_connection)};
   }
   for (CORBA::ULong i = 0; i < profile.ports.length(); ++i) {
     if (CORBA::is_nil(profile.ports[i])) return base::Error{"connection: a port is nil"};

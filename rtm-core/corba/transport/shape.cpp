@@ -157,7 +157,7 @@ Shape::Node Shape::compile(CORBA::TypeCode_ptr code, int depth) {
 }
 
 // With the most octets that may be needed before each part to align it.
-std::optional<std::uint64_t> Shape::most_octets(const Node& node) {
+std::optional<std::uint64_t> Shape::max_octets(const Node& node) {
   constexpr std::uint64_t number = 4 + 3;  // a length, an enumerator
   constexpr std::uint64_t too_many = std::uint64_t{1} << 31;
   std::uint64_t sum = 0;
@@ -177,7 +177,7 @@ std::optional<std::uint64_t> Shape::most_octets(const Node& node) {
   }
   if (node.kind == Kind::sequence && node.count == 0) return std::nullopt;
   for (const Node& member : node.members) {
-    const auto most = most_octets(member);
+    const auto most = max_octets(member);
     if (!most || *most > too_many) return std::nullopt;
     sum += *most;
   }

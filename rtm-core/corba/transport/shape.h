@@ -32,7 +32,7 @@ class Shape {
 
   // No value is longer [octets]. Nothing when there is no such number: the type has a sequence or a text of any length, or more than can be
   // said of it.
-  std::optional<std::uint64_t> most_octets() const { return most_octets(root_); }
+  std::optional<std::uint64_t> max_octets() const { return max_octets(root_); }
 
  private:
   enum class Kind : std::uint8_t { unknown, number, enumeration, text, sequence, array, structure };
@@ -45,7 +45,7 @@ class Shape {
   class Walk;
 
   static Node compile(CORBA::TypeCode_ptr code, int depth);
-  static std::optional<std::uint64_t> most_octets(const Node& node);
+  static std::optional<std::uint64_t> max_octets(const Node& node);
 
   Node root_;
 };

@@ -12,7 +12,7 @@ namespace RTC_exp {
 
 namespace {
 
-constexpr std::size_t most_groups = 256;  // each is a thread
+constexpr std::size_t max_groups = 256;  // each is a thread
 
 enum Job : int { transitions, execution };
 
@@ -36,9 +36,9 @@ RTC::ReturnCode_t MultilayerCompositeEC::bindComponent(RTC::RTObject_impl* rtc) 
   if (rtc != nullptr && getComponents().empty()) {
     const std::string members = rtc->getConfigService().getConfigurationSet("default").getProperty("members");
     const auto groups = base::split_list(members, '|');
-    if (groups.size() > most_groups) {
+    if (groups.size() > max_groups) {
       RTC_ERROR(("composite %s: members has %zu groups, expected at most %zu", base::in_quotes(rtc->getInstanceNameString()).c_str(),
-                 groups.size(), most_groups));
+                 groups.size(), max_groups));
       return RTC::BAD_PARAMETER;
     }
     for (const std::string& group : groups) {

@@ -10,7 +10,7 @@ namespace RTC {
 namespace {
 
 // Large copies of one listener after the other use the same memory.
-constexpr std::size_t most_kept = 16u << 20;
+constexpr std::size_t max_kept = 16u << 20;
 std::vector<unsigned char>& spare() {
   thread_local std::vector<unsigned char> memory;
   return memory;
@@ -21,7 +21,7 @@ std::vector<unsigned char>& spare() {
 ByteData::ByteData(detail::SampleEvent& event) : event_(&event), is_little_(event.data.order() == rt::ByteOrder::little) {}
 
 ByteData::~ByteData() {
-  if (octets_.capacity() > spare().capacity() && octets_.capacity() <= most_kept) octets_.swap(spare());
+  if (octets_.capacity() > spare().capacity() && octets_.capacity() <= max_kept) octets_.swap(spare());
 }
 
 ByteData::ByteData(const ByteData& other) : is_little_(other.is_little_) { ByteData::writeData(other.getBuffer(), other.getDataLength()); }

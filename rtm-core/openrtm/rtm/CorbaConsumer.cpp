@@ -7,7 +7,7 @@
 namespace RTC {
 namespace {
 
-constexpr std::size_t most_retired = 16;
+constexpr std::size_t max_retired = 16;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void CorbaConsumerBase::store(CORBA::Object_ptr object) {
   std::lock_guard lock(mutex_);
   if (!CORBA::is_nil(object_)) retired_.push_back(object_);
   object_ = CORBA::Object::_duplicate(object);
-  if (retired_.size() > most_retired) {
+  if (retired_.size() > max_retired) {
     dropped = retired_.front();
     retired_.pop_front();
   }

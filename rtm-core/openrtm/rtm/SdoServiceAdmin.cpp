@@ -144,7 +144,7 @@ bool SdoServiceAdmin::removeSdoServiceProvider(const char* id) {
 
 namespace {
 
-constexpr std::size_t most_consumers = 256;  // of one component; each may have a thread, and is told of every event
+constexpr std::size_t max_consumers = 256;  // of one component; each may have a thread, and is told of every event
 
 bool try_to_init(SdoServiceConsumerBase& consumer, RTObject_impl& component, const SDOPackage::ServiceProfile& profile) {
   try {
@@ -168,7 +168,7 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   {
     auto data = impl_->shared.lock();
     enabled = data->enabled_consumers;
-    is_full = data->consumers.size() >= most_consumers;
+    is_full = data->consumers.size() >= max_consumers;
     for (const Consumer& consumer : data->consumers)
       if (consumer.id == id) known = consumer.consumer;
   }
@@ -176,7 +176,7 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   if (is_full) {
     rt::log_rejection(
         base::Level::error, impl_->component.getInstanceNameString(),
-        "SDO service " + base::in_quotes(id) + " is rejected: there are " + std::to_string(most_consumers) + " already, the maximum");
+        "SDO service " + base::in_quotes(id) + " is rejected: there are " + std::to_string(max_consumers) + " already, the maximum");
     return false;
   }
   if (!is_enabled(enabled, type)) return false;
@@ -187,7 +187,7 @@ bool SdoServiceAdmin::addSdoServiceConsumer(const SDOPackage::ServiceProfile& pr
   {
     auto data = impl_->shared.lock();
     added = std::none_of(data->consumers.begin(), data->consumers.end(), [&](const Consumer& other) { return other.id == id; }) &&
-            data->consumers.size() < most_consumers;
+            data->consumers.size() < max_consumers;
     if (added) data->consumers.push_back({id, consumer});
   }
   if (!added) consumer->finalize();  // somebody else was faster

@@ -64,8 +64,8 @@ class Multicopter final : public VehicleControl {
       ++rotor;
     }
   }
-  double most_speed() const override { return numbers_.speed.x() > 0 ? numbers_.speed.x() : usual_vehicle_speed; }
-  double most_yaw_rate() const override { return numbers_.turn.z() > 0 ? numbers_.turn.z() : usual_yaw_rate; }
+  double max_speed() const override { return numbers_.speed.x() > 0 ? numbers_.speed.x() : usual_vehicle_speed; }
+  double max_yaw_rate() const override { return numbers_.turn.z() > 0 ? numbers_.turn.z() : usual_yaw_rate; }
 
  private:
   LinkId body_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double motor_effort = 1e6;  // [N m] of a joint that turns as told
 constexpr double settled = 0.1;       // [rad/s] that the controller of a thruster leaves
-constexpr double most_push = 1e6;     // [N]: nothing sane pushes more
+constexpr double max_push = 1e6;      // [N]: nothing sane pushes more
 
 double fourth_power(double x) { return x * x * x * x; }
 
@@ -32,13 +32,13 @@ Propeller::Setup thruster_of(const PluginDef& plugin, std::vector<std::string>& 
     setup.wake = p.number_of({"wake_fraction"}).value_or(0.2);
   }
   setup.constant = setup.scale * coefficient.value_or(setup.alpha_1.value_or(1));
-  setup.most_thrust = p.number_of({"max_thrust_cmd"}).value_or(1000);
+  setup.max_thrust = p.number_of({"max_thrust_cmd"}).value_or(1000);
   setup.least_thrust = p.number_of({"min_thrust_cmd"}).value_or(-1000);
-  if (setup.least_thrust > setup.most_thrust) {
+  if (setup.least_thrust > setup.max_thrust) {
     left_out.push_back(about_propeller(plugin) + "<min_thrust_cmd> must not be more than <max_thrust_cmd>, got " +
-                       base::format_number(setup.least_thrust) + " and " + base::format_number(setup.most_thrust) +
+                       base::format_number(setup.least_thrust) + " and " + base::format_number(setup.max_thrust) +
                        "; -1000 to 1000 are taken");
-    setup.least_thrust = -1000, setup.most_thrust = 1000;
+    setup.least_thrust = -1000, setup.max_thrust = 1000;
   }
   setup.deadband = p.number_of({"deadband"}).value_or(0);
   setup.has_motor = p.bool_of({"velocity_control"}).value_or(false);
@@ -72,7 +72,7 @@ Propeller::Setup rotor_of(const PluginDef& plugin, std::vector<std::string>& lef
   setup.rising = number("timeConstantUp", 1.0 / 80), setup.falling = number("timeConstantDown", 1.0 / 40);
   setup.slowdown = number("rotorVelocitySlowdownSim", 10);
   if (!(setup.slowdown > 0)) setup.slowdown = 10;
-  setup.most_speed = std::max(number("maxRotVelocity", 838), 0.0);
+  setup.max_speed = std::max(number("maxRotVelocity", 838), 0.0);
   setup.direction = p.text_of({"turningDirection"}).value_or("ccw") == "cw" ? -1 : 1;
   setup.least_thrust = 0;
   return setup;
@@ -92,18 +92,18 @@ Propeller::Propeller(Physics& physics, const Setup& setup, double dt) : setup_(s
   inertia_ = std::max(joint_axis_.dot(link.inertia * joint_axis_), 1e-12);
   keep_rising_ = decay(dt, setup.rising), keep_falling_ = decay(dt, setup.falling);
   if (setup_.is_rotor) {
-    setup_.most_thrust = setup_.constant * setup_.most_speed * setup_.most_speed;
+    setup_.max_thrust = setup_.constant * setup_.max_speed * setup_.max_speed;
   } else {
-    const double most = std::max(std::abs(setup_.least_thrust), std::abs(setup_.most_thrust));
-    setup_.most_speed = setup_.constant != 0 ? std::sqrt(most / std::abs(setup_.constant)) : 0;
+    const double most = std::max(std::abs(setup_.least_thrust), std::abs(setup_.max_thrust));
+    setup_.max_speed = setup_.constant != 0 ? std::sqrt(most / std::abs(setup_.constant)) : 0;
   }
 }
 
-double Propeller::most_thrust() const { return std::min(std::max(std::abs(setup_.least_thrust), std::abs(setup_.most_thrust)), most_push); }
+double Propeller::max_thrust() const { return std::min(std::max(std::abs(setup_.least_thrust), std::abs(setup_.max_thrust)), max_push); }
 
 std::pair<double, double> Propeller::range(bool is_thrust) const {
-  if (is_thrust) return {std::max(setup_.least_thrust, -most_push), std::min(setup_.most_thrust, most_push)};
-  return {setup_.is_rotor ? 0.0 : -setup_.most_speed, setup_.most_speed};
+  if (is_thrust) return {std::max(setup_.least_thrust, -max_push), std::min(setup_.max_thrust, max_push)};
+  return {setup_.is_rotor ? 0.0 : -setup_.max_speed, setup_.max_speed};
 }
 
 // Of a thruster whose coefficient follows the advance ratio.
@@ -119,13 +119,13 @@ void Propeller::set_speed(double speed) {
   if (!std::isfinite(speed)) return;
   is_by_speed_ = true;
   wanted_speed_ = std::clamp(speed, range(false).first, range(false).second);
-  wanted_thrust_ = std::clamp(setup_.constant * std::abs(wanted_speed_) * wanted_speed_, setup_.least_thrust, setup_.most_thrust);
+  wanted_thrust_ = std::clamp(setup_.constant * std::abs(wanted_speed_) * wanted_speed_, setup_.least_thrust, setup_.max_thrust);
 }
 
 void Propeller::set_thrust(double thrust) {
   if (!std::isfinite(thrust)) return;
   is_by_speed_ = false;
-  wanted_thrust_ = std::clamp(thrust, setup_.least_thrust, setup_.most_thrust);
+  wanted_thrust_ = std::clamp(thrust, setup_.least_thrust, setup_.max_thrust);
   // A propeller of the other hand (a negative coefficient) turns backwards to push forwards.
   const double square = setup_.constant != 0 ? wanted_thrust_ / setup_.constant : 0;
   wanted_speed_ = std::copysign(std::sqrt(std::abs(square)), square);
@@ -150,7 +150,7 @@ void Propeller::turn_rotor(Physics& physics, const Eigen::Vector3d& wind) {
     (void)physics.add_wrench(setup_.parent, Eigen::Vector3d::Zero(),
                              -setup_.direction * thrust_ * setup_.moment * up - w * setup_.rolling * across);
   }
-  const double wanted = std::min(wanted_speed_, setup_.most_speed * std::sqrt(strength_));
+  const double wanted = std::min(wanted_speed_, setup_.max_speed * std::sqrt(strength_));
   const double keep = wanted > filtered_ ? keep_rising_ : keep_falling_;
   filtered_ = keep * filtered_ + (1 - keep) * wanted;
   if (filtered_ < 1e-6) filtered_ = 0;
@@ -158,11 +158,11 @@ void Propeller::turn_rotor(Physics& physics, const Eigen::Vector3d& wind) {
 }
 
 void Propeller::turn_thruster(Physics& physics, double dt) {
-  const double most = strength_ * most_thrust();
+  const double most = strength_ * max_thrust();
   double thrust = wanted_thrust_;
   if (setup_.alpha_1 && is_by_speed_) {
     const double constant = constant_now(physics, wanted_speed_);
-    thrust = std::clamp(constant * std::abs(wanted_speed_) * wanted_speed_, setup_.least_thrust, setup_.most_thrust);
+    thrust = std::clamp(constant * std::abs(wanted_speed_) * wanted_speed_, setup_.least_thrust, setup_.max_thrust);
   }
   thrust_ = std::abs(thrust) < setup_.deadband ? 0 : std::clamp(thrust, -most, most);
   const double speed = std::abs(thrust) < setup_.deadband ? 0 : wanted_speed_ * (thrust != 0 ? std::sqrt(std::abs(thrust_ / thrust)) : 1);
@@ -177,8 +177,8 @@ void Propeller::turn_thruster(Physics& physics, double dt) {
     if (std::abs(error) > settled) torque = setup_.p * error + integral_ + setup_.d * (error - last_error_) / dt;
     last_error_ = error;
     // No more than brings it there in this step.
-    const double most_torque = inertia_ * std::abs(error) / dt;
-    torque = std::clamp(torque, -most_torque, most_torque);
+    const double max_torque = inertia_ * std::abs(error) / dt;
+    torque = std::clamp(torque, -max_torque, max_torque);
   }
   if (thrust_ == 0 && torque == 0) return;
   const Eigen::Vector3d force = thrust_ * axis;

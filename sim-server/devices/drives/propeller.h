@@ -23,10 +23,10 @@ class Propeller {
     JointId joint;
     LinkId link, parent;  // that it turns, and that it hangs on; the same: nothing of the model
     bool is_rotor = false;
-    double constant = 1;                                            // thrust for each (rad/s)^2 [N s^2]
-    double most_speed = 838;                                        // [rad/s]
-    double least_thrust = -1000, most_thrust = 1000, deadband = 0;  // [N]
-    double direction = 1;                                           // -1: a rotor that pushes up when its joint turns backwards
+    double constant = 1;                                           // thrust for each (rad/s)^2 [N s^2]
+    double max_speed = 838;                                        // [rad/s]
+    double least_thrust = -1000, max_thrust = 1000, deadband = 0;  // [N]
+    double direction = 1;                                          // -1: a rotor that pushes up when its joint turns backwards
     // Of rotors.
     double slowdown = 10, moment = 0.016, drag = 1e-4, rolling = 1e-6;
     double rising = 0.0125, falling = 0.025;  // [s] time constants
@@ -42,7 +42,7 @@ class Propeller {
   const Setup& setup() const { return setup_; }
   std::uint32_t joint() const { return setup_.joint.joint; }
   Eigen::Vector3d axis() const { return axis_; }  // of the thrust, in the link
-  double most_thrust() const;                     // [N]
+  double max_thrust() const;                      // [N]
   // Least and most of a command: speeds [rad/s] or thrusts [N].
   std::pair<double, double> range(bool is_thrust) const;
 

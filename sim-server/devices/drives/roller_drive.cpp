@@ -187,10 +187,10 @@ class Rollers final : public DriveTrain {
 
  private:
   // The direction stays, so that a robot that speeds up keeps to its line.
-  static void limit(Eigen::Vector3d& velocity, double most, double most_turn) {
+  static void limit(Eigen::Vector3d& velocity, double most, double max_turn) {
     const double speed = velocity.head<2>().norm();
     if (speed > most) velocity.head<2>() *= most / speed;
-    velocity[2] = std::clamp(velocity[2], -most_turn, most_turn);
+    velocity[2] = std::clamp(velocity[2], -max_turn, max_turn);
   }
   void read_angles() {
     angles_.clear();

@@ -54,8 +54,8 @@ class ThrusterControl final : public VehicleControl {
     for (int i = 0; i < 6; ++i) hash.add(learned_[i]);
   }
   bool moves_sideways() const override { return can_[1] > 0; }
-  double most_speed() const override { return 0; }
-  double most_yaw_rate() const override { return usual_turn; }
+  double max_speed() const override { return 0; }
+  double max_yaw_rate() const override { return usual_turn; }
 
  private:
   // Of an acceleration; torques over the length.
@@ -83,7 +83,7 @@ std::unique_ptr<VehicleControl> make_thruster_control(const Physics& physics, Mo
   for (std::size_t i = 0; i < propellers.all().size(); ++i) {
     const Propeller& one = propellers.all()[i];
     const Eigen::Isometry3d& link = def.links[one.setup().link.link].pose;
-    made->place(i, link.translation() - weight.center, link.linear() * one.axis(), one.most_thrust());
+    made->place(i, link.translation() - weight.center, link.linear() * one.axis(), one.max_thrust());
   }
   made->finish();
   return made;

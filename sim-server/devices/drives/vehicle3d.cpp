@@ -31,8 +31,8 @@ MadeDevice Vehicle3d::make(DeviceWorld& world, ModelId model, const PluginDef& p
   shm::Position3dInfo info{};
   info.drive = RTMSIM_DRIVE_HOLONOMIC;
   describe_body(def, info.pose, info.size);
-  info.max_speed = control->most_speed();
-  info.max_yaw_rate = control->most_yaw_rate();
+  info.max_speed = control->max_speed();
+  info.max_yaw_rate = control->max_yaw_rate();
   info.rate = stated_rate(world, 0);
   shm::set_text(info.model, scoped_model(def, plugin.scope));
   auto setup = set_up(world, model, 0, shm::iface_spec(shm::IfaceType::position3d, iface_name(def, plugin), info), {});
@@ -73,10 +73,10 @@ Vector6 Vehicle3d::wanted() const {
   if (!goal_) return strength_ * command_;
   const Eigen::Isometry3d pose = odometry_origin_ * physics().model_pose(model());
   Eigen::Vector4d v = velocity_towards(pose, goal_->head<3>(), (*goal_)[3], goal_acceleration);
-  const double most = control_->most_speed() > 0 ? control_->most_speed() : goal_speed;
+  const double most = control_->max_speed() > 0 ? control_->max_speed() : goal_speed;
   if (const double speed = v.head<3>().norm(); speed > most) v.head<3>() *= most / speed;
   if (!control_->moves_sideways()) turn_ahead(v, (goal_->head<3>() - pose.translation()).head<2>().norm());
-  const double turn = control_->most_yaw_rate();
+  const double turn = control_->max_yaw_rate();
   Vector6 out = Vector6::Zero();
   const Eigen::Matrix3d level = Eigen::AngleAxisd(yaw_of(pose), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   out.head<3>() = pose.linear().transpose() * level * v.head<3>();

@@ -17,8 +17,8 @@ class VehicleControl {
   virtual void reset() {}
   virtual void add_to(StateHash&) const {}
   virtual bool moves_sideways() const { return true; }
-  virtual double most_speed() const = 0;     // [m/s]
-  virtual double most_yaw_rate() const = 0;  // [rad/s]
+  virtual double max_speed() const = 0;     // [m/s]
+  virtual double max_yaw_rate() const = 0;  // [rad/s]
 };
 
 // Mass, centre of mass and inertia of all links of a model at its start, in a frame of the model.

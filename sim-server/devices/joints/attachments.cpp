@@ -154,7 +154,7 @@ void Attachments::check(Physics& physics, Detachable& joint) {
   if (!done && !std::exchange(joint.is_told, true)) say(base::Level::warn, done.error().message + "; it is attached as soon as it can be");
 }
 
-std::optional<LinkId> Attachments::most_touched(const Physics& physics, const Grip& grip) {
+std::optional<LinkId> Attachments::max_touched(const Physics& physics, const Grip& grip) {
   std::map<std::pair<ModelId, std::uint32_t>, int> counts;
   for (const Contact& contact : physics.contacts(grip.model)) {
     if (std::ranges::find(grip.fingers, contact.link.link) == grip.fingers.end() || contact.other.model == grip.model) continue;
@@ -186,7 +186,7 @@ void Attachments::check(Physics& physics, Grip& grip) {
 
 void Attachments::seek(Physics& physics, Grip& grip) {
   const LinkId palm{grip.model, grip.palm};
-  const auto touched = most_touched(physics, grip);
+  const auto touched = max_touched(physics, grip);
   const bool is_same = touched && grip.touched && *touched == *grip.touched;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   if (touched) place = physics.link_pose(palm).inverse() * physics.link_pose(*touched).translation();

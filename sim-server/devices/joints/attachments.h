@@ -67,7 +67,7 @@ class Attachments {
   void check(Physics& physics, Detachable& joint);
   void check(Physics& physics, Grip& grip);
   void seek(Physics& physics, Grip& grip);
-  static std::optional<LinkId> most_touched(const Physics& physics, const Grip& grip);
+  static std::optional<LinkId> max_touched(const Physics& physics, const Grip& grip);
   static bool touches(const Physics& physics, const Grip& grip);
 
   std::vector<Detachable> joints_;

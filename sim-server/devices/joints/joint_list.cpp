@@ -182,7 +182,7 @@ std::vector<ListedJoint> list_joints(const ModelDef& model, const std::vector<st
     const double usual = is_perfect ? perfect_speed : setup.slides ? usual_slide : usual_speed;
     setup.velocity = std::isfinite(axis.velocity) && axis.velocity > 0 ? axis.velocity : usual;
     const double least = is_perfect ? perfect_effort : setup.slides ? least_force : least_torque;
-    const double derived = std::max(payload * dynamics.most_gravity_effort(i, gravity), least);
+    const double derived = std::max(payload * dynamics.max_gravity_effort(i, gravity), least);
     setup.effort = std::isfinite(axis.effort) && axis.effort > 0 ? axis.effort : derived;
     if (const auto file = file_gains(model, joints[i])) {
       setup.gains = file->gains;

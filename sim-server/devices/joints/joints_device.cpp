@@ -27,8 +27,8 @@ void list_propellers(std::vector<ListedJoint>& joints, const Propellers& propell
     const auto place = propellers.find(listed.joint);
     if (!place) continue;
     const Propeller& propeller = propellers.all()[*place];
-    listed.setup.velocity = propeller.setup().most_speed;
-    listed.setup.effort = propeller.most_thrust();
+    listed.setup.velocity = propeller.setup().max_speed;
+    listed.setup.effort = propeller.max_thrust();
     listed.setup.is_compensated = false;
     listed.gains_from = "propeller of " + propeller.setup().source;
   }
@@ -142,7 +142,7 @@ void JointsDevice::take(std::uint64_t owner, const shm::Command& command) {
       if (!(values[0] >= 1)) continue;
       const auto word = static_cast<std::uint32_t>(std::min(values[0], 1e9)), gain = word >> shm::joint_gain_shift;
       const std::uint32_t mode = word & ((1U << shm::joint_gain_shift) - 1);
-      if (gain > shm::most_joint_gain + 1) continue;
+      if (gain > shm::max_joint_gain + 1) continue;
       if (gain > 0) order.gain = (gain - 1) / 100.0;
       order.is_compensated = (mode & RTMSIM_JOINT_COMPENSATED) != 0;
       order.mode = static_cast<JointMode>(mode & 0xffU);

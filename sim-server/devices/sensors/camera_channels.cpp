@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint32_t most_boxes = 256;  // of an image
+constexpr std::uint32_t max_boxes = 256;  // of an image
 
 shm::Format color_format(PixelFormat format) {
   switch (format) {
@@ -63,7 +63,7 @@ shm::Format format_of(CameraSees what, const CameraDef& def) {
 shm::BoxesInfo boxes_info(const shm::CameraInfo& camera, const CameraDef& def) {
   shm::BoxesInfo info{};
   info.kind = static_cast<std::uint32_t>(def.boxes);
-  info.capacity = most_boxes;
+  info.capacity = max_boxes;
   info.width = camera.width;
   info.height = camera.height;
   info.rate = camera.rate;

@@ -18,9 +18,9 @@ Laser::Laser(Setup setup, const SensorSite& site) : Sensor(std::move(setup)), mo
 
 // Columns within four degrees are seen from one place: a millimetre apart at 1 m/s and ten turns a second.
 void Laser::split() {
-  constexpr std::size_t most_sectors = 90;
+  constexpr std::size_t max_sectors = 90;
   const auto columns = static_cast<std::size_t>(std::max(ray_.horizontal.samples, 1));
-  const std::size_t layers = beams_.size() / columns, sectors = std::min(columns, most_sectors);
+  const std::size_t layers = beams_.size() / columns, sectors = std::min(columns, max_sectors);
   for (std::size_t s = 0; s < sectors; ++s) {
     Sector sector{s * columns / sectors, 0, {}};
     sector.count = (s + 1) * columns / sectors - sector.first;

@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint32_t most_found = 64;
+constexpr std::uint32_t max_found = 64;
 
 // All sensors of a kind that the world has now.
 template <class Do>
@@ -140,7 +140,7 @@ class Wireless final : public Sensor {
 MadeDevice make_rfid(const SensorSite& site) {
   const auto& def = std::get<RfidDef>(site.def.data);
   auto info = info_of<shm::RfidInfo>(site);
-  info.capacity = most_found;
+  info.capacity = max_found;
   info.range = def.range;
   info.angle = def.angle;
   info.needs_sight = def.needs_sight ? 1 : 0;
@@ -150,7 +150,7 @@ MadeDevice make_rfid(const SensorSite& site) {
 MadeDevice make_wireless(const SensorSite& site) {
   const auto& def = std::get<RadioDef>(site.def.data);
   auto info = info_of<shm::WirelessInfo>(site);
-  info.capacity = most_found;
+  info.capacity = max_found;
   info.gain = def.gain;
   info.sensitivity = def.sensitivity;
   info.min_frequency = def.min_frequency;

@@ -67,7 +67,7 @@ class Hunt {
   bool goes_on() const {
     if (base::is_interrupted() || !problem_.empty() || Clock::now() - began_ > options_.budget) return false;
     if (options_.max_failures > 0 && result_.failures.size() >= options_.max_failures) return false;
-    return options_.most_cases == 0 || result_.cases < options_.most_cases;
+    return options_.max_cases == 0 || result_.cases < options_.max_cases;
   }
 
   HuntCase next_case() {

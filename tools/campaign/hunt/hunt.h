@@ -17,7 +17,7 @@ namespace campaign {
 
 struct HuntOptions {
   std::chrono::seconds budget{600};
-  std::size_t most_cases = 0;    // 0: as many as the budget allows
+  std::size_t max_cases = 0;     // 0: as many as the budget allows
   std::size_t max_failures = 0;  // 0: any number
   int jobs = 1;
   std::string folder;         // for failures

@@ -52,7 +52,7 @@ std::vector<std::string> grid(const YAML::Node& node) {
   if (steps > 1) step = (to - from) / static_cast<double>(steps - 1);
   if (!node["steps"] && to < from) fail_at(node["to"], "to must not be less than from");
   const double all = node["steps"] ? static_cast<double>(steps) : std::floor((to - from) / step + 1e-9) + 1;
-  if (all > static_cast<double>(most_rows)) fail_at(node, "a grid must have at most " + std::to_string(most_rows) + " values");
+  if (all > static_cast<double>(max_rows)) fail_at(node, "a grid must have at most " + std::to_string(max_rows) + " values");
   std::vector<std::string> values;
   // A multiple of the step may carry a last bit that nobody has asked for.
   for (int i = 0; i < static_cast<int>(all); ++i) values.push_back(base::format_number(std::round((from + i * step) * 1e12) / 1e12));

@@ -92,6 +92,6 @@ struct Plan {
 // Errors are one line: plan "FILE":LINE:COLUMN: what is wrong.
 Result<Plan> read_plan(const std::string& file);
 
-inline constexpr std::uint64_t most_rows = 1'000'000;
+inline constexpr std::uint64_t max_rows = 1'000'000;
 
 }  // namespace campaign

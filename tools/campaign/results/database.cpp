@@ -26,9 +26,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::milliseconds busy_timeout = 60s;    // for others that write; a list of a million rows takes half of it
-constexpr std::chrono::seconds turn_timeout{5};            // for others that close the file
-constexpr std::int64_t most_heap = std::int64_t{1} << 30;  // [byte] of all that SQLite keeps
+constexpr std::chrono::milliseconds busy_timeout = 60s;   // for others that write; a list of a million rows takes half of it
+constexpr std::chrono::seconds turn_timeout{5};           // for others that close the file
+constexpr std::int64_t max_heap = std::int64_t{1} << 30;  // [byte] of all that SQLite keeps
 
 std::string uri(const std::string& file) {
   std::string text = "file:";
@@ -190,7 +190,7 @@ Result<void> Database::begin_log() {
 Result<void> Database::guard(const ReadLimits& limits) {
   auto* handle = database_.get();
   sqlite3_busy_timeout(handle, static_cast<int>(std::min<std::chrono::milliseconds>(busy_timeout, limits.time).count()));
-  sqlite3_hard_heap_limit64(most_heap);
+  sqlite3_hard_heap_limit64(max_heap);
   for (const auto& [limit, value] : std::initializer_list<std::pair<int, int>>{{SQLITE_LIMIT_LENGTH, 64 << 20},
                                                                                {SQLITE_LIMIT_SQL_LENGTH, 64 << 10},
                                                                                {SQLITE_LIMIT_COLUMN, 64},

@@ -15,10 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_points = 20'000;  // rows that are drawn
-constexpr std::size_t most_failed = 200;     // that are listed
-constexpr std::size_t most_pictures = 24;
-constexpr std::size_t most_picture = 8 << 20;  // [byte]
+constexpr std::size_t max_points = 20'000;  // rows that are drawn
+constexpr std::size_t max_failed = 200;     // that are listed
+constexpr std::size_t max_pictures = 24;
+constexpr std::size_t max_picture = 8 << 20;  // [byte]
 
 // Of a row that failed: where its files are, also when they were moved together with the results.
 std::string files_of(const std::string& runs, const ResultRow& row) {
@@ -36,7 +36,7 @@ std::string picture_of(const std::string& runs, const ResultRow& row) {
   const auto folder = std::filesystem::path(row.run->folder).filename();
   if (folder.empty()) return "";
   const std::filesystem::path kept(runs);
-  const auto octets = base::read_beneath(kept.parent_path(), kept.filename() / folder / "picture.png", most_picture);
+  const auto octets = base::read_beneath(kept.parent_path(), kept.filename() / folder / "picture.png", max_picture);
   return octets && octets->starts_with(signature) ? "data:image/png;base64," + base::to_base64(*octets) : "";
 }
 
@@ -68,7 +68,7 @@ Json value_json(const std::string& text) {
 }
 
 Json rows_json(const Results& results) {
-  const auto every = std::max<std::size_t>(1, (results.rows.size() + most_points - 1) / most_points);
+  const auto every = std::max<std::size_t>(1, (results.rows.size() + max_points - 1) / max_points);
   Json rows = Json::array();
   for (std::size_t i = 0; i < results.rows.size(); i += every) {
     const auto& row = results.rows[i];
@@ -89,7 +89,7 @@ Json failed_json(const Results& results, const std::string& runs) {
   std::size_t pictures = 0;
   for (const auto& row : results.rows) {
     if (!row.run || row.run->is_passed) continue;
-    if (failed.size() == most_failed) break;
+    if (failed.size() == max_failed) break;
     Json json{{"row", row.number},
               {"seed", row.seed},
               {"problem", row.run->problem},
@@ -97,7 +97,7 @@ Json failed_json(const Results& results, const std::string& runs) {
               {"folder", files_of(runs, row)},
               {"again", command_again(results, row)},
               {"values", row.values}};
-    if (pictures < most_pictures) {
+    if (pictures < max_pictures) {
       if (auto picture = picture_of(runs, row); !picture.empty()) {
         json["picture"] = std::move(picture);
         ++pictures;

@@ -15,7 +15,7 @@ using RowsByKey = std::map<std::string, std::vector<std::size_t>>;
 // What is kept of a file, all its tables together.
 class Budget {
  public:
-  static constexpr std::size_t most_names = 1000;
+  static constexpr std::size_t max_names = 1000;
 
   explicit Budget(Database& database) : database_(database) {}
 
@@ -33,8 +33,8 @@ class Budget {
       const std::size_t count = std::max<std::size_t>(1, copies(*statement));
       values_ += count;
       text_ += text * count;
-      if (text_ > most_text) return too_much("1 GiB of text");
-      if (values_ > most_values) return too_much("30 million values");
+      if (text_ > max_text) return too_much("1 GiB of text");
+      if (values_ > max_values) return too_much("30 million values");
       take(*statement);
     }
   }
@@ -44,12 +44,12 @@ class Budget {
         sql, [](const Statement&) { return std::size_t{1}; }, take);
   }
   Result<void> check_names(const std::set<std::string>& names) const {
-    return names.size() > most_names ? too_much("1000 parameters or measures") : Result<void>();
+    return names.size() > max_names ? too_much("1000 parameters or measures") : Result<void>();
   }
   Database& database() { return database_; }
 
  private:
-  static constexpr std::size_t most_values = 30'000'000, most_text = std::size_t{1} << 30;
+  static constexpr std::size_t max_values = 30'000'000, max_text = std::size_t{1} << 30;
 
   Result<void> too_much(const std::string& what) const {
     return Error{"results " + base::in_quotes(database_.file()) + ": hold more than " + what};
@@ -92,7 +92,7 @@ Result<void> read_rows(Budget& budget, Results& results, RowsByKey& by_key) {
     const auto found = by_number.find(row.integer(0));
     if (found == by_number.end()) return;
     results.rows[found->second].values[row.text(1)] = row.text(2);
-    if (names.size() <= Budget::most_names) names.insert(row.text(1));
+    if (names.size() <= Budget::max_names) names.insert(row.text(1));
   });
   if (!read) return read;
   if (const auto checked = budget.check_names(names); !checked) return checked;
@@ -118,7 +118,7 @@ Result<void> read_runs(Budget& budget, Results& results, const RowsByKey& by_key
     const auto found = by_key.find(row.text(0));
     if (found == by_key.end()) return;
     for (const auto place : found->second) results.rows[place].measures[row.text(1)] = row.number(2);
-    if (names.size() <= Budget::most_names) names.insert(row.text(1));
+    if (names.size() <= Budget::max_names) names.insert(row.text(1));
   });
   if (!read) return read;
   if (const auto checked = budget.check_names(names); !checked) return checked;
@@ -184,7 +184,7 @@ std::string value_of(const ResultRow& row, const std::string& parameter) {
 }
 
 std::vector<Group> groups(const Results& results, const std::string& parameter) {
-  constexpr std::size_t most_single = 12;
+  constexpr std::size_t max_single_values = 12;
   std::map<std::string, Group> by_value;
   std::vector<std::pair<double, const ResultRow*>> numbers;
   bool are_numbers = true;
@@ -198,7 +198,7 @@ std::vector<Group> groups(const Results& results, const std::string& parameter) 
     by_value[value].rows.push_back(&row);
   }
   std::vector<Group> all;
-  if (are_numbers && by_value.size() > most_single) {
+  if (are_numbers && by_value.size() > max_single_values) {
     all = ranges_of(numbers);
   } else {
     for (auto& [value, group] : by_value) all.push_back(std::move(group));

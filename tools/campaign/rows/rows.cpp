@@ -60,9 +60,9 @@ Result<RowMaker> RowMaker::make(const Plan& plan, const std::map<std::string, Su
     maker.samples_ = plan.samples;
     rows *= static_cast<double>(plan.samples);
   }
-  if (rows > static_cast<double>(most_rows))
+  if (rows > static_cast<double>(max_rows))
     return Error{"plan " + base::in_quotes(plan.file) + ": has " + base::format_number(rows) + " rows, expected at most " +
-                 std::to_string(most_rows)};
+                 std::to_string(max_rows)};
   maker.count_ = static_cast<std::size_t>(rows);
   if (ranges > 0) {
     auto points = unit_samples(plan.sampling, plan.samples, ranges, plan.sampling_seed);

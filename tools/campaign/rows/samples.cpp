@@ -38,7 +38,7 @@ struct Direction {
   unsigned degree, coefficients;
   std::array<std::uint32_t, 6> first;
 };
-constexpr std::array<Direction, most_sobol_dimensions - 1> directions = {{
+constexpr std::array<Direction, max_sobol_dimensions - 1> directions = {{
     {1, 0, {1}},
     {2, 1, {1, 3}},
     {3, 1, {1, 3, 1}},
@@ -104,8 +104,8 @@ Result<Points> unit_samples(Plan::Sampling sampling, std::size_t count, std::siz
     case Plan::Sampling::latin:
       return latin_points(count, dimensions, random);
     case Plan::Sampling::sobol:
-      if (dimensions > most_sobol_dimensions)
-        return Error{"sampling sobol: at most " + std::to_string(most_sobol_dimensions) + " ranges, got " + std::to_string(dimensions) +
+      if (dimensions > max_sobol_dimensions)
+        return Error{"sampling sobol: at most " + std::to_string(max_sobol_dimensions) + " ranges, got " + std::to_string(dimensions) +
                      "; latin has no limit"};
       return sobol_points(count, dimensions, random);
     case Plan::Sampling::random:

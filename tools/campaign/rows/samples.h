@@ -9,7 +9,7 @@
 
 namespace campaign {
 
-inline constexpr std::size_t most_sobol_dimensions = 16;
+inline constexpr std::size_t max_sobol_dimensions = 16;
 
 // `count` points with `dimensions` coordinates from 0 up to, not including, 1. The error: Sobol's sequence has 16 dimensions here.
 Result<std::vector<std::vector<double>>> unit_samples(Plan::Sampling sampling, std::size_t count, std::size_t dimensions,

@@ -9,7 +9,7 @@
 namespace campaign {
 namespace {
 
-constexpr std::size_t most_failed_told = 100;
+constexpr std::size_t max_failed_told = 100;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void Tally::take_stored(std::size_t number, const std::string& key, const Stored
   ++progress.done;
   ++progress.stored;
   ++(run.is_passed ? progress.passed : progress.failed);
-  if (!run.is_passed && result_.failed.size() < most_failed_told) result_.failed.push_back({number, run.problem, run.folder});
+  if (!run.is_passed && result_.failed.size() < max_failed_told) result_.failed.push_back({number, run.problem, run.folder});
   if (base::Random(options_.results.size(), key).uniform() < options_.audit) todo_.push_back({number, run.state_hash, true});
 }
 
@@ -84,7 +84,7 @@ void Tally::add(const Todo& todo, const std::string& key, const Outcome& outcome
   const std::size_t rows = 1 + (twins == twins_.end() ? 0 : twins->second);
   progress.done += rows;
   (outcome.run.is_passed() ? progress.passed : progress.failed) += rows;
-  if (!outcome.run.is_passed() && result_.failed.size() < most_failed_told)
+  if (!outcome.run.is_passed() && result_.failed.size() < max_failed_told)
     result_.failed.push_back({todo.number, outcome.run.first_problem(), folder});
 }
 
@@ -99,7 +99,7 @@ bool Tally::was_stored(const Todo& todo, const std::string& key) {
   progress.done += rows;
   progress.stored += rows;
   ((*run)->is_passed ? progress.passed : progress.failed) += rows;
-  if (!(*run)->is_passed && result_.failed.size() < most_failed_told)
+  if (!(*run)->is_passed && result_.failed.size() < max_failed_told)
     result_.failed.push_back({todo.number, (*run)->problem, (*run)->folder});
   ++ended_;
   show_(progress);

@@ -13,7 +13,7 @@ using base::Error;
 using base::Result;
 
 // What one array may have by Slurm's usual MaxArraySize, and a queue by its usual MaxJobCount.
-inline constexpr std::size_t most_in_array = 1000, most_tasks = 10'000;
+inline constexpr std::size_t max_in_array = 1000, max_tasks = 10'000;
 
 // The commands are there. The error names one that is not.
 Result<void> check();

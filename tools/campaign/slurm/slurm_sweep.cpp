@@ -58,7 +58,7 @@ class SlurmSweep {
 
  private:
   bool is_over() { return base::is_interrupted() || tally_.is_stopped(); }
-  std::size_t least_chunk() const { return (missing_.size() + slurm::most_tasks - 1) / slurm::most_tasks; }
+  std::size_t least_chunk() const { return (missing_.size() + slurm::max_tasks - 1) / slurm::max_tasks; }
 
   Result<void> list_missing() {
     for (const auto& todo : tally_.todo()) {
@@ -68,7 +68,7 @@ class SlurmSweep {
     }
     if (slurm_.chunk >= least_chunk()) return {};
     return Error{"--chunk " + std::to_string(slurm_.chunk) + ": " + std::to_string(missing_.size()) + " rows would be more than " +
-                 std::to_string(slurm::most_tasks) + " tasks; expected at least " + std::to_string(least_chunk())};
+                 std::to_string(slurm::max_tasks) + " tasks; expected at least " + std::to_string(least_chunk())};
   }
 
   // What tasks of another plan, or of other programs, would find is of no use any more.
@@ -151,11 +151,11 @@ class SlurmSweep {
     const auto attempt = folder_.begin_attempt(tasks, script(folder_.attempts() + 1));
     if (!attempt) return attempt.error();
     last_tasks_ = std::move(tasks);
-    for (std::size_t first = 0; first < last_tasks_.size(); first += slurm::most_in_array) {
+    for (std::size_t first = 0; first < last_tasks_.size(); first += slurm::max_in_array) {
       const auto submitted = slurm::submit({.name = folder_.name(),
                                             .script = folder_.script(*attempt),
                                             .first = first,
-                                            .count = std::min(slurm::most_in_array, last_tasks_.size() - first),
+                                            .count = std::min(slurm::max_in_array, last_tasks_.size() - first),
                                             .jobs = options_.jobs,
                                             .options = slurm_.options});
       if (submitted) continue;

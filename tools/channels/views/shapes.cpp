@@ -130,10 +130,10 @@ void limit_size(std::vector<ros::Marker>& markers) {
   std::size_t sum = 0, largest = 0;
   for (const auto one : sizes) {
     sum += one;
-    if (sum > most_shapes) break;
+    if (sum > max_shapes) break;
     largest = one;
   }
-  if (sum > most_shapes) std::erase_if(markers, [&](const ros::Marker& marker) { return size(marker) > largest; });
+  if (sum > max_shapes) std::erase_if(markers, [&](const ros::Marker& marker) { return size(marker) > largest; });
 }
 
 // The JSON before the octets.

@@ -14,7 +14,7 @@
 namespace channels {
 
 // [bytes] of markers; of worlds with more the largest shapes are left out.
-inline constexpr std::size_t most_shapes = std::size_t{64} << 20;
+inline constexpr std::size_t max_shapes = std::size_t{64} << 20;
 
 // Of glTF 2.0 binary as the simulator writes it. The stamps are 0, the ids count within each model (`ns`).
 base::Result<std::vector<ros::Marker>> markers_in(std::string_view glb);

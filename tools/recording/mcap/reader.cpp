@@ -12,8 +12,8 @@ namespace mcap {
 
 namespace {
 
-constexpr std::uint64_t most_octets = Reader::largest_chunk;  // of all chunks that are open at once
-constexpr std::size_t most_places = 1'500'000;                // of messages in them; 36 MB, and twice that while they grow
+constexpr std::uint64_t max_octets = Reader::largest_chunk;  // of all chunks that are open at once
+constexpr std::size_t max_places = 1'500'000;                // of messages in them; 36 MB, and twice that while they grow
 
 // Where a message is: in a chunk's octets, or in the file.
 struct Place {
@@ -106,7 +106,7 @@ base::Result<void> Reader::State::open_chunk(const ChunkEntry& chunk) {
   const auto walked = for_each_record(cursor.octets, [&](Opcode opcode, std::string_view content, std::uint64_t offset) {
     if (opcode != Opcode::message) return;
     const auto message = take_message(content);
-    if (cursor.places.size() > most_places || !message || !is_wanted(*message)) return;
+    if (cursor.places.size() > max_places || !message || !is_wanted(*message)) return;
     cursor.places.push_back({message->log_time, offset, content.size()});
   });
   if (!walked)
@@ -114,8 +114,8 @@ base::Result<void> Reader::State::open_chunk(const ChunkEntry& chunk) {
                        walked.error().message};
   std::size_t places = cursor.places.size();
   for (const Cursor& other : open) places += other.places.size();
-  if (places > most_places) {
-    return base::Error{base::in_quotes(file.path()) + ": more than " + std::to_string(most_places) +
+  if (places > max_places) {
+    return base::Error{base::in_quotes(file.path()) + ": more than " + std::to_string(max_places) +
                        " messages in chunks of one time are not read; the chunk at octet " + std::to_string(chunk.start) + " is left out"};
   }
   const auto is_earlier = [](const Place& a, const Place& b) { return a.time < b.time; };
@@ -134,7 +134,7 @@ base::Result<void> Reader::State::need_octets(Cursor& cursor) {
   for (Cursor& other : open) {
     if (&other == &cursor) continue;
     taken += other.octets.size();
-    if (taken > most_octets) other.octets = std::string();
+    if (taken > max_octets) other.octets = std::string();
   }
   return read_chunk(file, cursor.chunk->start, cursor.chunk->length, cursor.octets);
 }
@@ -248,8 +248,8 @@ base::Result<std::vector<Metadata>> Reader::metadata() {
   std::uint64_t total = 0;
   for (std::size_t n = 0; n < metadata_count(); ++n) {
     total += state_->index.summary.metadata[n].length;
-    if (total > most_descriptions)
-      return base::Error{base::in_quotes(state_->file.path()) + ": metadata of more than " + std::to_string(most_descriptions) +
+    if (total > max_descriptions)
+      return base::Error{base::in_quotes(state_->file.path()) + ": metadata of more than " + std::to_string(max_descriptions) +
                          " bytes are not read"};
     auto one = metadata(n);
     if (!one) return one.error();
@@ -263,7 +263,7 @@ std::size_t Reader::metadata_count() const { return state_->index.summary.metada
 base::Result<Metadata> Reader::metadata(std::size_t number) {
   const MetadataPlace& place = state_->index.summary.metadata.at(number);
   std::string octets;
-  if (place.length > most_descriptions) return at(state_->file, place.start, "metadata are longer than any are");
+  if (place.length > max_descriptions) return at(state_->file, place.start, "metadata are longer than any are");
   if (const auto done = state_->file.read(place.start, place.length, octets); !done) return done.error();
   Octets in(octets);
   const auto opcode = static_cast<Opcode>(in.number<std::uint8_t>());
@@ -293,7 +293,7 @@ bool Reader::for_each_time(const std::function<void(std::uint16_t, Time)>& take)
   std::map<std::uint16_t, std::uint64_t> counts;
   std::string octets;
   for (const ChunkEntry* chunk : chunks) {
-    if (chunk->index_length > most_octets || !state_->file.read(chunk->start + chunk->length, chunk->index_length, octets)) return false;
+    if (chunk->index_length > max_octets || !state_->file.read(chunk->start + chunk->length, chunk->index_length, octets)) return false;
     bool is_whole = true;
     const auto walked = for_each_record(octets, [&](Opcode opcode, std::string_view content, std::uint64_t) {
       Octets in(content);

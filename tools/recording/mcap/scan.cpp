@@ -18,8 +18,8 @@ class Collector {
 
   base::Result<void> describe(Opcode opcode, std::string_view content, std::uint64_t offset) {
     described_ += content.size();
-    if (described_ > most_descriptions) {
-      return at(file_, offset, "schemas and channels of more than " + std::to_string(most_descriptions) + " bytes are not read");
+    if (described_ > max_descriptions) {
+      return at(file_, offset, "schemas and channels of more than " + std::to_string(max_descriptions) + " bytes are not read");
     }
     if (opcode == Opcode::schema) {
       auto schema = take_schema(content);
@@ -76,7 +76,7 @@ base::Result<std::uint64_t> read_header(const File& file, std::uint64_t size, In
   const auto head = read_head(file, magic.size(), size);
   if (!head) return head.error();
   if (!head->has_value() || (*head)->opcode != Opcode::header) return at(file, magic.size(), "expected the header of an MCAP file");
-  if ((*head)->length > most_descriptions) return at(file, magic.size(), "the header is longer than any header is");
+  if ((*head)->length > max_descriptions) return at(file, magic.size(), "the header is longer than any header is");
   if (const auto done = file.read(magic.size() + record_head, (*head)->length, octets); !done) return done.error();
   Octets in(octets);
   index.profile = in.text();
@@ -176,11 +176,11 @@ bool is_enough(const Index& index, bool has_statistics, std::uint64_t header_end
 }
 
 base::Result<std::uint32_t> crc_of(const File& file, std::uint64_t offset, std::uint64_t size) {
-  constexpr std::uint64_t most_at_once = 1 << 20;  // [bytes]
+  constexpr std::uint64_t max_at_once = 1 << 20;  // [bytes]
   std::uint32_t crc = 0;
   std::string octets;
   for (std::uint64_t done = 0; done < size; done += octets.size()) {
-    if (const auto read = file.read(offset + done, std::min(most_at_once, size - done), octets); !read) return read.error();
+    if (const auto read = file.read(offset + done, std::min(max_at_once, size - done), octets); !read) return read.error();
     crc = crc32(crc, octets);
   }
   return crc;
@@ -231,7 +231,7 @@ class Scanner {
     while (const auto head = read_head(file_, offset, end)) {
       if (!head->has_value()) return;
       if ((*head)->opcode == Opcode::schema || (*head)->opcode == Opcode::channel) {
-        if ((*head)->length > most_descriptions || !file_.read(offset + record_head, (*head)->length, octets_)) return;
+        if ((*head)->length > max_descriptions || !file_.read(offset + record_head, (*head)->length, octets_)) return;
         if (!collector_.describe((*head)->opcode, octets_, offset)) return;
       }
       offset += record_head + (*head)->length;
@@ -257,7 +257,7 @@ class Scanner {
     switch (head.opcode) {
       case Opcode::schema:
       case Opcode::channel: {
-        if (head.length > most_descriptions) return at(file_, offset, "a schema or channel is longer than any is");
+        if (head.length > max_descriptions) return at(file_, offset, "a schema or channel is longer than any is");
         if (const auto done = file_.read(content, head.length, octets_); !done) return done;
         return collector_.describe(head.opcode, octets_, offset);
       }
@@ -270,7 +270,7 @@ class Scanner {
       case Opcode::attachment:
         return take_attachment(head, offset);
       case Opcode::metadata: {
-        if (head.length > most_descriptions) return at(file_, offset, "metadata are longer than any are");
+        if (head.length > max_descriptions) return at(file_, offset, "metadata are longer than any are");
         if (const auto done = file_.read(content, head.length, octets_); !done) return done;
         Octets in(octets_);
         std::string name(in.text());

@@ -49,7 +49,7 @@ struct Index {
 };
 
 // Maximum of schemas and channels together [bytes]; all of them are kept in memory.
-inline constexpr std::uint64_t most_descriptions = 16ull << 20;
+inline constexpr std::uint64_t max_descriptions = 16ull << 20;
 
 // The index has no offsets.
 base::Result<Index> read_index(const File& file);

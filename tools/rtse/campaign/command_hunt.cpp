@@ -95,7 +95,7 @@ void hunt_plan(const Session& session, Console& console, const HuntCall& call) {
   HuntOptions options;
   options.budget = std::chrono::seconds(static_cast<long>(*seconds_of(call.budget)));
   options.jobs = call.jobs;
-  options.most_cases = call.cases;
+  options.max_cases = call.cases;
   options.max_failures = call.failures;
   options.folder = call.folder.empty() ? std::filesystem::path(call.plan).replace_extension(".finds").string() : call.folder;
   options.writes_pages = call.pages;

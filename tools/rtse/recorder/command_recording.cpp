@@ -34,7 +34,7 @@ using tools::Session;
 
 // ---- info, ls ----
 
-constexpr std::uint64_t most_read = 2ull << 30;  // [bytes] of all samples; of more than that the indexes have to do
+constexpr std::uint64_t max_read = 2ull << 30;  // [bytes] of all samples; of more than that the indexes have to do
 
 // Numbers of the samples of a channel, in any order: files hold samples in an order of their own, and are read in that of their times.
 class SeenNumbers {
@@ -54,7 +54,7 @@ class SeenNumbers {
     } else {
       ranges_[last_] = end;
     }
-    is_counted_ = ranges_.size() <= most_ranges;
+    is_counted_ = ranges_.size() <= max_ranges;
   }
   // Between the lowest and the highest; nothing when there were too many gaps to remember.
   std::optional<std::uint64_t> missing() const {
@@ -66,7 +66,7 @@ class SeenNumbers {
   }
 
  private:
-  static constexpr std::size_t most_ranges = 100'000;
+  static constexpr std::size_t max_ranges = 100'000;
   std::map<std::int64_t, std::int64_t> ranges_;  // first -> last, none beside another
   std::int64_t last_ = 0;
   bool is_counted_ = true;
@@ -124,7 +124,7 @@ std::optional<Facts> indexed_facts(mcap::Reader& reader) {
 }
 
 Facts facts_of(Console& console, mcap::Reader& reader, const std::string& file) {
-  if (reader.uncompressed() > most_read) {
+  if (reader.uncompressed() > max_read) {
     if (auto facts = indexed_facts(reader)) return std::move(*facts);
   }
   Facts facts;
@@ -195,7 +195,7 @@ void list(Console& console, const std::string& file, bool with_run) {
   }
   if (console.json()) return console.print(with_run ? all : all["channels"]);
   if (std::ranges::any_of(facts, [](const auto& one) { return !one.second.is_read; }))
-    console.warn("samples of more than " + std::to_string(most_read >> 30) +
+    console.warn("samples of more than " + std::to_string(max_read >> 30) +
                  " GiB are counted by their indexes: without bytes and missing ones");
   if (with_run) {
     std::cout << "file        " << file << "\nwritten by  " << base::printable(reader->library()) << "\ntime        "

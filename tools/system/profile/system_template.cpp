@@ -9,7 +9,7 @@
 namespace tools {
 namespace {
 
-constexpr std::size_t most_entries = 1'000'000;  // components, or connections
+constexpr std::size_t max_entries = 1'000'000;  // components, or connections
 
 // ---- all texts of an entry that a name can stand in ----
 
@@ -80,7 +80,7 @@ bool repeat(std::vector<T>& entries, const base::NameList& list, bool& is_used) 
       continue;
     }
     is_used = true;
-    if (all.size() + static_cast<std::size_t>(end - at) * list.values.size() > most_entries) return false;
+    if (all.size() + static_cast<std::size_t>(end - at) * list.values.size() > max_entries) return false;
     for (std::size_t i = 0; i < list.values.size(); ++i) {
       for (auto of = at; of != end; ++of) {
         all.push_back(*of);

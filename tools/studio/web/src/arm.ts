@@ -9,10 +9,10 @@ export interface Joint {
 
 export const turns = (joint: Joint): boolean => joint.kind === 1;
 
-const most_tries = 200;
+const max_tries = 200;
 const longest_step = 0.05; // [m] of the tip
 const widest_step = 0.2;   // [rad or m] of a joint
-const least_damping = 0.01, most_damping = 100; // [m/rad]
+const least_damping = 0.01, max_damping = 100; // [m/rad]
 const close = 1e-5;        // [m]
 
 const has_place = (joint: Joint): boolean => Array.isArray(joint.axis) && Array.isArray(joint.pose?.position) && Array.isArray(joint.pose?.orientation);
@@ -66,7 +66,7 @@ export class Chain {
   reach(base: Matrix4, offset: Vector3, start: number[], target: Vector3): number[] {
     let positions = start.map((value, i) => within(this.joints[i], value));
     let now = this.moved(positions, base, offset), damping = least_damping;
-    for (let i = 0; i < most_tries && damping < most_damping; ++i) {
+    for (let i = 0; i < max_tries && damping < max_damping; ++i) {
       const way = target.clone().sub(now.point), distance = way.length();
       if (distance < close) break;
       const next = this.step(positions, now.columns, way.clampLength(0, longest_step), damping), there = this.moved(next, base, offset);

@@ -6,7 +6,7 @@ import { act, wire } from './store';
 
 interface Reply { csv: string; recordings: { row: number; file: string }[] }
 
-const most_rows = 1000; // that are shown
+const max_rows = 1000; // that are shown
 const hidden = new Set(['passed', 'state', 'wall_s']); // `passed` is a mark at the row
 const is_number = (text: string): boolean => text !== '' && Number.isFinite(Number(text));
 const shown = (text: string): string => (is_number(text) && text.length > 8 ? String(Number(Number(text).toPrecision(6))) : text);
@@ -42,10 +42,10 @@ export function campaign_dialog(file: string): void {
         const { i, up } = order, sign = up ? 1 : -1;
         chosen.sort((a, b) => sign * (is_number(a[i]) && is_number(b[i]) ? Number(a[i]) - Number(b[i]) : a[i].localeCompare(b[i])));
       }
-      put(summary, `${rows.length} rows: ${count} passed, ${rows.length - count} failed${chosen.length > most_rows ? `; the first ${most_rows} are shown` : ''}${recorded.size === 0 && count < rows.length ? '. rtse sweep --record records failed rows' : ''}`);
+      put(summary, `${rows.length} rows: ${count} passed, ${rows.length - count} failed${chosen.length > max_rows ? `; the first ${max_rows} are shown` : ''}${recorded.size === 0 && count < rows.length ? '. rtse sweep --record records failed rows' : ''}`);
       put(table, h('thead', null, h('tr', null, columns.map(({ name, i }) => h('th', { scope: 'col', 'aria-sort': order?.i === i ? (order.up ? 'ascending' : 'descending') : undefined },
         button(`Sort by ${name}`, { label: name.split('/').slice(-2).join('/'), class: 'plain' }, () => { order = { i, up: order?.i === i ? !order.up : true }; draw(); }))))),
-      h('tbody', null, chosen.slice(0, most_rows).map((row) => h('tr', null, columns.map((column) => cell(row, column))))));
+      h('tbody', null, chosen.slice(0, max_rows).map((row) => h('tr', null, columns.map((column) => cell(row, column))))));
     };
     failed.addEventListener('change', draw);
     draw();

@@ -9,7 +9,7 @@ interface Moment { time: number; places: Float32Array; names: string[] }
 export interface Change { time: number; state: State }
 
 const period = 0.1, longest = 300; // [s]
-const most_octets = 48e6;
+const max_octets = 48e6;
 
 export class History {
   readonly states = new Map<string, Change[]>();
@@ -69,7 +69,7 @@ export class History {
     const places = this.world.places();
     this.moments.push({ time: this.last, places, names: this.world.link_names() });
     this.octets += places.byteLength;
-    while (this.octets > most_octets || (this.moments.length > 1 && this.moments[0].time < this.last - longest)) this.octets -= this.moments.shift()!.places.byteLength;
+    while (this.octets > max_octets || (this.moments.length > 1 && this.moments[0].time < this.last - longest)) this.octets -= this.moments.shift()!.places.byteLength;
   }
 
   // Puts the world and the states as they were, or back to now.

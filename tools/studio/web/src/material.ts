@@ -19,11 +19,11 @@ export const linear = (srgb: number[]): Color => new Color().setRGB(srgb[0], srg
 // What all surfaces share; changed in place when lights move.
 export interface SharedLights { [name: string]: { value: any } }
 
-const most_lamps = 8;
+const max_lamps = 8;
 
 export const suns_of = (lights: SceneLight[]): SceneLight[] => lights.filter((l) => l.type === 'directional')
   .sort((a, b) => Number(b.extras.casts_shadow) - Number(a.extras.casts_shadow));
-export const lamps_of = (lights: SceneLight[]): SceneLight[] => lights.filter((l) => l.type !== 'directional').slice(0, most_lamps);
+export const lamps_of = (lights: SceneLight[]): SceneLight[] => lights.filter((l) => l.type !== 'directional').slice(0, max_lamps);
 
 const shared = new WeakMap<Look, SharedLights>();
 

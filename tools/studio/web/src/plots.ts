@@ -13,7 +13,7 @@ import { watch } from './watches';
 import { palette } from './palette';
 
 interface Line { topic: string; kind: string; member: string; times: number[]; values: (number | null)[]; stop: () => void; error: string; at?: HTMLElement; other?: [number[], (number | null)[]] } // `other`: of the recording that is compared with
-const most_points = 12000;
+const max_points = 12000;
 const recorded_points = 6000; // of a line, of all of a recording or of the part that is looked at
 
 // Angles in degrees.
@@ -86,7 +86,7 @@ class Plot {
         line.times.push(time);
         line.values.push(number_of(line, value));
       });
-      if (line.times.length > most_points) {
+      if (line.times.length > max_points) {
         line.times.splice(0, 2000);
         line.values.splice(0, 2000);
       }

@@ -11,9 +11,9 @@ import { watch } from './watches';
 interface Measured { time: number; values: Values; octets: number }
 interface Fan { parts: (Mesh | Line)[]; iface: string; stop: () => void; sensors: Sensor[]; measured: Measured[]; now: Values | null; draw: (values: Values) => void }
 
-const most_fans = 24;
+const max_fans = 24;
 const period = 0.1, longest = 300, oldest = 1; // [s] between those that are kept; a moment has none older than `oldest`
-const most_octets = 32e6; // of all fans
+const max_octets = 32e6; // of all fans
 
 // Along x, one metre long and one wide at its end: scaled by what is measured.
 const cone = new ConeGeometry(1, 1, 24, 1, true).rotateZ(Math.PI / 2).translate(0.5, 0, 0);
@@ -28,7 +28,7 @@ export class Ranges {
 
   // Those that the settings ask for, of what the world has.
   show(world: WorldScene): void {
-    const wanted = (store.world?.ifaces ?? []).filter((i) => (i.type === 'laser' && settings.lasers) || (i.type === 'sonar' && settings.sonars)).slice(0, most_fans);
+    const wanted = (store.world?.ifaces ?? []).filter((i) => (i.type === 'laser' && settings.lasers) || (i.type === 'sonar' && settings.sonars)).slice(0, max_fans);
     const names = new Set(wanted.map((i) => iface_id(i)));
     for (const name of [...this.fans.keys()]) if (!names.has(name)) this.remove(name);
     wanted.forEach((iface, i) => {
@@ -64,7 +64,7 @@ export class Ranges {
     fan.measured.push({ time, values, octets });
     this.octets += octets;
     this.drop(fan.measured, fan.measured.findIndex((m) => m.time >= time - longest));
-    while (this.octets > most_octets) {
+    while (this.octets > max_octets) {
       const most = [...this.kept.values()].reduce((a, b) => (a.length > b.length ? a : b));
       if (most.length === 0) break;
       this.drop(most, 1);

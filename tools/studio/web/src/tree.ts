@@ -5,7 +5,7 @@ import { changed, iface_id, is_selected, on, select, Selection, selected_model, 
 
 interface Row { key: string; label: string; more?: string; selection?: Selection; children?: () => Row[]; mark?: () => Element | null; hint?: string; topic?: string; related?: boolean; closed?: boolean }
 
-const most_rows = 800;
+const max_rows = 800;
 const icon_of: { [kind: string]: string } = { model: 'world', component: 'system', port: 'link', manager: 'inspect', signal: 'plot', iface: 'laser' };
 
 export class Tree {
@@ -73,7 +73,7 @@ export class Tree {
     const matches = (row: Row): boolean => !query || (row.selection !== undefined && (row.label.toLowerCase().includes(query) || (row.more ?? '').toLowerCase().includes(query))) || (row.children?.().some(matches) ?? false);
     const visit = (row: Row, level: number, parent: string) => {
       if (query && !matches(row)) return;
-      if (this.rows.length >= most_rows) return void ++left_out;
+      if (this.rows.length >= max_rows) return void ++left_out;
       const children = row.children?.() ?? [];
       const is_open = query ? children.some(matches) : this.open.get(row.key) ?? !row.closed;
       const element = this.row(row, level, children.length > 0 ? is_open : undefined);
