@@ -287,7 +287,7 @@ TEST(TrackController, alone_carries_what_lies_on_its_belt_and_stops) {
       "<izz>0.007</izz></inertia></inertial><collision name='c'><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision></link>"
       "</model>";
   LandRide ride(belt, "conveyor::position2d");
-  const auto parcel = [&] {
+  const auto parcel = [&]() -> Eigen::Vector3d {
     return ride.f.simulation->physics().model_pose(ride.f.simulation->physics().find("parcel").value()).translation();
   };
   ride.after(2);
